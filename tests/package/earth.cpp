@@ -1,0 +1,10 @@
+// Normal gravity at the equator, by a library that kreisel::earth has to bring along.
+#include <iostream>
+
+#include <dynamics/guide/normal_gravity.hpp>
+
+int main() {
+  const double g = kreisel::normal_gravity({}).magnitude;
+  std::cout << g << '\n';
+  return g > 9.780 && g < 9.781 ? 0 : 1;
+}
