@@ -1,0 +1,298 @@
+#pragma once
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+#include <motor/error.hpp>
+#include <motor/frame.hpp>
+#include <motor/rate.hpp>
+#include <motor/tensor.hpp>
+
+namespace kreisel {
+
+/// A symmetric 3x3 matrix, six numbers.
+template <class S = double>
+struct Symmetric3 {
+  S xx = S(0), yy = S(0), zz = S(0), xy = S(0), xz = S(0), yz = S(0);
+
+  /// From a full matrix, of which the mean of both triangles is taken.
+  [[nodiscard]] static Symmetric3 from(const Matrix3<S>& m) {
+    return {m(0, 0),
+            m(1, 1),
+            m(2, 2),
+            (m(0, 1) + m(1, 0)) / S(2),
+            (m(0, 2) + m(2, 0)) / S(2),
+            (m(1, 2) + m(2, 1)) / S(2)};
+  }
+
+  [[nodiscard]] Matrix3<S> matrix() const {
+    return (Matrix3<S>() << xx, xy, xz, xy, yy, yz, xz, yz, zz).finished();
+  }
+
+  friend Vector3<S> operator*(const Symmetric3& m, const Vector3<S>& v) {
+    return {m.xx * v.x() + m.xy * v.y() + m.xz * v.z(), m.xy * v.x() + m.yy * v.y() + m.yz * v.z(),
+            m.xz * v.x() + m.yz * v.y() + m.zz * v.z()};
+  }
+  friend Symmetric3 operator+(const Symmetric3& a, const Symmetric3& b) {
+    return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
+  }
+  friend Symmetric3 operator-(const Symmetric3& a, const Symmetric3& b) {
+    return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.xz - b.xz, a.yz - b.yz};
+  }
+};
+
+/// 2 (a . b) 1 - a b^t - b a^t: with b = a it is twice the inertia of a unit mass at a.
+template <class S>
+[[nodiscard]] Symmetric3<S> offset_product(const Vector3<S>& a, const Vector3<S>& b) {
+  const S xx = a.x() * b.x();
+  const S yy = a.y() * b.y();
+  const S zz = a.z() * b.z();
+  const S two(2);
+  return {two * (yy + zz),
+          two * (xx + zz),
+          two * (xx + yy),
+          -(a.x() * b.y() + a.y() * b.x()),
+          -(a.x() * b.z() + a.z() * b.x()),
+          -(a.y() * b.z() + a.z() * b.y())};
+}
+
+/// The inertia of a rigid body as a motor tensor: ten numbers instead of 36.
+///
+///   T (u; v) = {m v + u x s; s x v + Theta u},   s = m r_s first moment, Theta about the origin
+///
+/// Source : paper 002 (10), with the paper's Phi the negative off-diagonals of Theta
+/// Frame  : untagged; InertiaTensor puts axes and origin into the type
+/// Units  : kg, kg m, kg m^2
+template <class S = double>
+struct Inertia {
+  S mass = S(0);
+  Vector3<S> first_moment = Vector3<S>::Zero();
+  Symmetric3<S> tensor = {};
+
+  using Scalar = S;
+
+  /// The same as 36 numbers.
+  [[nodiscard]] MotorTensor<S> motor_tensor() const {
+    const Matrix3<S> s = skew(first_moment);
+    return {-s, mass * Matrix3<S>::Identity(), tensor.matrix(), s};
+  }
+
+  /// The momentum of a velocity (or the force of an acceleration). Cost: 48 flops.
+  friend Motor<S> operator*(const Inertia& T, const Motor<S>& V) {
+    return {T.mass * V.moment + V.resultant.cross(T.first_moment),
+            T.first_moment.cross(V.moment) + T.tensor * V.resultant};
+  }
+
+  /// Two bodies rigidly joined, both reduced at the same origin on the same axes.
+  friend Inertia operator+(const Inertia& a, const Inertia& b) {
+    return {a.mass + b.mass, a.first_moment + b.first_moment, a.tensor + b.tensor};
+  }
+  friend Inertia operator-(const Inertia& a, const Inertia& b) {
+    return {a.mass - b.mass, a.first_moment - b.first_moment, a.tensor - b.tensor};
+  }
+  friend Inertia operator-(const Inertia& a) { return Inertia{} - a; }
+
+  /// Turned by R, then shifted by x: the origin of the old frame lies at x in the new one.
+  ///
+  /// Theta' = R Theta R^t + offset_product(R s, x) + m offset_product(x, x) / 2
+  friend Inertia operator*(const Pose<S>& X, const Inertia& T) {
+    const Vector3<S> s = X.rotation * T.first_moment;
+    const Vector3<S>& x = X.translation;
+    const Matrix3<S> turned = X.rotation * T.tensor.matrix() * X.rotation.transpose();
+    return {T.mass, s + T.mass * x,
+            Symmetric3<S>::from(turned) + offset_product(x, Vector3<S>(s + (T.mass / S(2)) * x))};
+  }
+};
+
+/// [V T] - [T V]: the rate of T seen by an observer against whom the body moves with V; again ten
+/// numbers, with the mass's rate 0.
+///
+/// Source : paper 002 section 2, oT = [V' T] - [T V']
+template <class S>
+[[nodiscard]] Inertia<S> carried_rate(const Motor<S>& V, const Inertia<S>& T) {
+  const Vector3<S>& u = V.resultant;
+  const Matrix3<S> turning = skew(u) * T.tensor.matrix();
+  return {S(0), u.cross(T.first_moment) + T.mass * V.moment,
+          Symmetric3<S>::from(turning + turning.transpose()) +
+              offset_product(T.first_moment, V.moment)};
+}
+
+/// Solves  T A = P  for A: the acceleration of a free body under a force.
+///
+/// Throws : ComputationFailed when T is singular (mass 0, point, needle), naming what is missing
+/// Error  : of the angular half <= 8u |Theta| |M_S| / lambda^2, M_S the torque about the centre of
+///          mass, lambda the least moment of inertia about it
+template <class S>
+[[nodiscard]] Motor<S> solve(const Inertia<S>& T, const Motor<S>& P) {
+  if (!(T.mass > S(0))) throw ComputationFailed("Inertia: solve needs a mass above 0");
+  const Vector3<S> r = T.first_moment / T.mass;
+  const Matrix3<S> about_centre =
+      (T.tensor - offset_product(r, Vector3<S>(T.first_moment / S(2)))).matrix();
+  const Eigen::LDLT<Matrix3<S>> factor(about_centre);
+  const Vector3<S> pivots = factor.vectorD();
+  if (!(pivots.minCoeff() > std::numeric_limits<S>::epsilon() * T.tensor.matrix().trace())) {
+    throw ComputationFailed(
+        "Inertia: the tensor about the centre of mass is singular (a point or a needle): its "
+        "rotation is not determined by the force");
+  }
+  const Vector3<S> du = factor.solve(Vector3<S>(P.moment - r.cross(P.resultant)));
+  return {du, P.resultant / T.mass - du.cross(r)};
+}
+
+namespace detail {
+
+/// What of a tensor given passes as rounding: 1e-12, or more where S has not so many digits.
+template <class S>
+[[nodiscard]] S tensor_slack(const Matrix3<S>& tensor) {
+  const S digits = S(64) * std::numeric_limits<S>::epsilon();
+  return (digits > S(1e-12) ? digits : S(1e-12)) * tensor.cwiseAbs().maxCoeff();
+}
+
+/// The number in a dual number (Eigen's AutoDiffScalar), which is all that a check looks at.
+template <class S>
+[[nodiscard]] auto number_in(const S& x) {
+  if constexpr (requires { x.derivatives(); }) {
+    return number_in(x.value());
+  } else {
+    return x;
+  }
+}
+
+}  // namespace detail
+
+/// Whether a body without mass is legal: a massless ring is a limit that some scenes take.
+enum class Mass { positive, zero_allowed };
+
+/// Refuses what no distribution of mass can have.
+///
+/// A mass below 0, a tensor about the centre of mass that is not positive semidefinite or violates
+/// the triangle inequality of its principal moments. Needles, discs and points are legal limits;
+/// violations up to 1e-12 of the tensor given (in float 8e-6) pass as rounding.
+///
+/// Throws : InvalidInput, naming the inequality violated with its numbers
+template <class S>
+void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& what = "inertia") {
+  const auto refuse = [&what](const auto&... words) {
+    std::ostringstream text;
+    text.precision(10);
+    text << what << ": ";
+    (text << ... << words);
+    throw InvalidInput(text.str());
+  };
+  const Symmetric3<S>& t = T.tensor;
+  for (const S& number : {T.mass, T.first_moment.x(), T.first_moment.y(), T.first_moment.z(), t.xx,
+                          t.yy, t.zz, t.xy, t.xz, t.yz}) {
+    const bool finite = number - number == S(0);
+    if (!finite) refuse("not a finite number among mass, first moment and tensor");
+  }
+  if (T.mass < S(0)) refuse("mass >= 0 fails: mass = ", T.mass, " kg");
+  if (T.mass == S(0)) {
+    if (rule == Mass::positive) refuse("mass > 0 fails: mass = 0 kg");
+    if (T.first_moment != Vector3<S>::Zero()) refuse("mass = 0 kg, but its first moment is not 0");
+  }
+  Symmetric3<S> about_centre = t;
+  if (T.mass > S(0)) {
+    const Vector3<S> r = T.first_moment / T.mass;
+    about_centre = t - offset_product(r, Vector3<S>(T.first_moment / S(2)));
+  }
+  using Number = decltype(detail::number_in(T.mass));
+  const Matrix3<Number> centred =
+      about_centre.matrix().unaryExpr([](const S& x) { return detail::number_in(x); });
+  const Eigen::SelfAdjointEigenSolver<Matrix3<Number>> eigen(centred, Eigen::EigenvaluesOnly);
+  const Vector3<Number> p = eigen.eigenvalues();
+  const Number slack = detail::number_in(detail::tensor_slack(t.matrix()));
+  if (p[0] < -slack) {
+    refuse("principal moments about the centre of mass >= 0 fails: ", p[0], ", ", p[1], ", ", p[2],
+           " kg m^2");
+  }
+  if (p[0] + p[1] < p[2] - slack) {
+    refuse("triangle inequality about the centre of mass fails: ", p[0], " + ", p[1], " >= ", p[2],
+           " kg m^2");
+  }
+}
+
+/// The inertia tensor of a rigid body, written in In: T of the paper.
+///
+/// Braces take numbers as they are; about_centre and about_origin check them.
+///
+/// Source : paper 002 (1), (10)
+/// Units  : kg, kg m, kg m^2
+template <class In, class S = double>
+struct InertiaTensor {
+  Inertia<S> value;
+
+  using Frame = In;
+  using Scalar = S;
+  using Value = Inertia<S>;
+  template <class E>
+  using WrittenIn = InertiaTensor<E, S>;
+
+  /// From mass, centre of mass and the tensor about the centre of mass.
+  ///
+  /// Throws : InvalidInput as check() does
+  [[nodiscard]] static InertiaTensor about_centre(const S& mass, const Vector3<S>& centre,
+                                                  const Matrix3<S>& tensor,
+                                                  Mass rule = Mass::positive) {
+    const Inertia<S> centred{mass, Vector3<S>::Zero(), symmetric(tensor)};
+    check(centred, rule);
+    return {Pose<S>{Matrix3<S>::Identity(), centre} * centred};
+  }
+
+  /// From mass, centre of mass and the tensor about the origin of In.
+  ///
+  /// Throws : InvalidInput as check() does
+  [[nodiscard]] static InertiaTensor about_origin(const S& mass, const Vector3<S>& centre,
+                                                  const Matrix3<S>& tensor,
+                                                  Mass rule = Mass::positive) {
+    const Inertia<S> inertia{mass, mass * centre, symmetric(tensor)};
+    check(inertia, rule);
+    return {inertia};
+  }
+
+ private:
+  [[nodiscard]] static Symmetric3<S> symmetric(const Matrix3<S>& m) {
+    const S skewness = (m - m.transpose()).cwiseAbs().maxCoeff();
+    if (skewness > detail::tensor_slack(m)) {
+      throw InvalidInput("inertia: the tensor is not symmetric");
+    }
+    return Symmetric3<S>::from(m);
+  }
+};
+
+template <class E, class S>
+struct Sum<InertiaTensor<E, S>, InertiaTensor<E, S>> {
+  using Type = InertiaTensor<E, S>;
+};
+
+/// The momentum motor  T V.
+///
+/// Source : paper 002 section 3: T V' = {m(v' + u' x r_s); m r_s x v' + T u'}
+template <class E, class S, class Of, class From, class E2>
+[[nodiscard]] auto operator*(const InertiaTensor<E, S>& T, const Velocity<Of, From, E2, S>& V) {
+  static_assert(std::is_same_v<E, E2>, "inertia and velocity are not written in one frame");
+  if constexpr (std::is_same_v<E, E2>) return Momentum<E, S>{T.value * V.value};
+}
+
+/// The force motor  T (derivative of a velocity).
+template <class E, class S, class O, class Of, class From, class E2>
+[[nodiscard]] auto operator*(const InertiaTensor<E, S>& T,
+                             const Rate<O, Velocity<Of, From, E2, S>>& dV) {
+  static_assert(std::is_same_v<E, E2>, "inertia and acceleration are not written in one frame");
+  if constexpr (std::is_same_v<E, E2>) return Force<E, S>{T.value * dV.value};
+}
+
+/// The rate of the inertia of a body B seen from an observer O against whom it moves with V.
+///
+/// Source : paper 002 section 2, oT = [V' T] - [T V']
+template <class B, class O, class E, class S>
+[[nodiscard]] Rate<O, InertiaTensor<E, S>> rate(const std::type_identity_t<InertiaTensor<E, S>>& T,
+                                                const Velocity<B, O, E, S>& V) {
+  return {carried_rate(V.value, T.value)};
+}
+
+}  // namespace kreisel
