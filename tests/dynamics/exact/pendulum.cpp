@@ -1,0 +1,195 @@
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/test/data/monomorphic.hpp>
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_sf_gamma.h>
+
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <dynamics/exact/pendulum.hpp>
+#include <dynamics/scene/pendulum_period.hpp>
+
+#include <support/near.hpp>
+
+namespace data = boost::unit_test::data;
+using namespace kreisel;
+using Exact = boost::multiprecision::cpp_bin_float_50;
+
+namespace {
+
+constexpr double u = 0x1p-53;
+
+/// |value - truth| <= k u |scale| with u = 2^-53, truth being more precise.
+test::Verdict near(double value, const Exact& truth, double scale, double k) {
+  return test::near(Exact(value), truth, Exact(std::abs(scale)),
+                    k * u / test::u<Exact>.convert_to<double>());
+}
+
+/// 2 pi/(omega agm(1, cos(amplitude/2))): Gauss, in 50 digits.
+Exact period_by_agm(double amplitude) {
+  Exact a = 1;
+  Exact b = cos(Exact(Exact(amplitude) / 2));
+  for (int i = 0; i < 12; ++i) {
+    const Exact mean = (a + b) / 2;
+    b = sqrt(Exact(a * b));
+    a = mean;
+  }
+  return 2 * acos(Exact(-1)) / a;
+}
+
+/// phi.. = -sin(phi) by Taylor series of order 40 in 50 digits.
+struct Motion {
+  Exact angle;
+  Exact rate;
+
+  void step(const Exact& h) {
+    constexpr int order = 40;
+    std::array<Exact, order + 2> p;
+    std::array<Exact, order + 2> w;
+    std::array<Exact, order + 2> s;
+    std::array<Exact, order + 2> c;
+    p[0] = angle;
+    w[0] = rate;
+    s[0] = sin(angle);
+    c[0] = cos(angle);
+    for (std::size_t k = 0; k <= order; ++k) {
+      p[k + 1] = w[k] / static_cast<int>(k + 1);
+      w[k + 1] = -s[k] / static_cast<int>(k + 1);
+      Exact ds = 0;
+      Exact dc = 0;
+      for (std::size_t i = 0; i <= k; ++i) {
+        ds += w[i] * c[k - i];
+        dc -= w[i] * s[k - i];
+      }
+      s[k + 1] = ds / static_cast<int>(k + 1);
+      c[k + 1] = dc / static_cast<int>(k + 1);
+    }
+    angle = 0;
+    rate = 0;
+    for (std::size_t k = order + 1; k-- > 0;) {
+      angle = angle * h + p[k];
+      rate = rate * h + w[k];
+    }
+  }
+};
+
+const auto amplitudes = data::make(
+    {1e-8, 0.01, 0.1, 0.5, 1.0, 1.5707963267948966, 2.0, 2.5, 3.0, 3.1, 3.14, 3.1415, 3.141592});
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(plain_pendulum)
+
+BOOST_DATA_TEST_CASE(period_is_gausss, amplitudes, amplitude) {
+  const exact::PlainPendulum pendulum(amplitude, 1);
+  // d(log T)/d amplitude grows like 1/(pi - amplitude).
+  const double condition = 4 + 1 / (std::numbers::pi - amplitude);
+  const Exact truth = period_by_agm(amplitude);
+  BOOST_TEST(near(pendulum.period(), truth, truth.convert_to<double>(), condition));
+  std::cout << "K: amplitude " << amplitude << " error "
+            << abs(Exact(pendulum.period() / truth - 1)).convert_to<double>() / u << " u\n";
+}
+
+// Anchor: amplitude 90 degrees, K(1/sqrt 2) = Gamma(1/4)^2/(4 sqrt pi).
+BOOST_AUTO_TEST_CASE(quarter_turn_has_the_lemniscates_period) {
+  const double gamma = gsl_sf_gamma(0.25);
+  const exact::PlainPendulum pendulum(std::numbers::pi / 2, 2);
+  BOOST_TEST(near(pendulum.period(), gamma * gamma / std::sqrt(std::numbers::pi) / 2, 4, 8));
+}
+
+// Quadrature and elliptic integral know nothing of one another.
+BOOST_DATA_TEST_CASE(period_is_that_of_the_quadrature, amplitudes, amplitude) {
+  const PendulumBody<double> body = PendulumBody<double>::thin_rod(1.0, 3.0);
+  const PendulumCoefficients<double> c{4.0, 0, 0, 0, 0};
+  const auto all = equilibria(c);
+  const auto swing = period_at_amplitude(body, c, all, nearest_stable(all), amplitude);
+  const exact::PlainPendulum pendulum(amplitude, std::sqrt(c.e() / body.theta_c));
+  const double condition = 8 + 8 / (std::numbers::pi - amplitude);
+  BOOST_TEST(near(swing.period, pendulum.period(), pendulum.period(), condition));
+  BOOST_TEST(near(swing.other_turning_point, -amplitude, amplitude, condition));
+  std::cout << "quadrature: amplitude " << amplitude << " nodes " << swing.nodes << " difference "
+            << std::abs(swing.period / pendulum.period() - 1) / u << " u\n";
+}
+
+BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series, data::make({0.1, 1.0, 2.0, 3.0}),
+                     amplitude) {
+  const exact::PlainPendulum pendulum(amplitude, 1);
+  Motion truth{amplitude, 0};
+  double worst_angle = 0;
+  double worst_rate = 0;
+  for (int i = 1; i * 0.0625 < pendulum.period(); ++i) {
+    truth.step(Exact("0.0625"));
+    const auto state = pendulum.at(i * 0.0625);
+    worst_angle = std::max(worst_angle, abs(Exact(state.angle - truth.angle)).convert_to<double>());
+    worst_rate = std::max(worst_rate, abs(Exact(state.rate - truth.rate)).convert_to<double>());
+  }
+  std::cout << "motion: amplitude " << amplitude << " error " << worst_angle / u << " u angle, "
+            << worst_rate / u << " u rate\n";
+  const double bound = (amplitude <= 2 ? 16 : 64) * u;
+  BOOST_TEST(worst_angle < bound);
+  BOOST_TEST(worst_rate < bound);
+}
+
+BOOST_AUTO_TEST_CASE(motion_starts_at_rest_and_comes_back) {
+  const exact::PlainPendulum pendulum(-2, 3);
+  BOOST_TEST(near(pendulum.at(0).angle, -2, 2, 2));
+  BOOST_TEST(pendulum.at(0).rate == 0);
+  BOOST_TEST(pendulum.at(0.01).rate > 0);
+  BOOST_TEST(near(pendulum.at(pendulum.period() / 2).angle, 2, 2, 4));
+  BOOST_TEST(near(pendulum.at(pendulum.period() / 4).angle, 0, 2, 16));
+  BOOST_TEST(near(pendulum.at(-0.3).angle, pendulum.at(0.3).angle, 2, 0));
+}
+
+BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+  const auto message = [](double amplitude, double omega) -> std::string {
+    try {
+      (void)exact::PlainPendulum(amplitude, omega);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  };
+  BOOST_TEST(message(0, 1) == "amplitude = 0 rad: 0 < |amplitude| < pi is required");
+  BOOST_TEST(message(3.2, 1).starts_with("amplitude = 3.2"));
+  BOOST_TEST(message(std::nan(""), 1) == "amplitude = nan rad: 0 < |amplitude| < pi is required");
+  BOOST_TEST(message(1, 0) == "omega = 0 rad/s must be a finite number above 0");
+  BOOST_TEST(message(1, 1) == "nothing was thrown");
+  BOOST_CHECK_THROW((void)exact::PlainPendulum(1, 1).at(std::numeric_limits<double>::infinity()),
+                    InvalidInput);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(gsl)
+
+int calls = 0;
+
+BOOST_AUTO_TEST_CASE(errors_become_exceptions_and_the_callers_handler_stays) {
+  gsl_error_handler_t* const before =
+      gsl_set_error_handler([](const char*, const char*, int, int) { ++calls; });
+  BOOST_CHECK_EXCEPTION(
+      {
+        const exact::detail::GslErrorsReturned guard;
+        gsl_sf_result result;
+        exact::detail::require_success(gsl_sf_ellint_RF_e(-1, 1, 1, GSL_PREC_DOUBLE, &result),
+                                       "integral of nothing");
+      },
+      ComputationFailed,
+      [](const auto& error) {
+        return std::string(error.what()) == "integral of nothing: input domain error";
+      });
+  BOOST_TEST(calls == 0);
+  gsl_sf_result result;
+  (void)gsl_sf_ellint_RF_e(-1, 1, 1, GSL_PREC_DOUBLE, &result);
+  BOOST_TEST(calls == 1);
+  gsl_set_error_handler(before);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
