@@ -1,0 +1,171 @@
+// The pendulum deviation calculator: where a physical pendulum hangs on the rotating earth, how its
+// period changes, and how far to trust each number.
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <dynamics/guide/normal_gravity.hpp>
+
+#include "request.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+volatile std::sig_atomic_t interrupted = 0;
+
+extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
+
+/// A line on the terminal, from the half second on; silent in a pipe.
+class Progress {
+ public:
+  explicit Progress(std::size_t total) : total_(total), shown_(isatty(STDERR_FILENO) != 0) {}
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() {
+    if (drawn_) fmt::print(stderr, "\r\033[K");
+  }
+
+  void report(std::size_t done) {
+    if (!shown_) return;
+    const double elapsed = seconds_since(start_);
+    if (elapsed < next_) return;
+    next_ = elapsed + 0.1;
+    drawn_ = true;
+    const double share = static_cast<double>(done) / static_cast<double>(total_);
+    const auto bars = static_cast<std::size_t>(30 * share);
+    fmt::print(stderr, "\r{:30} {:3.0f} %  {} of {}, {:.0f} s left\033[K", std::string(bars, '#'),
+               100 * share, done, total_, elapsed / share - elapsed);
+  }
+
+ private:
+  std::size_t total_;
+  bool shown_;
+  bool drawn_ = false;
+  double next_ = 0.5;
+  Clock::time_point start_ = Clock::now();
+};
+
+int run(const Request& request) {
+  const Clock::time_point start = Clock::now();
+  std::vector<Row> rows;
+  rows.reserve(request.sites.size());
+  {
+    Progress progress(request.sites.size());
+    for (const Site& site : request.sites) {
+      if (interrupted != 0) break;
+      rows.push_back(compute(request, site));
+      progress.report(rows.size());
+    }
+  }
+  const double run_time_s = seconds_since(start);
+  if (request.csv) write_csv(*request.csv, rows);
+  if (request.plot) draw(request, rows);
+  if (request.json) {
+    print_json(request, rows, run_time_s);
+  } else {
+    print_table(request, rows, run_time_s);
+  }
+  if (rows.size() < request.sites.size()) {
+    fmt::print(stderr,
+               "pendulum_deviation: interrupted after {} of {} sites; what was computed is kept\n",
+               rows.size(), request.sites.size());
+    return 130;
+  }
+  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  return 0;
+}
+
+/// Normal gravity comes in double: u and g' are right to 4 epsilon, which the answer cannot know.
+void add_rounding_of_normal_gravity(const Request& request, const Site& site,
+                                    kreisel::PendulumAnswer<double>& answer) {
+  const auto& body = request.body;
+  const Real spread = std::abs(body.theta_b - body.theta_a) + std::abs(body.phi_a) +
+                      std::abs(body.phi_b) + 2 * std::abs(body.phi_c);
+  const Real rate = site.place.rotation_rate;
+  constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
+  const double centrifugal =
+      relative * static_cast<double>(spread * rate * rate / Real(answer.coefficients.weight));
+  const double stiffness =
+      answer.coefficients.stiffness(answer.equilibrium.exact.value) / answer.coefficients.weight;
+  answer.equilibrium.exact.error += centrifugal / stiffness;
+  if (auto& change = answer.period.relative_change_exact) change->error += centrifugal;
+  for (auto* const period : {&answer.period.exact_small, &answer.period.at_amplitude}) {
+    if (*period) (*period)->error += relative * (*period)->value;
+  }
+}
+
+kreisel::EarthGuide<Real> earth_guide(const Request& request, kreisel::EarthSite<Real> place) {
+  if (!request.gravity) return kreisel::normal_gravity(place.cast<double>()).guide.cast<Real>();
+  kreisel::EarthGuide<Real> earth = kreisel::earth_guide(place, *request.gravity);
+  // A gravimeter gives gravity alone. Its gradient is the ellipsoid's, whatever turns the pendulum.
+  place.rotation_rate = kreisel::EarthSite<Real>{}.rotation_rate;
+  earth.gravity_gradient =
+      kreisel::normal_gravity(place.cast<double>()).guide.gravity_gradient.cast<Real>();
+  return earth;
+}
+
+GradientEffect effect_of_gradient(const kreisel::PendulumBody<Real>& body,
+                                  const kreisel::EarthGuide<Real>& earth) {
+  const auto parts =
+      kreisel::parts(body, kreisel::pendulum_guide(earth, kreisel::GravityGradient::taken_in));
+  const auto& [e, f, h, k] = parts.gravity_gradient;
+  return {static_cast<double>(-(f + h) / parts.weight),
+          static_cast<double>(-(e + 2 * k) / (2 * parts.weight))};
+}
+
+template <class E>
+[[noreturn]] void rethrow_with(const std::string& name, const E& error) {
+  throw E(name.empty() ? error.what() : name + ": " + error.what());
+}
+
+}  // namespace
+
+Row compute(const Request& request, const Site& site) {
+  const Clock::time_point start = Clock::now();
+  try {
+    const kreisel::EarthGuide<Real> earth = earth_guide(request, site.place);
+    const auto gradient = request.gravity_gradient ? kreisel::GravityGradient::taken_in
+                                                   : kreisel::GravityGradient::left_out;
+    const auto guide = kreisel::pendulum_guide(earth, gradient);
+    Row row{site, static_cast<double>(earth.effective_gravity.x()),
+            kreisel::deviation(request.body, guide, request.amplitude),
+            effect_of_gradient(request.body, earth), 0};
+    if (!request.gravity) add_rounding_of_normal_gravity(request, site, row.answer);
+    row.run_time_s = seconds_since(start);
+    return row;
+  } catch (const kreisel::InvalidInput& error) {
+    rethrow_with(site.name, error);
+  } catch (const kreisel::ComputationFailed& error) {
+    rethrow_with(site.name, error);
+  }
+}
+
+int main(int argc, char** argv) {
+  const auto fail = [](const std::exception& error, int status) {
+    fmt::print(stderr, "pendulum_deviation: {}\n", error.what());
+    return status;
+  };
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, not a death
+  try {
+    const std::optional<Request> request = read_request(argc, argv);
+    return request ? run(*request) : 0;
+  } catch (const kreisel::InvalidInput& error) {
+    return fail(error, 2);
+  } catch (const std::exception& error) {
+    return fail(error, 3);
+  }
+}

@@ -1,0 +1,232 @@
+#include <fmt/core.h>
+#include <fmt/ostream.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <string>
+
+#include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/csv.hpp>
+
+#include "request.hpp"
+
+using kreisel::Estimated;
+
+namespace {
+
+const double arcsec = 180 * 3600 / std::acos(-1.0);
+
+std::string optional_number(const std::optional<Estimated<double>>& number) {
+  return number ? fmt::format("{:+.12e}", number->value) : "none";
+}
+
+void print_terms(const char* title, const std::vector<kreisel::PendulumTerm<double>>& terms) {
+  fmt::print("{}\n", title);
+  for (const auto& term : terms) {
+    const std::string size = term.size == 0 ? "" : fmt::format("{:.1e}", term.size);
+    fmt::print("  {:30} {:>8}  {}\n", term.name, size, term.reason);
+  }
+}
+
+void print_one(const Request& request, const Row& row) {
+  const auto& [latitude, azimuth, height, rate] = row.site.place;
+  const auto& body = request.body;
+  const auto& answer = row.answer;
+  fmt::print("site      latitude {:g} deg, height {:g} m, pendulum axis at azimuth {:g} deg\n",
+             latitude, height, azimuth);
+  fmt::print("guide     gravity {:.12g} m/s^2 ({}), rotation {:.9g} rad/s\n", row.gravity,
+             request.gravity ? "given" : "WGS84 normal gravity", rate);
+  fmt::print(
+      "pendulum  m = {:g} kg, a = {:g} m, Theta = ({:g}, {:g}, {:g}), Phi = ({:g}, {:g}, {:g}) kg "
+      "m^2\n",
+      body.mass, body.arm, body.theta_a, body.theta_b, body.theta_c, body.phi_a, body.phi_b,
+      body.phi_c);
+
+  const auto equilibrium = [](const char* name, const std::optional<Estimated<double>>& phi) {
+    if (!phi) {
+      fmt::print("  {:22} none\n", name);
+    } else {
+      fmt::print("  {:22} {:+.12e} rad = {:+.12e} arcsec   error {:.1e} rad\n", name, phi->value,
+                 phi->value * arcsec, phi->error);
+    }
+  };
+  fmt::print("\nequilibrium, from the vertical towards azimuth {:g} deg\n",
+             std::fmod(azimuth + 270, Real(360)));
+  equilibrium("formula (24)", answer.equilibrium.formula_24);
+  equilibrium("linear", answer.equilibrium.linear);
+  equilibrium("exact", answer.equilibrium.exact);
+  fmt::print("  all                   ");
+  for (const auto& e : answer.equilibria) {
+    fmt::print(" {:+.9g} ({}{})", e.angle, e.degenerate ? "degenerate, " : "",
+               e.stable ? "stable" : "unstable");
+  }
+  fmt::print(" rad\n");
+
+  const auto period = [](const std::string& name, const std::optional<Estimated<double>>& T,
+                         const std::optional<Estimated<double>>& change) {
+    if (!T) {
+      fmt::print("  {:22} none\n", name);
+      return;
+    }
+    const std::string relative = change ? fmt::format("{:+.12e}", change->value) : std::string();
+    fmt::print("  {:22} {:.15g} s   {:>20}   error {:.1e} s\n", name, T->value, relative, T->error);
+  };
+  const auto& p = answer.period;
+  // The corrected period T_00 (1 + z) errs by what (25) leaves out.
+  const Estimated<double> corrected{p.simple.value * (1 + p.relative_change_formula_25.value),
+                                    p.simple.value * p.relative_change_formula_25.error};
+  fmt::print("\nperiod                                      change against simple\n");
+  period("simple", p.simple, {});
+  period("formula (25)", corrected, p.relative_change_formula_25);
+  period("linear", p.linear, {});
+  period("exact, small", p.exact_small, p.relative_change_exact);
+  period(fmt::format("exact, {:g} rad", request.amplitude), p.at_amplitude, {});
+  fmt::print(
+      "(the error of a formula is its difference from the exact value, that of an exact value its "
+      "rounding)\n\n");
+
+  fmt::print("gravity gradient{}: {:+.3e} rad, period {:+.3e} (first order)\n\n",
+             request.gravity_gradient ? ", taken in" : ", left out", row.gradient.equilibrium,
+             row.gradient.period);
+  print_terms("terms kept, with their greatest moment in units of m a g'", answer.terms_kept);
+  print_terms("terms dropped", answer.terms_dropped);
+  fmt::print("\nrun time {:.3g} ms\n", 1e3 * row.run_time_s);
+}
+
+nlohmann::json json(const std::optional<Estimated<double>>& number) {
+  return number ? nlohmann::json(number->value) : nlohmann::json();
+}
+
+nlohmann::json json_error(const std::optional<Estimated<double>>& number) {
+  return number && std::isfinite(number->error) ? nlohmann::json(number->error) : nlohmann::json();
+}
+
+nlohmann::json json(const std::vector<kreisel::PendulumTerm<double>>& terms) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& t : terms)
+    list.push_back({{"term", t.name}, {"reason", t.reason}, {"size", t.size}});
+  return list;
+}
+
+nlohmann::ordered_json json(const Request& request, const Row& row) {
+  const auto number = [](Real x) { return static_cast<double>(x); };
+  const auto& [latitude, azimuth, height, rate] = row.site.place;
+  const auto& b = request.body;
+  const auto& a = row.answer;
+  nlohmann::ordered_json result;
+  if (!row.site.name.empty()) result["name"] = row.site.name;
+  result["input"] = {{"latitude", number(latitude)},
+                     {"azimuth", number(azimuth)},
+                     {"height", number(height)},
+                     {"rotation_rate", number(rate)},
+                     {"gravity", row.gravity},
+                     {"gravity_model", request.gravity ? "number" : "normal"},
+                     {"gravity_gradient", request.gravity_gradient},
+                     {"mass", number(b.mass)},
+                     {"arm", number(b.arm)},
+                     {"theta_a", number(b.theta_a)},
+                     {"theta_b", number(b.theta_b)},
+                     {"theta_c", number(b.theta_c)},
+                     {"phi_a", number(b.phi_a)},
+                     {"phi_b", number(b.phi_b)},
+                     {"phi_c", number(b.phi_c)},
+                     {"amplitude", number(request.amplitude)}};
+  result["equilibrium"] = {{"formula_24", json(a.equilibrium.formula_24)},
+                           {"linear", json(a.equilibrium.linear)},
+                           {"exact", json(a.equilibrium.exact)}};
+  result["equilibria"] = nlohmann::ordered_json::array();
+  for (const auto& e : a.equilibria) {
+    result["equilibria"].push_back({{"angle", e.angle}, {"stable", e.stable}});
+  }
+  result["period"] = {{"simple", json(a.period.simple)},
+                      {"relative_change_formula_25", json(a.period.relative_change_formula_25)},
+                      {"linear", json(a.period.linear)},
+                      {"exact_small", json(a.period.exact_small)},
+                      {"relative_change_exact", json(a.period.relative_change_exact)},
+                      {"at_amplitude", json(a.period.at_amplitude)}};
+  result["error_estimate"] = {
+      {"equilibrium", json_error(a.equilibrium.exact)},
+      {"period", json_error(a.period.exact_small)},
+      {"equilibrium_formula_24", json_error(a.equilibrium.formula_24)},
+      {"equilibrium_linear", json_error(a.equilibrium.linear)},
+      {"period_simple", json_error(a.period.simple)},
+      {"period_linear", json_error(a.period.linear)},
+      {"period_at_amplitude", json_error(a.period.at_amplitude)},
+      {"relative_change_formula_25", json_error(a.period.relative_change_formula_25)},
+      {"relative_change_exact", json_error(a.period.relative_change_exact)}};
+  result["gravity_gradient"] = {{"included", request.gravity_gradient},
+                                {"equilibrium", row.gradient.equilibrium},
+                                {"relative_change", row.gradient.period}};
+  result["run_time_s"] = row.run_time_s;
+  result["terms_kept"] = json(a.terms_kept);
+  result["terms_dropped"] = json(a.terms_dropped);
+  return result;
+}
+
+}  // namespace
+
+void print_table(const Request& request, const std::vector<Row>& rows, double run_time_s) {
+  if (request.mode == Request::Mode::single) {
+    if (!rows.empty()) print_one(request, rows.front());
+    return;
+  }
+  const int names = request.mode == Request::Mode::sites ? 27 : 0;
+  fmt::print("{:{}}{:>9} {:>8} {:>7} {:>12} {:>20} {:>20} {:>18} {:>20} {:>8}\n", "", names,
+             "latitude", "height", "azimuth", "gravity", "deviation [rad]", "[arcsec]",
+             "period [s]", "relative change", "error");
+  for (const Row& row : rows) {
+    const auto& [latitude, azimuth, height, rate] = row.site.place;
+    const auto& equilibrium = row.answer.equilibrium.exact;
+    const auto& period = row.answer.period;
+    fmt::print(
+        "{:{}}{:>9.4f} {:>8.1f} {:>7.5g} {:>12.9f} {:>+20.12e} {:>+20.12e} {:>18} {:>20} "
+        "{:>8.1e}\n",
+        row.site.name, names, latitude, height, azimuth, row.gravity, equilibrium.value,
+        equilibrium.value * arcsec,
+        period.exact_small ? fmt::format("{:.15f}", period.exact_small->value) : "none",
+        optional_number(period.relative_change_exact), equilibrium.error);
+  }
+  fmt::print("{} sites in {:.3g} ms; error in rad, of the deviation\n", rows.size(),
+             1e3 * run_time_s);
+}
+
+void print_json(const Request& request, const std::vector<Row>& rows, double run_time_s) {
+  nlohmann::ordered_json result;
+  if (request.mode == Request::Mode::single) {
+    if (!rows.empty()) result = json(request, rows.front());
+  } else {
+    if (request.mode == Request::Mode::sweep) result["swept"] = request.swept;
+    result["sites"] = nlohmann::ordered_json::array();
+    for (const Row& row : rows) result["sites"].push_back(json(request, row));
+    result["run_time_s"] = run_time_s;
+  }
+  fmt::print("{}\n", result.dump(2));
+}
+
+void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) {
+  kreisel::AtomicFile file(path);
+  std::ostream& out = file.stream();
+  const auto value = [](const std::optional<Estimated<double>>& number) {
+    return number ? fmt::format("{:.16e}", number->value) : std::string();
+  };
+  const auto error = [](const std::optional<Estimated<double>>& number) {
+    return number ? fmt::format("{:.1e}", number->error) : std::string();
+  };
+  out << "name,latitude,height,azimuth,rotation_rate,gravity,equilibrium_formula_24,equilibrium_"
+         "linear,"
+         "equilibrium_exact,equilibrium_error,period_simple,relative_change_formula_25,period_"
+         "linear,"
+         "period_exact_small,period_error,relative_change_exact,period_at_amplitude\n";
+  for (const Row& row : rows) {
+    const auto& [latitude, azimuth, height, rate] = row.site.place;
+    const auto& a = row.answer;
+    fmt::print(out, "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{},{},{},{},{},{},{},{},{}\n",
+               kreisel::csv_field(row.site.name), latitude, height, azimuth, rate, row.gravity,
+               value(a.equilibrium.formula_24), value(a.equilibrium.linear),
+               value(a.equilibrium.exact), error(a.equilibrium.exact), value(a.period.simple),
+               value(a.period.relative_change_formula_25), value(a.period.linear),
+               value(a.period.exact_small), error(a.period.exact_small),
+               value(a.period.relative_change_exact), value(a.period.at_amplitude));
+  }
+  file.commit();
+}
