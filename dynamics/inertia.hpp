@@ -204,7 +204,7 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
   const Matrix3<Number> centred =
       about_centre.matrix().unaryExpr([](const S& x) { return detail::number_in(x); });
   const Eigen::SelfAdjointEigenSolver<Matrix3<Number>> eigen(centred, Eigen::EigenvaluesOnly);
-  const Vector3<Number> p = eigen.eigenvalues();
+  const Vector3<Number>& p = eigen.eigenvalues();
   const Number slack = detail::number_in(detail::tensor_slack(t.matrix()));
   if (p[0] < -slack) {
     refuse("principal moments about the centre of mass >= 0 fails: ", p[0], ", ", p[1], ", ", p[2],

@@ -61,8 +61,9 @@ std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<
   if (steps >= 10'000'000) throw refuse("more than ten million steps");
 
   std::vector<Site> sites;
-  for (Real i = 0; i <= steps; ++i) {
-    *value = from + i * step;
+  const long last = std::lround(steps);
+  for (long i = 0; i <= last; ++i) {
+    *value = from + static_cast<Real>(i) * step;
     kreisel::check(place);
     sites.push_back({"", place});
   }
