@@ -122,26 +122,45 @@ template <class S>
               offset_product(T.first_moment, V.moment)};
 }
 
-/// Solves  T A = P  for A: the acceleration of a free body under a force.
+/// An inertia made ready to solve  T A = P  for A: the acceleration of a free body under a force.
 ///
 /// Throws : ComputationFailed when T is singular (mass 0, point, needle), naming what is missing
 /// Error  : of the angular half <= 8u |Theta| |M_S| / lambda^2, M_S the torque about the centre of
 ///          mass, lambda the least moment of inertia about it
+template <class S = double>
+class FactoredInertia {
+ public:
+  explicit FactoredInertia(const Inertia<S>& T) : mass_(T.mass) {
+    if (!(T.mass > S(0))) throw ComputationFailed("Inertia: solve needs a mass above 0");
+    centre_ = T.first_moment / T.mass;
+    const Matrix3<S> about_centre =
+        (T.tensor - offset_product(centre_, Vector3<S>(T.first_moment / S(2)))).matrix();
+    factor_.compute(about_centre);
+    const Vector3<S> pivots = factor_.vectorD();
+    if (!(pivots.minCoeff() > std::numeric_limits<S>::epsilon() * T.tensor.matrix().trace())) {
+      throw ComputationFailed(
+          "Inertia: the tensor about the centre of mass is singular (a point or a needle): its "
+          "rotation is not determined by the force");
+    }
+  }
+
+  [[nodiscard]] Motor<S> solve(const Motor<S>& P) const {
+    const Vector3<S> du = factor_.solve(Vector3<S>(P.moment - centre_.cross(P.resultant)));
+    return {du, P.resultant / mass_ - du.cross(centre_)};
+  }
+
+ private:
+  S mass_;
+  Vector3<S> centre_;
+  Eigen::LDLT<Matrix3<S>> factor_;
+};
+
+/// Solves  T A = P  for A, once.
+///
+/// Throws : as FactoredInertia does
 template <class S>
 [[nodiscard]] Motor<S> solve(const Inertia<S>& T, const Motor<S>& P) {
-  if (!(T.mass > S(0))) throw ComputationFailed("Inertia: solve needs a mass above 0");
-  const Vector3<S> r = T.first_moment / T.mass;
-  const Matrix3<S> about_centre =
-      (T.tensor - offset_product(r, Vector3<S>(T.first_moment / S(2)))).matrix();
-  const Eigen::LDLT<Matrix3<S>> factor(about_centre);
-  const Vector3<S> pivots = factor.vectorD();
-  if (!(pivots.minCoeff() > std::numeric_limits<S>::epsilon() * T.tensor.matrix().trace())) {
-    throw ComputationFailed(
-        "Inertia: the tensor about the centre of mass is singular (a point or a needle): its "
-        "rotation is not determined by the force");
-  }
-  const Vector3<S> du = factor.solve(Vector3<S>(P.moment - r.cross(P.resultant)));
-  return {du, P.resultant / T.mass - du.cross(r)};
+  return FactoredInertia<S>(T).solve(P);
 }
 
 namespace detail {
