@@ -1,0 +1,181 @@
+#include <boost/test/unit_test.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <dynamics/step/explicit.hpp>
+
+#include <support/near.hpp>
+
+using namespace kreisel;
+using test::near;
+
+namespace {
+
+template <int n>
+using State = Eigen::Matrix<double, n, 1>;
+
+/// A circle of period 2 pi, entered at angle 0.
+State<2> circle(double /*t*/, const State<2>& y) { return {-y[1], y[0]}; }
+
+/// The error after a turn of the circle in steps held to `tolerance`, and what they cost.
+struct Turn {
+  double error, evaluations;
+};
+
+Turn turn_of_a_circle(double tolerance) {
+  ExplicitSteps steps(circle, 0.0, State<2>(1, 0), {.relative = tolerance});
+  steps.advance_to(2 * std::numbers::pi);
+  return {(steps.y() - State<2>(1, 0)).norm(), steps.effort().evaluations};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(verners_coefficients)
+
+BOOST_AUTO_TEST_CASE(have_rows_that_add_up_to_the_nodes) {
+  for (std::size_t i = 0; i < Verner98::stages; ++i) {
+    long double sum = 0;
+    for (const long double a : Verner98::a[i]) sum += a;
+    BOOST_TEST(near(sum, Verner98::node[i], 64.0L, 4));
+  }
+}
+
+// Quadrature of powers, the order conditions of a field that depends on time alone; the embedded
+// weights are of order 8, so for t^8 they must be wrong, or the estimate were always 0.
+BOOST_AUTO_TEST_CASE(integrate_powers_of_time) {
+  for (int power = 0; power < 9; ++power) {
+    long double ninth = 0;
+    long double difference = 0;
+    for (std::size_t i = 0; i < Verner98::stages; ++i) {
+      const long double x = std::pow(Verner98::node[i], power);
+      ninth += Verner98::b[i] * x;
+      difference += Verner98::difference[i] * x;
+    }
+    BOOST_TEST(near(ninth, 1.0L / (power + 1), 2.0L, 4));
+    if (power < 8) BOOST_TEST(near(difference, 0.0L, 6.0L, 4));
+    if (power == 8) BOOST_TEST(std::abs(difference) > 1e-8L);
+  }
+}
+
+// sum b_i a_ij c_j^k = 1/((k+1)(k+2)): what ties b, a and c together.
+BOOST_AUTO_TEST_CASE(integrate_powers_of_time_twice) {
+  for (int power = 0; power < 8; ++power) {
+    long double sum = 0;
+    for (std::size_t i = 0; i < Verner98::stages; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        sum += Verner98::b[i] * Verner98::a[i][j] * std::pow(Verner98::node[j], power);
+      }
+    }
+    BOOST_TEST(near(sum, 1.0L / ((power + 1) * (power + 2)), 8.0L, 4));
+  }
+}
+
+// A nonlinear field at fixed steps (a wide-open tolerance lets every step stand): halving the step
+// divides the error by 2^9.
+BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_of_the_step) {
+  using Wide = Eigen::Matrix<long double, 1, 1>;
+  const auto error = [](int n) {
+    const auto riccati = [](long double t, const Wide& y) {
+      return Wide(1 + y[0] * y[0] * std::cos(t));
+    };
+    const auto run = [&](int steps) {
+      ExplicitSteps integration(riccati, 0.0L, Wide(0.1L), {.relative = 1e-2, .smallest = 1e6});
+      for (int i = 1; i <= steps; ++i) integration.advance_to(0.8L * i / steps);
+      return integration.y()[0];
+    };
+    return std::abs(run(n) - run(64 * n));
+  };
+  const double order = std::log2(static_cast<double>(error(4) / error(8)));
+  BOOST_TEST_MESSAGE("observed order " << order);
+  BOOST_TEST(order > 8.5);
+  BOOST_TEST(order < 9.8);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(explicit_steps)
+
+BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+    const Turn turn = turn_of_a_circle(tolerance);
+    BOOST_TEST_MESSAGE(tolerance << ": " << turn.error << " for " << turn.evaluations);
+    BOOST_TEST(turn.error < 20 * tolerance);  // a turn takes 3 to 20 steps
+  }
+  BOOST_TEST(turn_of_a_circle(1e-14).evaluations < 1000);
+}
+
+BOOST_AUTO_TEST_CASE(go_there_and_back) {
+  ExplicitSteps steps(circle, 0.0, State<2>(1, 0));
+  steps.advance_to(100);
+  steps.advance_to(-3);
+  BOOST_TEST(near(steps.y()[0], std::cos(3), 1.0, 2000));
+  BOOST_TEST(near(steps.y()[1], -std::sin(3), 1.0, 2000));
+}
+
+BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
+  ExplicitSteps steps(circle, 5.0, State<2>(1, 0));
+  BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
+  BOOST_TEST(steps.effort().evaluations == 0);
+}
+
+// 1e6 additions of 0.1 in plain double are off by 1e-6: the clock must not be.
+BOOST_AUTO_TEST_CASE(keep_time) {
+  const auto clock = [](double, const State<1>&) { return State<1>(1.0); };
+  ExplicitSteps steps(clock, 0.0, State<1>(0.0));
+  for (int i = 1; i <= 100000; ++i) steps.advance_to(i * 0.1);
+  BOOST_TEST(near(steps.y()[0], 10000.0, 10000.0, 2));
+}
+
+// sqrt(1 - y) has no value beyond y = 1: a step that lands there is taken back, not passed on.
+BOOST_AUTO_TEST_CASE(take_back_a_step_that_leaves_the_field) {
+  const auto field = [](double, const State<1>& y) { return State<1>(-std::sqrt(y[0])); };
+  ExplicitSteps steps(field, 0.0, State<1>(1.0), {.relative = 1e-10});
+  steps.advance_to(1.8);  // y = (1 - t/2)^2
+  BOOST_TEST(near(steps.y()[0], 0.01, 1.0, 1e6));
+}
+
+BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
+  const auto field = [](double t, const State<1>& y) {
+    return t > 1 ? State<1>(std::numeric_limits<double>::quiet_NaN()) : State<1>(y);
+  };
+  ExplicitSteps steps(field, 0.0, State<1>(1.0));
+  BOOST_CHECK_EXCEPTION(steps.advance_to(2), ComputationFailed, [](const ComputationFailed& e) {
+    return std::string(e.what()).find("integration stopped at t = ") == 0;
+  });
+  BOOST_TEST(std::abs(steps.t() - 1) < 1e-12);
+  BOOST_TEST(near(steps.y()[0], std::exp(steps.t()), 3.0, 20));
+  BOOST_TEST(steps.effort().evaluations < 1e4);
+}
+
+// A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
+BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
+  const auto field = [](double, const State<4>& y) {
+    return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
+  };
+  ExplicitSteps steps(field, 0.0, State<4>(1, 0, 1e-9, 0), {.relative = 1e-13, .smallest = 0},
+                      std::array<int, 2>{2, 2});
+  steps.advance_to(2 * std::numbers::pi);
+  BOOST_TEST(near(steps.y()[2], 1e-9, 1e-9, 1e5));
+}
+
+BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
+  const auto with = [](const Accuracy& accuracy) {
+    return ExplicitSteps(circle, 0.0, State<2>(1, 0), accuracy);
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  BOOST_CHECK_THROW(with({.relative = 1e-17}), InvalidInput);
+  BOOST_CHECK_THROW(with({.relative = 0}), InvalidInput);
+  BOOST_CHECK_THROW(with({.relative = nan}), InvalidInput);
+  BOOST_CHECK_THROW(with({.smallest = nan}), InvalidInput);
+  BOOST_CHECK_THROW(ExplicitSteps(circle, nan, State<2>(1, 0)), InvalidInput);
+  BOOST_CHECK_THROW(ExplicitSteps(circle, 0.0, State<2>(nan, 0)), InvalidInput);
+  ExplicitSteps steps(circle, 0.0, State<2>(1, 0));
+  BOOST_CHECK_THROW(steps.advance_to(nan), InvalidInput);
+  ExplicitSteps few(circle, 0.0, State<2>(1, 0), {.most_evaluations = 100});
+  BOOST_CHECK_THROW(few.advance_to(1e6), ComputationFailed);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
