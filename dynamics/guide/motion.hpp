@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Geometry>
+
+#include <concepts>
+
 #include <motor/frame.hpp>
 #include <motor/rate.hpp>
 
@@ -16,14 +20,27 @@ namespace kreisel {
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2
 template <class G, class I, class S = double>
 struct FrameMotion {
-  Displacement<I, G, S> X;           ///< attitude and place of G in I
-  Velocity<G, I, G, S> V;            ///< (u; v of G's origin)
-  Rate<G, Velocity<G, I, G, S>> dV;  ///< (ou; ov), componentwise derivatives on G's axes
+  Displacement<I, G, S> X = {};           ///< attitude and place of G in I
+  Velocity<G, I, G, S> V = {};            ///< (u; v of G's origin)
+  Rate<G, Velocity<G, I, G, S>> dV = {};  ///< (ou; ov), componentwise derivatives on G's axes
+
+  using Of = G;
+  using Against = I;
+  using Scalar = S;
 
   /// The inertial acceleration of G's origin on G's axes:  ov + u x v.
   [[nodiscard]] Vector3<S> origin_acceleration() const {
     return dV.value.moment + V.value.resultant.cross(V.value.moment);
   }
+};
+
+/// A kind of guide motion: called with a time it tells how its frame moves then.
+///
+/// Whatever can be called so is one, a user's lambda too. The kinds here have a file each:
+/// resting, rotating, steady, harmonic, posed, tabulated, chain.
+template <class M, class G = Guide, class I = Inertial, class S = double>
+concept GuideMotion = requires(const M& motion, const S& t) {
+  { motion(t) } -> std::same_as<FrameMotion<G, I, S>>;
 };
 
 /// The motion of C against A from those of C against B and of B against A. Exact: poses multiply,
@@ -40,6 +57,35 @@ template <class C, class B, class A, class S>
   const Velocity<B, A, C, S> V_BA = X_CB * outer.V;
   const auto dV_BA = X_CB * outer.dV;
   return {outer.X * inner.X, inner.V + V_BA, inner.dV + seen_from<C>(dV_BA, inner.V, V_BA)};
+}
+
+/// A quaternion and a position as functions of time, by value and two derivatives.
+///
+/// Frame  : attitude G to I, position of G's origin on I axes
+template <class S = double>
+struct PoseDerivatives {
+  Eigen::Quaternion<S> q = Eigen::Quaternion<S>::Identity();
+  Eigen::Quaternion<S> dq = Eigen::Quaternion<S>(S(0), S(0), S(0), S(0));
+  Eigen::Quaternion<S> ddq = Eigen::Quaternion<S>(S(0), S(0), S(0), S(0));
+  Vector3<S> x = Vector3<S>::Zero();
+  Vector3<S> dx = Vector3<S>::Zero();
+  Vector3<S> ddx = Vector3<S>::Zero();
+};
+
+/// The motion of a frame from its pose and the pose's derivatives. The quaternion need not have
+/// norm 1, nor a constant one:  u = 2 vec(q^-1 q'),  ou = 2 vec(q^-1 q'') - (ln |q|^2)' u.
+template <class G, class I, class S>
+[[nodiscard]] FrameMotion<G, I, S> frame_motion(const PoseDerivatives<S>& p) {
+  const S norm2 = p.q.squaredNorm();
+  const Vector3<S> u = S(2) / norm2 * (p.q.conjugate() * p.dq).vec();
+  const S swelling = S(2) * p.q.dot(p.dq) / norm2;
+  const Vector3<S> du = S(2) / norm2 * (p.q.conjugate() * p.ddq).vec() - swelling * u;
+  FrameMotion<G, I, S> motion;
+  motion.X.value = Pose<S>::from(p.q, p.x);
+  const Matrix3<S> to_guide = motion.X.value.rotation.transpose();
+  motion.V.value = {u, to_guide * p.dx};
+  motion.dV.value = {du, to_guide * p.ddx - u.cross(motion.V.value.moment)};
+  return motion;
 }
 
 }  // namespace kreisel

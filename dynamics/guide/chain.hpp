@@ -1,0 +1,44 @@
+#pragma once
+
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include <dynamics/guide/motion.hpp>
+
+namespace kreisel {
+
+/// Frames in frames: each moves against the one before, the last is the guide.
+///
+///   const auto guide = Chain(earth, ship, device);   // <Earth, Inertial>, <Ship, Earth>, <Guide, Ship>
+///
+/// A link that does not begin where the one before ends does not compile.
+template <class... Links>
+class Chain {
+ public:
+  explicit Chain(Links... links) : links_(std::move(links)...) {}
+
+  template <class S>
+  [[nodiscard]] auto operator()(const S& t) const {
+    return std::apply(
+        [&t](const auto& first, const auto&... rest) { return joined(first(t), rest(t)...); },
+        links_);
+  }
+
+ private:
+  template <class Motion>
+  [[nodiscard]] static Motion joined(const Motion& motion) {
+    return motion;
+  }
+
+  template <class Outer, class Inner, class... Rest>
+  [[nodiscard]] static auto joined(const Outer& outer, const Inner& inner, const Rest&... rest) {
+    constexpr bool fits = std::is_same_v<typename Inner::Against, typename Outer::Of>;
+    static_assert(fits, "each link of a chain moves against the frame of the link before");
+    if constexpr (fits) return joined(outer * inner, rest...);
+  }
+
+  std::tuple<Links...> links_;
+};
+
+}  // namespace kreisel

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <dynamics/guide/piecewise.hpp>
+
+namespace kreisel {
+
+/// A vector as a sum of oscillations:  constant + sum amplitude sin(frequency t + phase).
+///
+/// Units  : rad/s, radian
+template <class S = double>
+struct HarmonicSeries {
+  struct Term {
+    Vector3<S> amplitude;
+    S frequency;
+    S phase;
+  };
+
+  Vector3<S> constant = Vector3<S>::Zero();
+  std::vector<Term> terms = {};
+
+  [[nodiscard]] Vector3<S> operator()(const S& t) const {
+    using std::sin;
+    Vector3<S> sum = constant;
+    for (const Term& k : terms) sum += k.amplitude * sin(k.frequency * t + k.phase);
+    return sum;
+  }
+
+  [[nodiscard]] Vector3<S> rate(const S& t) const {
+    using std::cos;
+    Vector3<S> sum = Vector3<S>::Zero();
+    for (const Term& k : terms) sum += k.amplitude * (k.frequency * cos(k.frequency * t + k.phase));
+    return sum;
+  }
+
+  /// The same in another scalar.
+  template <class T>
+  [[nodiscard]] HarmonicSeries<T> cast() const {
+    HarmonicSeries<T> result{constant.template cast<T>(), {}};
+    for (const Term& k : terms) {
+      result.terms.push_back({k.amplitude.template cast<T>(), T(k.frequency), T(k.phase)});
+    }
+    return result;
+  }
+};
+
+/// What rolls, pitches and heaves harmonically: angular velocity u(t) and inertial acceleration a(t) of
+/// the origin are given on the frame's OWN axes, as gyros and accelerometers strapped to it read them.
+///
+/// u, ou and a come from the series at once. Attitude and place have no closed form when u turns about
+/// more than one axis; they are Taylor series in pieces of 1/(2 Omega), Omega = |u|/2 + the greatest
+/// frequency, computed when the frame is made, over [begin, end].
+///
+/// Units  : rad/s, m/s^2, second
+/// Error  : against long double integration <= 1e-14 rad and 1e-14 of the way over 1000 pieces
+///          (tests/dynamics/guide/harmonic)
+/// Cost   : 1.1 kB for each piece
+/// Throws : InvalidInput: a number that is not finite, end before begin; a time outside [begin, end]
+template <class G = Guide, class I = Inertial, class S = double>
+class HarmonicFrame {
+ public:
+  /// `X` and `origin_velocity` (on I's axes) are those at the time `begin`.
+  HarmonicFrame(HarmonicSeries<S> angular_velocity, HarmonicSeries<S> origin_acceleration,
+                const S& begin, const S& end, const Displacement<I, G, S>& X = {},
+                const Vector3<S>& origin_velocity = Vector3<S>::Zero())
+      : u_(std::move(angular_velocity)),
+        a_(std::move(origin_acceleration)),
+        pose_("harmonic frame", degree) {
+    check(u_, "angular velocity");
+    check(a_, "origin acceleration");
+    if (!(begin <= end && begin - begin == end - end)) {
+      std::ostringstream text;
+      text << "harmonic frame: begin = " << begin << " s, end = " << end << " s make no interval";
+      throw InvalidInput(text.str());
+    }
+    integrate(begin, end, X.value, origin_velocity);
+  }
+
+  [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
+    const PoseDerivatives<S> pose = pose_(t);
+    FrameMotion<G, I, S> motion;
+    motion.X.value = Pose<S>::from(pose.q, pose.x);
+    const Vector3<S> u = u_(t);
+    const Vector3<S> v = motion.X.value.rotation.transpose() * pose.dx;
+    motion.V.value = {u, v};
+    motion.dV.value = {u_.rate(t), a_(t) - u.cross(v)};
+    return motion;
+  }
+
+ private:
+  static constexpr int degree = 18;
+
+  // The chain of pieces is carried in more digits than it is read in.
+  using Wide =
+      std::conditional_t<std::is_same_v<S, double> || std::is_same_v<S, float>, long double, S>;
+  using Quaternion = Eigen::Quaternion<Wide>;
+  using Taylor = std::vector<Vector3<Wide>>;
+
+  static void check(const HarmonicSeries<S>& series, const char* what) {
+    const auto finite = [](const auto& x) { return x - x == S(0); };
+    bool good = (series.constant - series.constant).isZero(S(0));
+    for (const auto& k : series.terms) {
+      good = good && (k.amplitude - k.amplitude).isZero(S(0)) && finite(k.frequency) &&
+             finite(k.phase);
+    }
+    if (!good) throw InvalidInput(std::string("harmonic frame: ") + what + " is not finite");
+  }
+
+  /// Coefficients of a series about t.
+  [[nodiscard]] static Taylor taylor(const HarmonicSeries<Wide>& series, const Wide& t) {
+    using std::cos;
+    using std::sin;
+    Taylor result(static_cast<std::size_t>(degree) + 1, Vector3<Wide>::Zero());
+    result[0] = series.constant;
+    for (const auto& k : series.terms) {
+      const Wide s = sin(k.frequency * t + k.phase);
+      const Wide c = cos(k.frequency * t + k.phase);
+      const Wide cycle[] = {s, c, -s, -c};
+      Wide factor(1);  // w^n / n!
+      for (std::size_t n = 0; n < result.size(); ++n) {
+        result[n] += k.amplitude * (factor * cycle[n % 4]);
+        factor *= k.frequency / Wide(static_cast<double>(n + 1));
+      }
+    }
+    return result;
+  }
+
+  void integrate(const S& begin, const S& end, const Pose<S>& X, const Vector3<S>& velocity) {
+    using std::abs;
+    const HarmonicSeries<Wide> u = u_.template cast<Wide>();
+    const HarmonicSeries<Wide> a = a_.template cast<Wide>();
+    S size = u_.constant.norm();
+    S frequency(0);
+    for (const auto& k : u_.terms) {
+      size += k.amplitude.norm();
+      frequency = std::max(frequency, S(abs(k.frequency)));
+    }
+    for (const auto& k : a_.terms) frequency = std::max(frequency, S(abs(k.frequency)));
+    const S omega = size / S(2) + frequency;
+    const S span = end - begin;
+    const S wanted = 2 * omega * span;
+    if (!(wanted < S(1e8))) {
+      throw InvalidInput(
+          "harmonic frame: more than 1e8 pieces of 1/(2 Omega) between begin and end");
+    }
+    const auto pieces = static_cast<std::size_t>(wanted) + 1;
+
+    Quaternion q = quaternion(X.rotation).template cast<Wide>();
+    Vector3<Wide> x = X.translation.template cast<Wide>();
+    Vector3<Wide> v = velocity.template cast<Wide>();
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      const auto at = [&](std::size_t k) {
+        return k == pieces ? end : S(begin + span * (S(double(k)) / S(double(pieces))));
+      };
+      const S t = at(piece);
+      const Wide step = Wide(at(piece + 1)) - Wide(t);
+      q.normalize();
+      const auto [attitudes, places] = series(taylor(u, Wide(t)), taylor(a, Wide(t)), q, x, v);
+      std::vector<typename PiecewisePose<S>::Components> coefficients;
+      for (std::size_t n = 0; n < attitudes.size(); ++n) {
+        coefficients.push_back(PiecewisePose<S>::components(attitudes[n].template cast<S>(),
+                                                            places[n].template cast<S>()));
+      }
+      pose_.append(t, coefficients);
+      q.coeffs().setZero();
+      x.setZero();
+      v.setZero();
+      for (std::size_t n = attitudes.size(); n-- > 0;) {
+        q.coeffs() = q.coeffs() * step + attitudes[n].coeffs();
+        v = v * step + x;
+        x = x * step + places[n];
+      }
+    }
+    pose_.end_at(end);
+  }
+
+  /// Coefficients of attitude and place from those of u and a:  q' = q u / 2,  x'' = q a q^-1.
+  [[nodiscard]] static std::pair<std::vector<Quaternion>, Taylor> series(const Taylor& u,
+                                                                         const Taylor& a,
+                                                                         const Quaternion& q0,
+                                                                         const Vector3<Wide>& x0,
+                                                                         const Vector3<Wide>& v0) {
+    const std::size_t terms = u.size();
+    const auto pure = [](const Vector3<Wide>& v) {
+      return Quaternion(Wide(0), v.x(), v.y(), v.z());
+    };
+    const auto number = [](std::size_t n) { return Wide(static_cast<double>(n)); };
+    std::vector<Quaternion> q{q0};
+    std::vector<Quaternion> qa;  // of q a
+    Taylor x{x0, v0};
+    for (std::size_t n = 0; n + 1 < terms; ++n) {
+      Quaternion qu_n(Wide(0), Wide(0), Wide(0), Wide(0));
+      Quaternion qa_n = qu_n;
+      Vector3<Wide> acceleration = Vector3<Wide>::Zero();
+      for (std::size_t k = 0; k <= n; ++k) {
+        qu_n.coeffs() += (q[k] * pure(u[n - k])).coeffs();
+        qa_n.coeffs() += (q[k] * pure(a[n - k])).coeffs();
+      }
+      q.emplace_back(Eigen::Matrix<Wide, 4, 1>(qu_n.coeffs() / number(2 * (n + 1))));
+      qa.push_back(qa_n);
+      for (std::size_t k = 0; k <= n; ++k) acceleration += (qa[k] * q[n - k].conjugate()).vec();
+      if (n + 2 < terms) x.push_back(acceleration / number((n + 1) * (n + 2)));
+    }
+    return {std::move(q), std::move(x)};
+  }
+
+  HarmonicSeries<S> u_;
+  HarmonicSeries<S> a_;
+  PiecewisePose<S> pose_;
+};
+
+}  // namespace kreisel

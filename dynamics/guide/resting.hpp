@@ -1,0 +1,15 @@
+#pragma once
+
+#include <dynamics/guide/motion.hpp>
+
+namespace kreisel {
+
+/// A frame that rests in another: u = v = 0.
+template <class G = Guide, class I = Inertial, class S = double>
+struct RestingFrame {
+  Displacement<I, G, S> X = {};  ///< where it rests
+
+  [[nodiscard]] FrameMotion<G, I, S> operator()(const S& /*t*/) const { return {X, {}, {}}; }
+};
+
+}  // namespace kreisel

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include <dynamics/guide/motion.hpp>
+
+namespace kreisel {
+
+/// A frame with constant angular velocity, whose origin has an inertial acceleration constant on the
+/// frame's own axes: a turntable on a vehicle that brakes, a thrusting spinner.
+///
+///   R(t) = R(0) exp(u t),   x(t) = x(0) + v(0) t + R(0) t^2 J(u t) a
+///
+///   J(w) = 1/2 + c skew(w) + d skew(w)^2,   c = (theta - sin(theta)) / theta^3,
+///   d = (theta^2/2 - 1 + cos(theta)) / theta^4
+///
+/// Units  : rad/s, m/s^2
+/// Error  : of the position <= 8u * sum of |terms| up to |u t| = pi, beyond it |u t|/pi times that
+template <class G = Guide, class I = Inertial, class S = double>
+struct RotatingFrame {
+  Vector3<S> angular_velocity = Vector3<S>::Zero();     ///< u, on G's axes
+  Vector3<S> origin_acceleration = Vector3<S>::Zero();  ///< a of the origin against I, on G's axes
+  Displacement<I, G, S> X = {};                         ///< at t = 0
+  Vector3<S> origin_velocity = Vector3<S>::Zero();  ///< of the origin against I at t = 0, I's axes
+
+  [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
+    const Vector3<S>& u = angular_velocity;
+    const Vector3<S>& a = origin_acceleration;
+    const Matrix3<S>& R0 = X.value.rotation;
+    const Vector3<S> w = u * t;
+    const Pose<S> turn = exp(Motor<S>{w, a * t});  // its translation: the integral of exp(u s) a
+    FrameMotion<G, I, S> motion;
+    motion.X.value.rotation = R0 * turn.rotation;
+    motion.X.value.translation =
+        X.value.translation + origin_velocity * t + R0 * (t * t * twice_integrated(w, a));
+    const Vector3<S> v =
+        turn.rotation.transpose() * (R0.transpose() * origin_velocity + turn.translation);
+    motion.V.value = {u, v};
+    motion.dV.value = {Vector3<S>::Zero(), a - u.cross(v)};
+    return motion;
+  }
+
+ private:
+  /// J(w) a, the integral of (1 - s) exp(s skew(w)) a over s from 0 to 1.
+  [[nodiscard]] static Vector3<S> twice_integrated(const Vector3<S>& w, const Vector3<S>& a) {
+    using std::sin;
+    using std::sqrt;
+    const S t2 = w.squaredNorm();
+    S c;
+    S d;
+    if (t2 < S(1)) {
+      c = alternating_series(t2, 3);
+      d = alternating_series(t2, 4);
+    } else {
+      const S theta = sqrt(t2);
+      const S s = sin(theta / S(2));
+      c = (S(1) - sin(theta) / theta) / t2;
+      d = (S(0.5) - S(2) * s * s / t2) / t2;
+    }
+    const Vector3<S> wa = w.cross(a);
+    return a / S(2) + (c * wa + d * w.cross(wa));
+  }
+
+  /// 1/n! - x/(n+2)! + x^2/(n+4)! - ...
+  [[nodiscard]] static S alternating_series(const S& x, int n) {
+    using std::abs;
+    S term(1);
+    for (int k = 2; k <= n; ++k) term /= S(k);
+    S sum = term;
+    for (int k = n + 1; abs(term) > std::numeric_limits<S>::epsilon() * sum; k += 2) {
+      term *= -x / S(k * (k + 1));
+      sum += term;
+    }
+    return sum;
+  }
+};
+
+}  // namespace kreisel

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <dynamics/guide/motion.hpp>
+
+namespace kreisel {
+
+/// A frame in steady screw motion, its velocity motor constant: fixed on a turntable, on the earth, on
+/// a circular orbit.
+///
+///   X(t) = exp(V t) X(0),   V = (u; v) written in I;  on G's axes V is constant too, so oF = 0.
+template <class G = Guide, class I = Inertial, class S = double>
+struct SteadyFrame {
+  Displacement<I, G, S> X = {};  ///< at t = 0
+  Velocity<G, I, I, S> V = {};   ///< against I, written in I
+
+  [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
+    return {{exp(V.value * t) * X.value}, X.inverse() * V, {}};
+  }
+};
+
+}  // namespace kreisel

@@ -1,0 +1,190 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/guide/spline.hpp>
+
+namespace kreisel {
+
+/// A motion as a log has it: times, attitudes (G to I) and places of G's origin on I's axes.
+template <class S = double>
+struct MotionLog {
+  std::vector<S> times;
+  std::vector<Eigen::Quaternion<S>> attitudes;
+  std::vector<Vector3<S>> positions;  ///< empty: the origin rests
+};
+
+/// How far an interpolated motion may be off, the greatest over the table.
+///
+/// Units  : radian, rad/s, rad/s^2; metre, m/s, m/s^2
+template <class S = double>
+struct InterpolationError {
+  S attitude;
+  S angular_velocity;
+  S angular_acceleration;
+  S position;
+  S velocity;
+  S acceleration;
+};
+
+/// A frame whose motion was logged.
+///
+/// A quintic spline (four continuous derivatives; cubic where there are less than six samples) runs
+/// through the samples, through the four components of the quaternion as through those of the
+/// position. The quaternion is then divided by its norm, which differs from 1 by the interpolation
+/// error only. So made, the motion does not depend on the choice of either frame's axes, and angular
+/// velocity and acceleration are exact derivatives of the attitude. Samples may be unevenly spaced;
+/// q and -q count as the same attitude.
+///
+/// The spline does not smooth: noise e of the samples comes out as about e/h in the velocity and e/h^2
+/// in the acceleration, and the error estimate shows it.
+///
+/// Error  : O(h^6) attitude, O(h^5) angular velocity, O(h^4) angular acceleration, h the spacing;
+///          interpolation_error() estimates them
+/// Throws : InvalidInput: under four samples, lengths that differ, a number that is not finite, times
+///          that do not increase, a quaternion whose norm is not 1 within 1 %, a turn of more than
+///          90 degrees from one sample to the next (the motion between them is anybody's guess)
+template <class G = Guide, class I = Inertial, class S = double>
+class TabulatedFrame {
+ public:
+  explicit TabulatedFrame(MotionLog<S> log)
+      : log_(checked(std::move(log))), pose_(spline(log_, full_degree(log_.times.size()))) {}
+
+  [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
+    return frame_motion<G, I>(pose_(t));
+  }
+
+  [[nodiscard]] const S& begin() const { return pose_.begin(); }
+  [[nodiscard]] const S& end() const { return pose_.end(); }
+
+  /// What the interpolation adds to the error of the samples, estimated from the samples themselves.
+  ///
+  /// The motion is interpolated again from every second and every fourth sample. The distance from
+  /// the first, divided by the factor by which it shrank from the second, is the estimate: for smooth
+  /// motion and fine sampling the factor is near 2^6, 2^5, 2^4; for noise near 1. With under 24
+  /// samples the distance from the cubic spline stands in, which is too careful.
+  ///
+  /// Error  : within a factor 5 of the true error for smooth motions (tests/dynamics/guide/tabulated)
+  [[nodiscard]] InterpolationError<S> interpolation_error() const {
+    using std::max;
+    const std::size_t n = log_.times.size();
+    if (n < 24) return distance(spline(log_, full_degree(n) - 2));
+    const InterpolationError<S> half = distance(spline(thinned(2), 5));
+    const InterpolationError<S> quarter = distance(spline(thinned(4), 5));
+    const auto shrunk = [](const S& coarse, const S& fine, double most) {
+      if (fine == S(0)) return S(0);
+      return S(fine / std::clamp(S(coarse / fine), S(1), S(most)));
+    };
+    return {shrunk(quarter.attitude, half.attitude, 64),
+            shrunk(quarter.angular_velocity, half.angular_velocity, 32),
+            shrunk(quarter.angular_acceleration, half.angular_acceleration, 16),
+            shrunk(quarter.position, half.position, 64),
+            shrunk(quarter.velocity, half.velocity, 32),
+            shrunk(quarter.acceleration, half.acceleration, 16)};
+  }
+
+ private:
+  [[nodiscard]] static std::size_t full_degree(std::size_t samples) { return samples < 6 ? 3 : 5; }
+
+  [[nodiscard]] static PiecewisePose<S> spline(const MotionLog<S>& log, std::size_t degree) {
+    std::vector<typename PiecewisePose<S>::Components> values;
+    for (std::size_t i = 0; i < log.times.size(); ++i) {
+      values.push_back(PiecewisePose<S>::components(log.attitudes[i], log.positions[i]));
+    }
+    return detail::SplineInterpolation<S>(log.times, std::move(values), degree)
+        .pieces("motion log");
+  }
+
+  /// Every step-th sample, and the last.
+  [[nodiscard]] MotionLog<S> thinned(std::size_t step) const {
+    MotionLog<S> result;
+    const std::size_t last = log_.times.size() - 1;
+    for (std::size_t i = 0; i <= last; i += (last - i < 2 * step && i != last) ? last - i : step) {
+      result.times.push_back(log_.times[i]);
+      result.attitudes.push_back(log_.attitudes[i]);
+      result.positions.push_back(log_.positions[i]);
+    }
+    return result;
+  }
+
+  /// The greatest differences from another interpolation, taken at and between the samples.
+  [[nodiscard]] InterpolationError<S> distance(const PiecewisePose<S>& other) const {
+    using std::max;
+    InterpolationError<S> most{S(0), S(0), S(0), S(0), S(0), S(0)};
+    const auto compare = [&](const S& t) {
+      const FrameMotion<G, I, S> a = frame_motion<G, I>(pose_(t));
+      const FrameMotion<G, I, S> b = frame_motion<G, I>(other(t));
+      const Pose<S>& A = a.X.value;
+      const Pose<S>& B = b.X.value;
+      const S turn = log(Pose<S>{A.rotation.transpose() * B.rotation}).resultant.norm();
+      most.attitude = max(most.attitude, turn);
+      const Motor<S> V = a.V.value - b.V.value;
+      const Motor<S> dV = a.dV.value - b.dV.value;
+      most.angular_velocity = max(most.angular_velocity, V.resultant.norm());
+      most.angular_acceleration = max(most.angular_acceleration, dV.resultant.norm());
+      most.position = max(most.position, (A.translation - B.translation).norm());
+      most.velocity = max(most.velocity,
+                          (A.rotation * a.V.value.moment - B.rotation * b.V.value.moment).norm());
+      most.acceleration =
+          max(most.acceleration,
+              (A.rotation * a.origin_acceleration() - B.rotation * b.origin_acceleration()).norm());
+    };
+    for (std::size_t i = 0; i + 1 < log_.times.size(); ++i) {
+      compare(log_.times[i]);
+      compare(log_.times[i] + (log_.times[i + 1] - log_.times[i]) / S(2));
+    }
+    compare(log_.times.back());
+    return most;
+  }
+
+  /// The log with unit quaternions that do not change sign from one sample to the next.
+  [[nodiscard]] static MotionLog<S> checked(MotionLog<S> log) {
+    using std::abs;
+    const std::size_t n = log.times.size();
+    const auto refuse = [&log](std::size_t i, const auto&... words) {
+      std::ostringstream text;
+      text.precision(10);
+      text << "motion log: ";
+      if (i < log.times.size()) text << "sample " << i + 1 << ", t = " << log.times[i] << " s: ";
+      (text << ... << words);
+      throw InvalidInput(text.str());
+    };
+    const auto finite = [](const auto& v) { return (v - v).isZero(S(0)); };
+    if (n < 4) refuse(n, n, " samples where a motion needs 4 or more");
+    if (log.positions.empty()) log.positions.assign(n, Vector3<S>::Zero());
+    if (log.attitudes.size() != n || log.positions.size() != n) {
+      refuse(n, n, " times, ", log.attitudes.size(), " attitudes, ", log.positions.size(),
+             " positions");
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      Eigen::Quaternion<S>& q = log.attitudes[i];
+      const bool known =
+          log.times[i] - log.times[i] == S(0) && finite(q.coeffs()) && finite(log.positions[i]);
+      if (!known) refuse(i, "not a finite number");
+      if (i > 0 && !(log.times[i] > log.times[i - 1])) {
+        refuse(i, "comes no later than the sample before, t = ", log.times[i - 1], " s");
+      }
+      const S norm = q.norm();
+      if (!(abs(norm - S(1)) <= S(0.01))) refuse(i, "its quaternion has norm ", norm, ", not 1");
+      q.coeffs() /= norm;
+      if (i == 0) continue;
+      const S cosine = q.dot(log.attitudes[i - 1]);
+      if (abs(cosine) < S(0.70710678118654752)) {
+        refuse(i, "turned by more than 90 degrees since the sample before: too coarse a log");
+      }
+      if (cosine < S(0)) q.coeffs() = -q.coeffs();
+    }
+    return log;
+  }
+
+  MotionLog<S> log_;
+  PiecewisePose<S> pose_;
+};
+
+}  // namespace kreisel
