@@ -1,0 +1,166 @@
+#pragma once
+
+#include <concepts>
+#include <utility>
+
+#include <dynamics/guide/motion.hpp>
+#include <dynamics/inertia.hpp>
+
+namespace kreisel {
+
+/// Where a body is and how it moves at one moment: what a load may depend on.
+template <class S = double>
+struct Situation {
+  S t = S(0);
+  Displacement<Guide, Body, S> X = {};         ///< the body in the guide
+  Velocity<Body, Guide, Body, S> V_rel = {};   ///< V'
+  FrameMotion<Guide, Inertial, S> guide = {};  ///< F and oF, at the guide's origin
+  InertiaTensor<Body, S> inertia = {};
+
+  /// A vector on the axes of A, on the body's axes.
+  template <class A>
+  [[nodiscard]] Vector3<S> on_body_axes(const Vector3<S>& v) const {
+    const auto guide_to_body = X.value.rotation.transpose();
+    if constexpr (std::is_same_v<A, Body>) return v;
+    if constexpr (std::is_same_v<A, Guide>) return guide_to_body * v;
+    if constexpr (std::is_same_v<A, Inertial>) {
+      return guide_to_body * (guide.X.value.rotation.transpose() * v);
+    }
+  }
+
+  /// The place of a point of the body in the frame A.
+  template <class A>
+  [[nodiscard]] Vector3<S> place(const Vector3<S>& p_Body) const {
+    if constexpr (std::is_same_v<A, Body>) return p_Body;
+    if constexpr (std::is_same_v<A, Guide>) return X.point(p_Body);
+    if constexpr (std::is_same_v<A, Inertial>) return guide.X.point(X.point(p_Body));
+  }
+
+  /// The velocity of a point of the body against the guide, on body axes.
+  [[nodiscard]] Vector3<S> velocity(const Vector3<S>& p_Body) const {
+    return V_rel.value.reduced_at(p_Body).moment;
+  }
+
+  [[nodiscard]] Vector3<S> centre() const {
+    return inertia.value.first_moment / inertia.value.mass;
+  }
+};
+
+/// What acts on a body: called with a situation it gives force and torque about the body's origin, on
+/// body axes. A user's lambda is one. A load that has a potential says so by a member
+/// potential(situation), which the read-outs add up.
+template <class L, class S = double>
+concept Load = requires(const L& load, const Situation<S>& s) {
+  { load(s) } -> std::same_as<Force<Body, S>>;
+};
+
+/// Weight in a field of gravity that is uniform on the axes of A.
+///
+/// A = Guide: the field turns with the guide, as the plumb line of a laboratory on the earth does when
+/// g is the EFFECTIVE gravity and the guide's own motion is left out. A = Inertial: gravitation.
+///
+/// Units  : m/s^2
+template <class A, class S = double>
+struct UniformGravity {
+  Vector3<S> g;
+
+  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
+    const Vector3<S> g_Body = s.template on_body_axes<A>(g);
+    const Inertia<S>& T = s.inertia.value;
+    return {{T.mass * g_Body, T.first_moment.cross(g_Body)}};
+  }
+
+  /// Zero where the centre of mass is at the origin of A.
+  [[nodiscard]] S potential(const Situation<S>& s) const {
+    return -s.inertia.value.mass * g.dot(s.template place<A>(s.centre()));
+  }
+};
+
+/// A force at a point of the body and a torque about the body's origin, constant on the axes of A.
+///
+/// Units  : N, N m, metre (point: body axes)
+template <class A, class S = double>
+struct ConstantLoad {
+  Vector3<S> force = Vector3<S>::Zero();
+  Vector3<S> torque = Vector3<S>::Zero();
+  Vector3<S> point = Vector3<S>::Zero();
+
+  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
+    const Vector3<S> f = s.template on_body_axes<A>(force);
+    return {{f, s.template on_body_axes<A>(torque) + point.cross(f)}};
+  }
+};
+
+/// Drag of the surroundings that move with the guide:  force -k v', torque -d u'.
+///
+/// Units  : N s/m, N m s
+template <class S = double>
+struct ViscousDrag {
+  S torque_per_rate = S(0);     ///< d
+  S force_per_velocity = S(0);  ///< k, acting at the body's origin
+
+  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
+    return {
+        {-force_per_velocity * s.V_rel.value.moment, -torque_per_rate * s.V_rel.value.resultant}};
+  }
+};
+
+/// A coil spring, with a damper in line, between a point of the guide and a point of the body. It
+/// hinges freely at both ends and may be stretched to nothing only where its rest length is 0.
+///
+/// Units  : metre, N/m, N s/m
+/// Throws : ComputationFailed where both ends meet and a rest length above 0 leaves no direction
+template <class S = double>
+struct Spring {
+  Vector3<S> guide_end;
+  Vector3<S> body_end;
+  S stiffness = S(0);
+  S rest_length = S(0);
+  S damping = S(0);
+
+  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
+    const Vector3<S> reach =
+        s.template on_body_axes<Guide>(s.template place<Guide>(body_end) - guide_end);
+    const S length = reach.norm();
+    if (length == S(0) && rest_length == S(0)) return {};
+    if (length == S(0))
+      throw ComputationFailed("Spring: both ends meet, its force has no direction");
+    const Vector3<S> along = reach / length;
+    const S pull = stiffness * (length - rest_length) + damping * along.dot(s.velocity(body_end));
+    const Vector3<S> f = -pull * along;
+    return {{f, body_end.cross(f)}};
+  }
+
+  [[nodiscard]] S potential(const Situation<S>& s) const {
+    const S stretch = (s.template place<Guide>(body_end) - guide_end).norm() - rest_length;
+    return stiffness * stretch * stretch / S(2);
+  }
+};
+
+/// A rubber mount: restoring force in all directions between a point of the body and the point of the
+/// guide where it sits unloaded; matrices on guide axes.
+///
+/// Units  : metre, N/m, N s/m, N
+template <class S = double>
+struct ElasticMount {
+  Vector3<S> guide_end;
+  Vector3<S> body_end;
+  Matrix3<S> stiffness = Matrix3<S>::Zero();
+  Matrix3<S> damping = Matrix3<S>::Zero();
+  Vector3<S> preload = Vector3<S>::Zero();  ///< on the body, on guide axes, when both ends meet
+
+  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
+    const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;
+    const Vector3<S> rate = s.X.value.rotation * s.velocity(body_end);
+    const Vector3<S> pull = stiffness * deflection + damping * rate - preload;
+    const Vector3<S> f = s.template on_body_axes<Guide>(Vector3<S>(-pull));
+    return {{f, body_end.cross(f)}};
+  }
+
+  [[nodiscard]] S potential(const Situation<S>& s) const {
+    const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;
+    return deflection.dot(stiffness * deflection) / S(2) - preload.dot(deflection);
+  }
+};
+
+}  // namespace kreisel
