@@ -62,7 +62,7 @@ template <class S, class L>
 /// what rounding leaves of them is a torque of 1e-11 N m on a kilogram.
 template <class S>
 [[nodiscard]] Force<Body, S> without_acceleration(const Situation<S>& s) {
-  const Matrix3<S> to_body = s.X.value.rotation.transpose();
+  const auto to_body = s.X.value.rotation.transpose();
   const auto& [u_rel, v_rel] = s.V_rel.value;
   const Vector3<S>& u_G = s.guide.V.value.resultant;
   const Vector3<S>& du_G = s.guide.dV.value.resultant;
