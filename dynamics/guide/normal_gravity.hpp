@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <dynamics/guide/earth.hpp>
+#include <motor/displacement.hpp>
 
 namespace kreisel {
 
@@ -20,6 +21,8 @@ struct NormalGravity {
   double tilt;       ///< of the plumb line against the normal; > 0: its lower end lies north
   double latitude_of_vertical;  ///< latitude - tilt, as astronomers observe it
   EarthGuide<double> guide;     ///< on axes of the effective vertical
+  Pose<double>
+      site;  ///< the guide at the site against the earth: centre, pole z, site's meridian x
 
   [[nodiscard]] Vector3<double> effective() const { return gravitation + centrifugal; }
 };
@@ -106,7 +109,8 @@ inline Matrix3<double> gravitation_gradient(const Vector3<double>& p, const Matr
   const Vector3<double> rotation(u * cos_latitude, 0, u * sin_latitude);
   result.guide.angular_velocity = axes.transpose() * rotation;
   result.guide.effective_gravity = {result.magnitude, 0, 0};
-  result.guide.gravity_gradient = detail::gravitation_gradient(p, local * axes);
+  result.site = {local * axes, p};
+  result.guide.gravity_gradient = detail::gravitation_gradient(p, result.site.rotation);
   return result;
 }
 
