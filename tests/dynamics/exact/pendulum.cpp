@@ -12,6 +12,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <dynamics/exact/pendulum.hpp>
 #include <dynamics/scene/pendulum_period.hpp>
@@ -163,6 +164,101 @@ BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
   BOOST_TEST(message(1, 1) == "nothing was thrown");
   BOOST_CHECK_THROW((void)exact::PlainPendulum(1, 1).at(std::numeric_limits<double>::infinity()),
                     InvalidInput);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(pendulum_motion)
+
+struct Start {
+  double angle;
+  double rate;
+
+  friend std::ostream& operator<<(std::ostream& out, const Start& s) {
+    return out << s.angle << " rad, " << s.rate << " rad/s";
+  }
+};
+
+// Swings, turns over both ways, starts turns away, comes close to the top from both sides, rests.
+BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series,
+                     data::make(std::vector<Start>{{0, 0},
+                                                   {1e-9, 0},
+                                                   {2, 0},
+                                                   {-3, 0.1},
+                                                   {0.3, -1},
+                                                   {0, 3},
+                                                   {3.1, -2},
+                                                   {20, 2.5},
+                                                   {-20, 0.5},
+                                                   {0, 1.999999999},
+                                                   {0, 2.000000001},
+                                                   {0, std::nextafter(2.0, 0.0)},
+                                                   {0, std::nextafter(2.0, 3.0)},
+                                                   {0, 2},
+                                                   {0, -2},
+                                                   {3.14, 0},
+                                                   {std::numbers::pi, 0}}),
+                     start) {
+  const exact::PendulumMotion pendulum(1, start.angle, start.rate);
+  Motion truth{start.angle, start.rate};
+  double worst_angle = 0;
+  double worst_rate = 0;
+  for (int i = 1; i <= 320; ++i) {
+    truth.step(Exact("0.125"));
+    const auto state = pendulum.at(i * 0.125);
+    // One rounding of the result, and some 2^-64 of the angle 40 inside.
+    BOOST_TEST(near(state.angle, truth.angle, std::abs(state.angle) + 0.125, 1.5));
+    BOOST_TEST(near(state.rate, truth.rate, std::abs(state.rate) + 0.125, 1.5));
+    worst_angle = std::max(worst_angle, abs(Exact(state.angle - truth.angle)).convert_to<double>());
+    worst_rate = std::max(worst_rate, abs(Exact(state.rate - truth.rate)).convert_to<double>());
+  }
+  std::cout << "any start: " << start << ": error " << worst_angle / u << " u angle, "
+            << worst_rate / u << " u rate\n";
+}
+
+// From delta below the top to the lowest point: K = L + (L - 1) delta^2/16 + ..,  L = ln(8/delta).
+BOOST_DATA_TEST_CASE(fall_from_near_the_top_takes_logarithmic_time, data::make({1e-4, 1e-8, 1e-12}),
+                     delta) {
+  const double start = std::numbers::pi - delta;
+  const exact::PendulumMotion pendulum(4, start, 0);
+  const double off = (acos(Exact(-1)) - start).convert_to<double>();
+  const double time = std::log(8 / off) / 2;
+  const double left_out = time * off * off / 16;
+  BOOST_TEST(std::abs(pendulum.period() / 4 - time) <= time * 2 * u + left_out);
+  // It comes there with 4 rad/s.
+  BOOST_TEST(std::abs(pendulum.at(time).angle) <= 4 * (time * 2 * u + left_out));
+}
+
+BOOST_AUTO_TEST_CASE(motion_upon_the_separatrix_ends_at_the_top) {
+  const exact::PendulumMotion pendulum(1, 0, -2);
+  BOOST_TEST(std::isinf(pendulum.period()));
+  BOOST_TEST(pendulum.at(1e6).angle == -std::numbers::pi);
+  BOOST_TEST(pendulum.at(1e6).rate == 0);
+}
+
+BOOST_AUTO_TEST_CASE(turns_are_counted) {
+  const exact::PendulumMotion pendulum(1, 0.5, 3);
+  const double turns = 1000 * pendulum.period();
+  const Exact angle = 0.5 + 2000 * acos(Exact(-1));
+  BOOST_TEST(near(pendulum.at(turns).angle, angle, 6283, 4));
+  BOOST_TEST(near(pendulum.at(turns).rate, 3, 3, 4 * 1000));
+}
+
+BOOST_AUTO_TEST_CASE(release_at_rest_is_the_plain_pendulum) {
+  const exact::PendulumMotion motion(9, -2, 0);
+  const exact::PlainPendulum plain(-2, 3);
+  BOOST_TEST(near(motion.period(), plain.period(), plain.period(), 4));
+  for (const double time : {-0.3, 0.01, 1.0}) {
+    BOOST_TEST(near(motion.at(time).angle, plain.at(time).angle, 1, 24));
+    BOOST_TEST(near(motion.at(time).rate, plain.at(time).rate, 3, 24));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+  BOOST_CHECK_THROW((void)exact::PendulumMotion(0, 1, 1), InvalidInput);
+  BOOST_CHECK_THROW((void)exact::PendulumMotion(1, std::nan(""), 1), InvalidInput);
+  BOOST_CHECK_THROW((void)exact::PendulumMotion(1, 1, std::nan("")), InvalidInput);
+  BOOST_CHECK_THROW((void)exact::PendulumMotion(1, 1, 1).at(std::nan("")), InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
