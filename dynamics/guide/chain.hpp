@@ -8,6 +8,18 @@
 
 namespace kreisel {
 
+namespace detail {
+
+/// Whether each motion is one against the frame of the motion before.
+template <class...>
+inline constexpr bool join = true;
+
+template <class Outer, class Inner, class... Rest>
+inline constexpr bool join<Outer, Inner, Rest...> =
+    std::is_same_v<typename Inner::Against, typename Outer::Of>&& join<Inner, Rest...>;
+
+}  // namespace detail
+
 /// Frames in frames: each moves against the one before, the last is the guide.
 ///
 ///   const auto guide = Chain(earth, ship, device);   // <Earth, Inertial>, <Ship, Earth>, <Guide, Ship>
@@ -15,6 +27,9 @@ namespace kreisel {
 /// A link that does not begin where the one before ends does not compile.
 template <class... Links>
 class Chain {
+  static_assert(detail::join<decltype(std::declval<const Links&>()(0))...>,
+                "each link of a chain moves against the frame of the link before");
+
  public:
   explicit Chain(Links... links) : links_(std::move(links)...) {}
 
@@ -33,9 +48,7 @@ class Chain {
 
   template <class Outer, class Inner, class... Rest>
   [[nodiscard]] static auto joined(const Outer& outer, const Inner& inner, const Rest&... rest) {
-    constexpr bool fits = std::is_same_v<typename Inner::Against, typename Outer::Of>;
-    static_assert(fits, "each link of a chain moves against the frame of the link before");
-    if constexpr (fits) return joined(outer * inner, rest...);
+    return joined(outer * inner, rest...);
   }
 
   std::tuple<Links...> links_;

@@ -16,8 +16,11 @@ namespace kreisel {
 /// Source : paper 002 (5)
 /// Units  : metre, rad/s, m/s
 /// Throws : InvalidInput where the inertia is none, ComputationFailed where it is singular
-template <GuideMotion M, Load... Loads>
+template <class M, class... Loads>
 class FreeBody {
+  static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
+  static_assert(detail::are_loads<Loads...>, "a load takes a Situation and returns a Force<Body>");
+
  public:
   using S = double;
   using Vector = Eigen::Matrix<S, 13, 1>;

@@ -18,15 +18,18 @@ namespace kreisel {
 /// top; without loads and centre of mass at O' the guide does not matter at all.
 ///
 /// The state is the attitude in the guide and the angular velocity u' against it. Nothing depends on
-/// the quaternion's norm, which drifts by rounding only (3e-8 over 1e9 steps) and is never corrected:
+/// the quaternion's norm, which drifts by the steps' error only and is never corrected:
 /// the attitude read from it is a rotation to rounding always, however long the run.
 ///
 /// Source : paper 002 (5), (18)-(19), with V' = (u'; 0) at O'
 /// Units  : metre, rad/s
 /// Throws : InvalidInput where the inertia is none or the tensor about O' is singular (a needle along
 ///          a line through O', all mass in O')
-template <GuideMotion M, Load... Loads>
+template <class M, class... Loads>
 class HeldBody {
+  static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
+  static_assert(detail::are_loads<Loads...>, "a load takes a Situation and returns a Force<Body>");
+
  public:
   using S = double;
   using Vector = Eigen::Matrix<S, 7, 1>;

@@ -54,6 +54,16 @@ concept Load = requires(const L& load, const Situation<S>& s) {
   { load(s) } -> std::same_as<Force<Body, S>>;
 };
 
+namespace detail {
+
+// Asked by name, a concept would be explained over twenty lines.
+template <class M>
+inline constexpr bool is_guide = GuideMotion<M>;
+template <class... Loads>
+inline constexpr bool are_loads = (Load<Loads> && ...);
+
+}  // namespace detail
+
 /// Weight in a field of gravity that is uniform on the axes of A.
 ///
 /// A = Guide: the field turns with the guide, as the plumb line of a laboratory on the earth does when

@@ -56,8 +56,10 @@ template <class S>
 /// Source : paper 002 section 8a, (19) with the tensor of (41)-(43)
 /// Units  : metre, radian
 /// Error  : of second order in q; linear_error() measures it against the exact equations
-template <GuideMotion M>
+template <class M>
 class SmallOscillations {
+  static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
+
  public:
   using S = double;
   using Vector = Eigen::Matrix<S, 12, 1>;

@@ -1,0 +1,15 @@
+// The guide's motion is known against the earth; taken as one against the inertial frame it would
+// silently leave out the earth's rotation.
+// refused: the guide of a body says how Guide moves against Inertial
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/held_body.hpp>
+
+struct Earth {};
+
+#ifdef MISUSE
+using Motion = kreisel::RestingFrame<kreisel::Guide, Earth>;
+#else
+using Motion = kreisel::RestingFrame<kreisel::Guide, kreisel::Inertial>;
+#endif
+
+const kreisel::HeldBody body(kreisel::InertiaTensor<kreisel::Body>{}, {0, 0, 0}, Motion{});

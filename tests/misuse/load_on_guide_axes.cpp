@@ -1,0 +1,14 @@
+// A user's load written in the guide: on other axes, its torque about another point than the body's.
+// refused: a load takes a Situation and returns a Force<Body>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/free_body.hpp>
+
+#ifdef MISUSE
+using Load = kreisel::Force<kreisel::Guide>;
+#else
+using Load = kreisel::Force<kreisel::Body>;
+#endif
+
+const auto wind = [](const kreisel::Situation<>&) { return Load{}; };
+const kreisel::FreeBody body(kreisel::InertiaTensor<kreisel::Body>{}, kreisel::RestingFrame<>{},
+                             wind);
