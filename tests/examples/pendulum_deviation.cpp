@@ -13,27 +13,18 @@
 
 #include <dynamics/file/csv.hpp>
 
+#include <support/program.hpp>
 #include <support/scratch.hpp>
 
+using kreisel::test::Outcome;
 using kreisel::test::Scratch;
 using nlohmann::json;
 
 namespace {
 
-struct Outcome {
-  int status;
-  std::string out;
-  std::string err;
-};
-
 /// Runs the program; the arguments are a shell's words.
 Outcome run(const std::string& arguments) {
-  const Scratch folder;
-  const std::string command = std::string(KREISEL_PENDULUM_DEVIATION) + " " + arguments + " >'" +
-                              (folder.path() / "out").string() + "' 2>'" +
-                              (folder.path() / "err").string() + "'";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder.read("out"), folder.read("err")};
+  return kreisel::test::run(std::string(KREISEL_PENDULUM_DEVIATION) + " " + arguments);
 }
 
 json answer(const std::string& arguments) {
