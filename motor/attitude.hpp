@@ -56,8 +56,8 @@ struct YawPitchRoll {
 /// The product is added up as  q + q w/2 + q (exp(w/2) - 1 - w/2),  so that a small turn is not
 /// rounded before it meets q: equal turns would repeat that error, and it would grow with the angle
 /// turned in all. And q is never scaled to norm 1, which would round in a preferred direction. Over
-/// 1e9 steps the norm walks off by less than 1e-7, which no reader of an attitude here notices
-/// (Pose::from and all scenes divide by |q|^2), and the attitude by less than 1e-11 rad
+/// 1e9 steps the norm walks off by 1e-12, which no reader of an attitude here notices
+/// (Pose::from and all scenes divide by |q|^2), and the attitude by 3e-12 rad
 /// (benchmarks/group_drift.cpp; tests/motor/attitude.cpp runs 3e6 of them).
 ///
 /// Units  : radian
