@@ -101,7 +101,7 @@ BOOST_DATA_TEST_CASE(is_followed_to_the_sixth_order, data::make({0.0, 0.3}), une
   BOOST_TEST(fine.attitude < 1e-7);
 }
 
-// Honest: never under a third of the true error, and not over ten times it.
+// Honest: never under the true error, and not over fifteen times it.
 BOOST_DATA_TEST_CASE(tells_its_interpolation_error,
                      data::make({41, 101, 401, 1001}) * data::make({0.0, 0.3}), samples, uneven) {
   const TabulatedFrame<> frame(logged(20, samples, uneven));
@@ -111,8 +111,8 @@ BOOST_DATA_TEST_CASE(tells_its_interpolation_error,
     const double ratio = told.*part / (truth.*part);
     BOOST_TEST_MESSAGE(name << ": true " << truth.*part << ", told " << told.*part << ", ratio "
                             << ratio);
-    BOOST_TEST(ratio > 1.0 / 3);
-    BOOST_TEST(ratio < 10);
+    BOOST_TEST(ratio > 1);
+    BOOST_TEST(ratio < 15);
   }
 }
 
