@@ -4,7 +4,6 @@
 
 #include <array>
 #include <complex>
-#include <string>
 
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
 #include <array>
-#include <string>
+#include <limits>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include <dynamics/scene/read_out.hpp>

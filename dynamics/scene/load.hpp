@@ -1,10 +1,11 @@
 #pragma once
 
 #include <concepts>
-#include <utility>
+#include <type_traits>
 
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/inertia.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include <array>
 #include <utility>
