@@ -4,6 +4,8 @@
 
 #include <array>
 #include <complex>
+#include <utility>
+#include <vector>
 
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
@@ -90,6 +92,24 @@ class EulerTop {
     return {w.dot(moments_.cwiseProduct(w)) / 2 + weight_moment_.dot(gamma), gamma.dot(L), L.z(),
             std::norm(z * z - k / C * Complex(gamma.x(), gamma.y())),
             Pose<S>::from(q).rotation * L};
+  }
+
+  /// Those of the invariants that this top keeps, by name.
+  [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& /*t*/,
+                                                                 const State& state) const {
+    const TopInvariants<S> all = invariants(state);
+    std::vector<std::pair<const char*, S>> kept{{"energy", all.energy},
+                                                {"vertical momentum", all.vertical_momentum}};
+    const bool flat = weight_moment_.z() == 0;
+    const bool axial = weight_moment_.x() == 0 && weight_moment_.y() == 0;
+    const bool round = moments_.x() == moments_.y();
+    const bool rotor_axial = rotor_momentum_.x() == 0 && rotor_momentum_.y() == 0;
+    if (round && axial && rotor_axial) kept.emplace_back("axial momentum", all.axial_momentum);
+    if (axial && flat) kept.emplace_back("momentum", all.momentum.norm());
+    if (round && flat && moments_.x() == 2 * moments_.z() && rotor_momentum_.isZero(0)) {
+      kept.emplace_back("kovalevskaya", all.kovalevskaya);
+    }
+    return kept;
   }
 
   /// For integrators: components that share unit and size.

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <dynamics/step/explicit.hpp>
+
+namespace kreisel {
+
+/// A number that should not change during a run, and how much it did.
+struct InvariantDrift {
+  std::string name;
+  double start = 0;
+  double largest = 0;  ///< the greatest distance from the start
+};
+
+/// How a run ended.
+enum class RunStatus {
+  complete,
+  cancelled,  ///< by the progress callback
+  failed      ///< RunReport::message says where and why
+};
+
+/// What a run has cost and how far its result is off.
+///
+/// error_estimate is of the GLOBAL error, the greatest over the output times and over the parts of the
+/// state: attitudes in radian, other parts relative to their greatest size so far.
+struct RunReport {
+  std::string method;
+  RunStatus status = RunStatus::complete;
+  std::string message;
+  double tolerance = 0;
+  double error_estimate = 0;
+  bool tolerance_kept =
+      false;      ///< error_estimate <= tolerance; else nothing better could be reached
+  Effort effort;  ///< of the trajectory returned
+  double all_evaluations = 0;  ///< with those for the estimate and for attempts that fell short
+  double run_time = 0;         ///< s, all included
+  std::vector<InvariantDrift> invariants;
+};
+
+/// States at the output times, up to where the run came, and the report.
+template <class State>
+struct Trajectory {
+  std::vector<double> times;
+  std::vector<State> states;
+  RunReport report;
+};
+
+}  // namespace kreisel
