@@ -27,15 +27,15 @@ struct RotatingFrame {
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     const Vector3<S>& u = angular_velocity;
     const Vector3<S>& a = origin_acceleration;
-    const Matrix3<S>& R0 = X.value.rotation;
+    const Matrix3<S>& axes = X.value.rotation;
     const Vector3<S> w = u * t;
     const Pose<S> turn = exp(Motor<S>{w, a * t});  // its translation: the integral of exp(u s) a
     FrameMotion<G, I, S> motion;
-    motion.X.value.rotation = R0 * turn.rotation;
+    motion.X.value.rotation = axes * turn.rotation;
     motion.X.value.translation =
-        X.value.translation + origin_velocity * t + R0 * (t * t * twice_integrated(w, a));
+        X.value.translation + origin_velocity * t + axes * (t * t * twice_integrated(w, a));
     const Vector3<S> v =
-        turn.rotation.transpose() * (R0.transpose() * origin_velocity + turn.translation);
+        turn.rotation.transpose() * (axes.transpose() * origin_velocity + turn.translation);
     motion.V.value = {u, v};
     motion.dV.value = {Vector3<S>::Zero(), a - u.cross(v)};
     return motion;

@@ -53,7 +53,7 @@ class HeldBody {
     if (!(point - point).isZero(0)) throw InvalidInput("held body: the point is not finite");
     const Eigen::SelfAdjointEigenSolver<Matrix3<S>> eigen(inertia.value.tensor.matrix(),
                                                           Eigen::EigenvaluesOnly);
-    const Vector3<S> moments = eigen.eigenvalues();
+    const Vector3<S>& moments = eigen.eigenvalues();
     if (!(moments[0] > std::numeric_limits<S>::epsilon() * moments[2])) {
       throw InvalidInput(
           "held body: the inertia about an axis through the held point is 0 (a needle, or all mass "

@@ -19,14 +19,14 @@ template <class S = double>
 struct OblateGravitation {
   S parameter = S(3986004418LL) * S(100000);  ///< GM
   S radius = S(6378137);                      ///< R, equatorial
-  S J2 = S(1.08262982131e-3);                 ///< 0: a sphere
+  S j2 = S(1.08262982131e-3);                 ///< 0: a sphere
 
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_Inertial) const {
     const S r2 = p_Inertial.squaredNorm();
     using std::sqrt;
     const S r = sqrt(r2);
     const S s = p_Inertial.z() / r;
-    const S k = S(1.5) * J2 * radius * radius / r2;
+    const S k = S(1.5) * j2 * radius * radius / r2;
     Vector3<S> g = (S(1) + k * (S(1) - S(5) * s * s)) * p_Inertial;
     g.z() += S(2) * k * s * r;
     return -(parameter / (r2 * r)) * g;
@@ -44,7 +44,7 @@ struct OblateGravitation {
     const Vector3<S> p = s.template place<Inertial>(s.centre());
     const S r = p.norm();
     const S sine = p.z() / r;
-    const S flattened = J2 * radius * radius / (r * r) * (S(1.5) * sine * sine - S(0.5));
+    const S flattened = j2 * radius * radius / (r * r) * (S(1.5) * sine * sine - S(0.5));
     return -s.inertia.value.mass * parameter / r * (S(1) - flattened);
   }
 };

@@ -103,8 +103,8 @@ class SmallOscillations {
     const Matrix3<S> U = skew(u);
     const Matrix3<S> W = skew(Vector3<S>(motion.dV.value.resultant)) + U * U;
     const auto& [m, s, tensor] = inertia_.value;
-    const Matrix3<S> Theta = tensor.matrix();
-    const Matrix3<S> J = Theta.trace() / 2 * Matrix3<S>::Identity() - Theta;
+    const Matrix3<S> theta = tensor.matrix();
+    const Matrix3<S> J = theta.trace() / 2 * Matrix3<S>::Identity() - theta;
     const Matrix3<S> s_cross = skew(s);
 
     Coefficients c;

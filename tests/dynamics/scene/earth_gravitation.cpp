@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(has_a_field_that_j2_describes_but_for_little) {
     const Vector3<double> p = X.value.translation;
     const Vector3<double> exact = detail::gravitation(p);
     BOOST_TEST((OblateGravitation<>{}(p)-exact).norm() < 2e-4);
-    BOOST_TEST((OblateGravitation<>{.J2 = 0}(p)-exact).norm() > 5e-3);
+    BOOST_TEST((OblateGravitation<>{.j2 = 0}(p)-exact).norm() > 5e-3);
   }
 }
 

@@ -192,7 +192,7 @@ BOOST_DATA_TEST_CASE(has_a_potential, data::xrange(20u), seed) {
                          12000;
     BOOST_TEST(near(g[i], -slope, 10.0, 1e-9 / test::u<>));
   }
-  const OblateGravitation<> sphere{.J2 = 0};
+  const OblateGravitation<> sphere{.j2 = 0};
   BOOST_TEST(near(sphere(p).norm(), 3.986004418e14 / p.squaredNorm(), 10.0, 8));
 }
 
