@@ -25,17 +25,17 @@ void turn_over() {
   const exact::FreeTop truth(moments, start, Eigen::Quaterniond::Identity());
   Advance run(top, 0, {Eigen::Quaterniond::Identity(), start});
   fmt::print("    t        p          q          r     attitude off by, rad\n");
-  for (double t = 0; t <= 30; t += 2.5) {
-    const auto [attitude, w] = run.to(t);
-    const double off = attitude.angularDistance(truth.at(t).attitude);
-    fmt::print("{:5.1f}{:11.6f}{:11.6f}{:11.6f}   {:.0e}\n", t, w.x(), w.y(), w.z(), off);
+  for (int i = 0; i <= 12; ++i) {
+    const auto [attitude, w] = run.to(2.5 * i);
+    const double off = attitude.angularDistance(truth.at(run.t()).attitude);
+    fmt::print("{:5.1f}{:11.6f}{:11.6f}{:11.6f}   {:.0e}\n", run.t(), w.x(), w.y(), w.z(), off);
   }
   fmt::print("period {:.9f} s, {:.0f} evaluations\n", truth.period(), run.effort().evaluations);
 }
 
 /// The way of L/|L| through the body, seen from the direction (1, 1, 1): its front or its back.
 void polhode(fmt::ostream& out, const Vector3<double>& L, bool front) {
-  const Vector3<double> right = Vector3<double>(-1, 1, 0).normalized();
+  const Vector3<double> right(-std::sqrt(0.5), std::sqrt(0.5), 0);
   const Vector3<double> up = Vector3<double>(-1, -1, 2).normalized();
   const exact::FreeTop top(moments, L.cwiseQuotient(moments), Eigen::Quaterniond::Identity());
   for (int i = 0; i <= 400; ++i) {
