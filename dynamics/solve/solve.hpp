@@ -21,9 +21,9 @@ namespace kreisel {
 /// What is asked of a run.
 struct Task {
   double begin = 0;
-  std::vector<double>
-      times;  ///< outputs, all after begin or all before it, in order; the last ends it
-  double tolerance = 1e-10;  ///< of the global error; see RunReport::error_estimate
+  std::vector<double> times;  ///< of output, in order, forwards or backwards; the last is the end
+  std::vector<double> jumps = {};  ///< when guide or loads jump: steps end there
+  double tolerance = 1e-10;        ///< of the global error; see RunReport::error_estimate
 
   /// A part of the state smaller than this (SI) counts as being so large.
   double smallest = 1e-3;
@@ -165,6 +165,9 @@ template <class Scene>
   const auto clock = std::chrono::steady_clock::now();
 
   Trajectory<typename Scene::State> result;
+  // The finer run ends at the middle first, lest a short run be one and the same step in both.
+  const double end = task.times.back();
+  const double middle = (task.begin + end) / 2;
   double spent = 0;
   double accuracy = std::max(task.tolerance / 10, 4 * least);
   while (true) {
@@ -177,14 +180,16 @@ template <class Scene>
     const bool last_try = accuracy <= 4 * least;
     Advance coarse(scene, task.begin, start, {accuracy, task.smallest});
     Advance fine(scene, task.begin, start, {std::max(accuracy / finer, least), task.smallest});
+    coarse.stop_at(task.jumps);
+    fine.stop_at(task.jumps);
     watch.note(task.begin, start);
     bool too_coarse = false;
     try {
       for (const double t : task.times) {
-        // Half-way first, lest outputs that lie close make both take the same steps.
-        (void)fine.to((fine.t() + t) / 2);
-        const typename Scene::State state = coarse.to(t);
-        const double off = distance(Scene::to_vector(state), Scene::to_vector(fine.to(t)));
+        const typename Scene::State state = coarse.on_the_way(t, end);
+        const typename Scene::State better =
+            fine.on_the_way(t, (t < middle) == (end > task.begin) ? middle : end);
+        const double off = distance(Scene::to_vector(state), Scene::to_vector(better));
         const double rounding = 1.5 * unit_roundoff * std::sqrt(coarse.effort().steps);
         report.error_estimate = std::max(report.error_estimate, caution * off + rounding);
         too_coarse = report.error_estimate > task.tolerance && !last_try;

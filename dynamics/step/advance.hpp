@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <dynamics/step/explicit.hpp>
 
 namespace kreisel {
@@ -31,6 +33,16 @@ class Advance {
 
   /// The state at the time `end`, before or after the present one.
   State to(double end) { return Scene::from_vector(steps_.advance_to(end)); }
+
+  /// The state at a time on the way to `end`, not before the last one asked for; the steps go on as
+  /// if nobody had asked.
+  State on_the_way(double time, double end) {
+    while (!steps_.covers(time)) steps_.step_towards(end);
+    return Scene::from_vector(steps_.at(time));
+  }
+
+  /// Announces times at which the scene's guide or loads jump.
+  void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
   [[nodiscard]] double t() const { return steps_.t(); }
   [[nodiscard]] State state() const { return Scene::from_vector(steps_.y()); }

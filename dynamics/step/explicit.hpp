@@ -10,7 +10,9 @@
 #include <sstream>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
+#include <dynamics/step/compensated.hpp>
 #include <dynamics/step/verner.hpp>
 #include <motor/error.hpp>
 
@@ -39,12 +41,18 @@ struct Effort {
 /// Explicit Runge-Kutta integration of  y' = field(t, y)  with adaptive steps.
 ///
 /// State and time are added up with compensation, so that rounding does not grow with the number of
-/// steps. A step whose result is not finite is rejected and halved like one that errs too much, so a
-/// field that only exists in a region is not left; the last good time and state always stay readable.
+/// steps. A step whose result is not finite is rejected and shortened like one that errs too much, so
+/// a field that only exists in a region is not left; the last good time and state stay readable.
+///
+/// Output between the ends of a step is of the method's full order and does not disturb the steps:
+/// at() takes a part of the last step anew (16 evaluations); from the third output in one step on it
+/// reads a polynomial through five such points and their derivatives (51 evaluations a step in all).
 ///
 /// Field  : callable (S t, Vector y) -> Vector, Vector = Eigen::Matrix<S, n, 1>
 /// Blocks : how many components, in turn, share a unit and a size, e.g. {4, 3} for a quaternion and
 ///          an angular velocity; one block by default
+/// Source : Verner's tableau; step control (PI): E. Hairer, G. Wanner, Solving Ordinary Differential
+///          Equations II, IV.2
 /// Cost   : 16 evaluations a step
 /// Throws : InvalidInput for an accuracy out of range or a start that is not finite;
 ///          ComputationFailed naming the time where steps become too short or too many
@@ -56,13 +64,18 @@ class ExplicitSteps {
   template <std::size_t n = 1>
   ExplicitSteps(Field field, const Scalar& t, const Vector& y, const Accuracy& accuracy = {},
                 const std::array<int, n>& blocks = {int(Vector::RowsAtCompileTime)})
-      : field_(std::move(field)), accuracy_(accuracy), time_{t, Scalar(0)}, state_{y, zero(y)} {
+      : field_(std::move(field)),
+        accuracy_(accuracy),
+        time_{t, Scalar(0)},
+        state_{y, zero(y)},
+        before_{time_, state_, zero(y)} {
     if (!(accuracy.relative >= 1e-16 && accuracy.relative <= 1e-2)) {
       refuse("accuracy.relative = ", accuracy.relative,
              " lies outside [1e-16, 1e-2], what steps in double precision can keep");
     }
-    if (!(accuracy.smallest >= 0))
+    if (!(accuracy.smallest >= 0)) {
       refuse("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
+    }
     if (!std::isfinite(static_cast<double>(t))) refuse("the start time is not finite");
     if (!(y - y).isZero(Scalar(0))) refuse("the state at the start is not finite");
     int begin = 0;
@@ -78,49 +91,89 @@ class ExplicitSteps {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
+  /// Times at which the field jumps (a thrust that sets in, a guide that is jerked), in any order.
+  /// Steps end there exactly and see the field of their own side only.
+  void stop_at(std::vector<Scalar> jumps) { jumps_ = std::move(jumps); }
+
   /// Integrates to `end`, which is hit exactly; forwards or backwards.
   const Vector& advance_to(const Scalar& end) {
-    using std::abs;
-    if (!std::isfinite(static_cast<double>(end))) refuse("the end time is not finite");
-    if (end == t()) return y();
-    stage_[0] = evaluate(t(), y());
-    if (!(stage_[0] - stage_[0]).isZero(Scalar(0))) give_up("the field is not finite");
-    if (step_ == Scalar(0)) step_ = first_step();
-    while (end != t()) {
-      const Scalar left = (end - time_.value) - time_.rest;
-      const bool last = abs(left) <= abs(step_);
-      const Scalar wanted = step_;
-      if (!attempt(last ? left : std::copysign(step_, left))) continue;
-      if (last) {
-        time_ = {end, Scalar(0)};
-        step_ = std::max(step_, wanted);  // it was the end, not the error, that made it short
-      } else {
-        stage_[0] = evaluate(t(), y());
-      }
-    }
+    while (end != t()) step_towards(end);
     return y();
   }
 
- private:
-  /// A sum and what rounding has taken from it.
-  template <class T>
-  struct Compensated {
-    T value;
-    T rest;
-
-    void add(const T& increment) {
-      const T corrected = increment + rest;
-      const T sum = value + corrected;
-      rest = corrected - (sum - value);
-      value = sum;
+  /// One step towards `end`, not past it.
+  void step_towards(const Scalar& end) {
+    using std::abs;
+    if (!std::isfinite(static_cast<double>(end))) refuse("the end time is not finite");
+    if (end == t()) return;
+    const Scalar goal = next_stop(end);
+    stage_[0] = evaluate(t(), y());
+    if (!(stage_[0] - stage_[0]).isZero(Scalar(0))) give_up("the field is not finite");
+    if (step_ == Scalar(0)) step_ = first_step();
+    before_ = {time_, state_, stage_[0]};
+    dense_points_ = 0;
+    while (true) {
+      const Scalar left = (goal - time_.value) - time_.rest;
+      const bool last = abs(left) <= abs(step_);
+      const Scalar wanted = step_;
+      last_stage_time_ = goal == end ? goal : std::nextafter(goal, t());
+      if (!attempt(last ? left : std::copysign(step_, left))) continue;
+      if (last) {
+        time_ = {goal, Scalar(0)};
+        step_ = std::max(step_, wanted);  // it was the goal, not the error, that made it short
+      }
+      return;
     }
-  };
+  }
+
+  /// Whether a time lies within the last step.
+  [[nodiscard]] bool covers(const Scalar& time) const {
+    const Scalar& from = before_.time.value;
+    return time >= std::min(from, t()) && time <= std::max(from, t());
+  }
+
+  /// The state at a time within the last step.
+  ///
+  /// Throws : InvalidInput for a time outside of it
+  [[nodiscard]] Vector at(const Scalar& time) {
+    const Scalar& from = before_.time.value;
+    if (!covers(time)) {
+      refuse("t = ", time, " s lies outside the last step, [", from, ", ", t(), "] s");
+    }
+    if (time == t()) return y();
+    if (time == from) return before_.state.value;
+    dense_points_ += 1;
+    if (dense_points_ < 3) return part_of_step(time);
+    if (dense_points_ == 3) fit_polynomial();
+    return polynomial(time);
+  }
+
+  /// Goes back to a time within the last step and continues from there.
+  void back_to(const Scalar& time) {
+    const Vector there = at(time);
+    time_ = {time, Scalar(0)};
+    state_ = {there, zero(there)};
+    before_ = {time_, state_, zero(there)};
+  }
+
+ private:
+  template <class T>
+  using Compensated = detail::Compensated<T>;
 
   struct Block {
     int begin;
     int size;
     Scalar scale;
   };
+
+  /// Where a step began, and the field there.
+  struct Begin {
+    Compensated<Scalar> time;
+    Compensated<Vector> state;
+    Vector rate;
+  };
+
+  static constexpr std::size_t nodes = 5;
 
   static Vector zero(const Vector& y) { return Vector::Zero(y.size()); }
 
@@ -144,6 +197,16 @@ class ExplicitSteps {
   [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
     effort_.evaluations += 1;
     return field_(t, y);
+  }
+
+  /// The end, or the first jump on the way to it.
+  [[nodiscard]] Scalar next_stop(const Scalar& end) const {
+    Scalar next = end;
+    for (const Scalar& jump : jumps_) {
+      const bool on_the_way = t() < end ? t() < jump && jump < next : next < jump && jump < t();
+      if (on_the_way) next = jump;
+    }
+    return next;
   }
 
   [[nodiscard]] Scalar norm(const Vector& v, const Block& block) const {
@@ -180,19 +243,34 @@ class ExplicitSteps {
     (add.template operator()<j>(), ...);
   }
 
+  template <const auto& row>
+  [[nodiscard]] Vector combined() const {
+    Vector sum = zero(y());
+    accumulate<row>(sum, std::make_index_sequence<Tableau::stages>());
+    return sum;
+  }
+
   template <std::size_t i>
   static constexpr auto row = Tableau::a[i];
 
+  /// All stages but the first of a step of length h.
   template <std::size_t... i>
-  void fill_stages(const Scalar& h, std::index_sequence<i...>) {
+  void fill_stages(const Compensated<Scalar>& time, const Compensated<Vector>& state,
+                   const Scalar& h, std::index_sequence<i...>) {
     const auto fill = [&]<std::size_t k>() {
-      Vector sum = zero(y());
+      Vector sum = zero(state.value);
       accumulate<row<k>>(sum, std::make_index_sequence<k>());
       const Scalar c = static_cast<Scalar>(Tableau::node[k]);
-      stage_[k] = evaluate(t() + (c * h + time_.rest), y() + (h * sum + state_.rest));
+      const Scalar stage_time = time.value + (c * h + time.rest);
+      const bool late =
+          h > Scalar(0) ? stage_time > last_stage_time_ : stage_time < last_stage_time_;
+      stage_[k] =
+          evaluate(late ? last_stage_time_ : stage_time, state.value + (h * sum + state.rest));
     };
     (fill.template operator()<i + 1>(), ...);
   }
+
+  using AllButFirst = std::make_index_sequence<Tableau::stages - 1>;
 
   /// One step of length h; says whether it stood. Sets the length of the next.
   bool attempt(const Scalar& h) {
@@ -206,12 +284,9 @@ class ExplicitSteps {
     if (effort_.evaluations > accuracy_.most_evaluations) {
       give_up(accuracy_.most_evaluations, " evaluations are spent");
     }
-    fill_stages(h, std::make_index_sequence<Tableau::stages - 1>());
-    Vector sum = zero(y());
-    accumulate<Tableau::b>(sum, std::make_index_sequence<Tableau::stages>());
-    Vector error = zero(y());
-    accumulate<Tableau::difference>(error, std::make_index_sequence<Tableau::stages>());
-    const Vector change = h * sum;
+    fill_stages(time_, state_, h, AllButFirst());
+    const Vector change = h * combined<Tableau::b>();
+    const Vector error = combined<Tableau::difference>();
     Scalar worst(0);  // in units of what is allowed
     for (std::size_t i = 0; i < blocks_used_; ++i) {
       const Block& block = blocks_[i];
@@ -220,16 +295,21 @@ class ExplicitSteps {
       worst = ratio <= worst || worst != worst ? worst : ratio;  // a NaN stays
     }
     const bool finite = isfinite(static_cast<double>(worst)) && (change - change).isZero(Scalar(0));
-    if (!finite) {
-      step_ = abs(h) / Scalar(8);
-    } else {
-      const Scalar aim = Scalar(0.9) * pow(max(worst, Scalar(1e-12)), Scalar(-1) / Tableau::order);
-      step_ = abs(h) * std::clamp(aim, Scalar(0.2), Scalar(5));
-    }
     if (!finite || worst > Scalar(1)) {
+      const Scalar aim =
+          finite ? Scalar(0.9) * pow(worst, Scalar(-1) / Tableau::order) : Scalar(0.125);
+      step_ = abs(h) * max(aim, Scalar(0.125));
       effort_.rejected += 1;
       return false;
     }
+    // PI: the next step answers this one's error and, a little, its change since the step before.
+    constexpr Scalar little = Scalar(0.04);
+    const Scalar aim =
+        Scalar(0.9) *
+        pow(max(worst, Scalar(1e-12)), Scalar(0.75) * little - Scalar(1) / Tableau::order) *
+        pow(worst_before_, little);
+    step_ = abs(h) * std::clamp(aim, Scalar(0.2), Scalar(5));
+    worst_before_ = max(worst, Scalar(1e-4));
     effort_.steps += 1;
     state_.add(change);
     time_.add(h);
@@ -237,14 +317,75 @@ class ExplicitSteps {
     return true;
   }
 
+  /// The last step taken anew up to a time within it: of full order.
+  [[nodiscard]] Vector part_of_step(const Scalar& time) {
+    const Scalar h = (time - before_.time.value) - before_.time.rest;
+    stage_[0] = before_.rate;
+    fill_stages(before_.time, before_.state, h, AllButFirst());
+    return before_.state.value + (h * combined<Tableau::b>() + before_.state.rest);
+  }
+
+  [[nodiscard]] Scalar node_time(std::size_t i) const {
+    const Scalar share = Scalar(static_cast<double>(i)) / Scalar(static_cast<double>(nodes - 1));
+    return before_.time.value + share * (t() - before_.time.value);
+  }
+
+  /// Newton's divided differences through five states of the last step and their derivatives, each
+  /// point twice: degree 9. Kept relative to the state at the step's begin, lest rounding grow.
+  void fit_polynomial() {
+    std::array<Vector, nodes> value;
+    std::array<Vector, nodes> rate;
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const Scalar time = node_time(i);
+      const bool end = i == nodes - 1;
+      value[i] = i == 0 ? before_.state.value : end ? y() : part_of_step(time);
+      rate[i] = i == 0 ? before_.rate : evaluate(end ? last_stage_time_for(time) : time, value[i]);
+      value[i] -= before_.state.value;
+    }
+    for (std::size_t i = 0; i < 2 * nodes; ++i) difference_[i] = value[i / 2];
+    for (std::size_t order = 1; order < 2 * nodes; ++order) {
+      for (std::size_t i = 2 * nodes - 1; i >= order; --i) {
+        const std::size_t left = (i - order) / 2;
+        const std::size_t right = i / 2;
+        if (left == right) {
+          difference_[i] = rate[left];
+        } else {
+          difference_[i] =
+              Vector((difference_[i] - difference_[i - 1]) / (node_time(right) - node_time(left)));
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] Vector polynomial(const Scalar& time) const {
+    Vector sum = difference_[2 * nodes - 1];
+    for (std::size_t i = 2 * nodes - 1; i-- > 0;) {
+      sum = difference_[i] + (time - node_time(i / 2)) * sum;
+    }
+    return before_.state.value + sum;
+  }
+
+  /// At the end of a step that stops at a jump the field counts as the step saw it.
+  [[nodiscard]] Scalar last_stage_time_for(const Scalar& time) const {
+    const bool forwards = t() > before_.time.value;
+    const bool late = forwards ? time > last_stage_time_ : time < last_stage_time_;
+    return late ? last_stage_time_ : time;
+  }
+
   Field field_;
   Accuracy accuracy_;
   Compensated<Scalar> time_;
   Compensated<Vector> state_;
   Scalar step_ = Scalar(0);
+  Scalar worst_before_ = Scalar(1);
   std::array<Vector, Tableau::stages> stage_ = {};
   std::array<Block, 8> blocks_ = {};
   std::size_t blocks_used_ = 0;
+  std::vector<Scalar> jumps_;
+  Scalar last_stage_time_ = Scalar(0);  ///< none is later, on the way of the step
+  Begin before_;
+  int dense_points_ = 0;
+  std::array<Vector, 2 * nodes> difference_ = {};
   Effort effort_;
 };
 
