@@ -15,7 +15,8 @@
 // NESC, by which flight simulators are compared. Prints, every 0.1 s, its attitude against the local
 // level below it and its body rates against the inertial frame. The guide is the earth at the point
 // of release, so the fall is small in it; the level below the brick is turned by the fall's
-// deflection to the east, 6e-5 degrees after 30 s.
+// deflection to the east, 6e-5 degrees after 30 s. All decimals but the last are certain: the closed
+// form of the tumbling agrees to 5.5e-13 degrees (tests/examples/examples.cpp).
 
 using namespace kreisel;
 
