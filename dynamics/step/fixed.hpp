@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+
+#include <dynamics/step/compensated.hpp>
+#include <motor/error.hpp>
+
+/// What the steppers share.
+namespace kreisel::detail {
+
+template <class... Words>
+[[noreturn]] void refuse_steps(const Words&... words) {
+  std::ostringstream text;
+  text.precision(10);
+  (text << ... << words);
+  throw InvalidInput(text.str());
+}
+
+template <class S, class... Words>
+[[noreturn]] void stop_integration(const S& t, const Words&... words) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "integration stopped at t = " << t << " s: ";
+  (text << ... << words);
+  throw ComputationFailed(text.str());
+}
+
+template <std::size_t n>
+void require_blocks(const std::array<int, n>& blocks, int components) {
+  static_assert(n <= 8, "a state has eight blocks at most");
+  int sum = 0;
+  for (const int size : blocks) sum += size;
+  if (sum != components) {
+    refuse_steps("blocks of ", sum, " components for a state of ", components);
+  }
+}
+
+inline void require_step(double step) {
+  if (!(step > 0 && std::isfinite(step))) {
+    refuse_steps("step = ", step, " s must be a finite number above 0");
+  }
+}
+
+/// `count` steps of one length, never above the one asked for. The length is kept to 64 bits: over
+/// many steps its rounding is an error of time that grows with them.
+struct EqualSteps {
+  double count;
+  long double length;
+
+  template <class S>
+  EqualSteps(const Compensated<S>& time, const S& end, double step) {
+    if (!std::isfinite(static_cast<double>(end))) refuse_steps("the end time is not finite");
+    const long double left =
+        (static_cast<long double>(end) - static_cast<long double>(time.value)) -
+        static_cast<long double>(time.rest);
+    // Ends given as a multiple of the step take that many, whatever rounding says.
+    count = std::max(1.0, std::ceil(static_cast<double>(std::abs(left)) / step * (1 - 1e-12)));
+    length = left / static_cast<long double>(count);
+    const double moved = std::abs(static_cast<double>(length));
+    const double there =
+        std::max(std::abs(static_cast<double>(time.value)), std::abs(static_cast<double>(end)));
+    if (left != 0 && !(moved > 4 * std::numeric_limits<double>::epsilon() * there)) {
+      stop_integration(time.value, "steps of ", step, " s are too short to move time on");
+    }
+  }
+};
+
+}  // namespace kreisel::detail

@@ -1,0 +1,310 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include <dynamics/step/explicit.hpp>
+#include <dynamics/step/fixed.hpp>
+#include <dynamics/step/jacobian.hpp>
+
+namespace kreisel {
+
+/// GSL's adaptive steppers. msbdf and bsimp need a Jacobian and are for stiff fields: bsimp as a
+/// rule, msbdf where 1e-4 will do.
+enum class GslMethod { rkf45, rk8pd, msadams, msbdf, bsimp };
+
+/// Stands for the Jacobian where the method needs none.
+struct NoJacobian {};
+
+namespace detail {
+
+/// While it lives, GSL returns its error codes instead of ending the program. GSL keeps one handler
+/// for all threads.
+class GslHandlerOff {
+ public:
+  GslHandlerOff() : previous_(gsl_set_error_handler_off()) {}
+  ~GslHandlerOff() { gsl_set_error_handler(previous_); }
+  GslHandlerOff(const GslHandlerOff&) = delete;
+  GslHandlerOff& operator=(const GslHandlerOff&) = delete;
+
+ private:
+  gsl_error_handler_t* previous_;
+};
+
+[[nodiscard]] inline const gsl_odeiv2_step_type* gsl_type(GslMethod method) {
+  switch (method) {
+    case GslMethod::rkf45: return gsl_odeiv2_step_rkf45;
+    case GslMethod::rk8pd: return gsl_odeiv2_step_rk8pd;
+    case GslMethod::msadams: return gsl_odeiv2_step_msadams;
+    case GslMethod::msbdf: return gsl_odeiv2_step_msbdf;
+    case GslMethod::bsimp: return gsl_odeiv2_step_bsimp;
+  }
+  refuse_steps("no such GslMethod: ", static_cast<int>(method));
+}
+
+/// What Accuracy allows, as an error control for GSL: its own knows no blocks, and no size but the
+/// present one.
+class GslControl {
+ public:
+  template <std::size_t n>
+  GslControl(const Accuracy& accuracy, const std::array<int, n>& blocks, int components)
+      : accuracy_(accuracy) {
+    require_blocks(blocks, components);
+    for (const int size : blocks) blocks_[used_++] = {static_cast<std::size_t>(size), 0};
+  }
+
+  /// To be called with every state that stands.
+  void note_size(const double* y) {
+    for (std::size_t b = 0; b < used_; y += blocks_[b++].components) {
+      blocks_[b].size = std::max(blocks_[b].size, norm(y, blocks_[b]));
+    }
+  }
+
+  /// The largest ratio of v to what a block's error may be.
+  [[nodiscard]] double ratio(const double* v) const {
+    double worst = 0;
+    for (std::size_t b = 0; b < used_; v += blocks_[b++].components) {
+      const double r = norm(v, blocks_[b]) / allowed(blocks_[b]);
+      worst = r <= worst || worst != worst ? worst : r;  // a NaN stays
+    }
+    return worst;
+  }
+
+  [[nodiscard]] static gsl_odeiv2_control gsl(GslControl* self) { return {&type, self}; }
+
+ private:
+  struct Block {
+    std::size_t components;
+    double size;
+  };
+
+  [[nodiscard]] static double norm(const double* v, const Block& block) {
+    return Eigen::Map<const Eigen::VectorXd>(v, static_cast<Eigen::Index>(block.components))
+        .stableNorm();
+  }
+
+  [[nodiscard]] double allowed(const Block& block) const {
+    return accuracy_.relative * std::max(block.size, accuracy_.smallest);
+  }
+
+  /// GSL's rule for the next step, with its constants.
+  static int adjust(void* self, std::size_t, unsigned order, const double*, const double* error,
+                    const double*, double* h) {
+    const double worst = static_cast<GslControl*>(self)->ratio(error);
+    if (!(worst <= 1.1)) {
+      const double factor = 0.9 * std::pow(worst, -1.0 / order);
+      *h *= factor > 0.2 ? factor : 0.2;
+      return GSL_ODEIV_HADJ_DEC;
+    }
+    if (worst > 0.5) return GSL_ODEIV_HADJ_NIL;
+    *h *= std::clamp(0.9 * std::pow(worst, -1.0 / (order + 1)), 1.0, 4.9);
+    return GSL_ODEIV_HADJ_INC;
+  }
+
+  static int error_level(void* self, double, double, double, std::size_t component, double* level) {
+    const auto& control = *static_cast<GslControl*>(self);
+    std::size_t b = 0;
+    while (component >= control.blocks_[b].components) component -= control.blocks_[b++].components;
+    *level = control.allowed(control.blocks_[b]);
+    return GSL_SUCCESS;
+  }
+
+  static constexpr gsl_odeiv2_control_type type = {"blocks",     nullptr, nullptr, &adjust,
+                                                   &error_level, nullptr, nullptr};
+
+  Accuracy accuracy_;
+  std::array<Block, 8> blocks_ = {};
+  std::size_t used_ = 0;
+};
+
+}  // namespace detail
+
+/// GSL's steppers behind the interface of ExplicitSteps, for comparison and for stiff fields.
+///
+/// GSL returns success with a NaN in the state. Here a field that is not finite makes GSL try a
+/// shorter step; where none helps, the last good time and state stay readable. What the field
+/// throws passes through unharmed. Neither state nor time is compensated. The accuracy is that of a
+/// step by GSL's own estimate, which msadams, msbdf and, at moderate stiffness, bsimp put too low:
+/// by 100 at times.
+///
+/// Source : GSL 2.7 reference manual, ordinary differential equations
+/// Field  : callable (double t, Vector y) -> Vector
+/// J      : callable (double t, Vector y) -> Jacobian<n>; forward_jacobian() makes one
+/// Cost   : a step of rkf45 7 evaluations, of rk8pd 14
+/// Throws : InvalidInput for an accuracy out of range, a start that is not finite, a Jacobian that
+///          is missing; ComputationFailed naming the time where steps become too short or too many
+template <class Vector, class Field, class J = NoJacobian>
+class GslSteps {
+ public:
+  template <std::size_t n = 1>
+  GslSteps(GslMethod method, Field field, double t, const Vector& y, const Accuracy& accuracy = {},
+           const std::array<int, n>& blocks = {int(Vector::RowsAtCompileTime)})
+      : GslSteps(method, std::move(field), J{}, t, y, accuracy, blocks) {}
+
+  template <std::size_t n = 1>
+  GslSteps(GslMethod method, Field field, J jacobian, double t, const Vector& y,
+           const Accuracy& accuracy = {},
+           const std::array<int, n>& blocks = {int(Vector::RowsAtCompileTime)})
+      : field_(std::move(field)),
+        jacobian_(std::move(jacobian)),
+        accuracy_(accuracy),
+        t_(t),
+        y_(y),
+        control_(accuracy, blocks, dimension),
+        step_(gsl_odeiv2_step_alloc(detail::gsl_type(method), dimension), &gsl_odeiv2_step_free),
+        evolve_(gsl_odeiv2_evolve_alloc(dimension), &gsl_odeiv2_evolve_free) {
+    if (!(accuracy.relative >= 1e-16 && accuracy.relative <= 1e-2)) {
+      detail::refuse_steps("accuracy.relative = ", accuracy.relative,
+                           " lies outside [1e-16, 1e-2]");
+    }
+    if (!(accuracy.smallest >= 0)) {
+      detail::refuse_steps("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
+    }
+    if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
+    if (!finite(y)) detail::refuse_steps("the state at the start is not finite");
+    const bool implicit = method == GslMethod::msbdf || method == GslMethod::bsimp;
+    if (implicit && std::is_same_v<J, NoJacobian>) {
+      detail::refuse_steps("GSL ", gsl_odeiv2_step_name(step_.get()),
+                           " needs a Jacobian: forward_jacobian(field) makes one");
+    }
+    control_.note_size(y_.data());
+    // msadams and msbdf ask their driver for the control, and for nothing else.
+    driver_.c = &gsl_control_;
+    gsl_odeiv2_step_set_driver(step_.get(), &driver_);
+  }
+
+  // GSL keeps pointers to it.
+  GslSteps(const GslSteps&) = delete;
+  GslSteps& operator=(const GslSteps&) = delete;
+
+  [[nodiscard]] double t() const { return t_; }
+  [[nodiscard]] const Vector& y() const { return y_; }
+  [[nodiscard]] const Effort& effort() const { return effort_; }
+
+  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  const Vector& advance_to(double end) {
+    if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
+    if (end == t_) return y_;
+    if (length_ == 0) length_ = first_length();
+    if (std::signbit(length_) != std::signbit(end - t_)) {
+      length_ = -length_;
+      forget();
+    }
+    const detail::GslHandlerOff handler_off;
+    while (t_ != end) take_step(end);
+    return y_;
+  }
+
+ private:
+  static constexpr int dimension = Vector::RowsAtCompileTime;
+
+  [[nodiscard]] static bool finite(const Vector& v) { return (v - v).isZero(0); }
+
+  /// The steppers' memory of the steps before.
+  void forget() {
+    gsl_odeiv2_step_reset(step_.get());
+    gsl_odeiv2_evolve_reset(evolve_.get());
+  }
+
+  void take_step(double end) {
+    double t = t_;
+    Vector y = y_;
+    const auto rejected = evolve_->failed_steps;
+    const int status = gsl_odeiv2_evolve_apply(evolve_.get(), &gsl_control_, step_.get(), &system_,
+                                               &t, end, &length_, y.data());
+    effort_.rejected += static_cast<double>(evolve_->failed_steps - rejected);
+    if (status != GSL_SUCCESS || !finite(y)) {
+      forget();
+      length_ = 0;
+      if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+      detail::stop_integration(t_, "GSL ", gsl_odeiv2_step_name(step_.get()),
+                               " finds no step short enough (", gsl_strerror(status), ')');
+    }
+    t_ = t;
+    y_ = y;
+    control_.note_size(y_.data());
+    effort_.steps += 1;
+  }
+
+  /// A hundredth of the time in which a block changes by its own size, as ExplicitSteps does.
+  [[nodiscard]] double first_length() {
+    effort_.evaluations += 1;
+    const Vector rate = field_(t_, y_);
+    if (!finite(rate)) detail::stop_integration(t_, "the field is not finite");
+    const double worst = control_.ratio(rate.data()) * accuracy_.relative;
+    return worst > 0 ? 0.01 / worst : 1.0;
+  }
+
+  /// C's frames lie between the field and us: no exception may cross them.
+  template <class Call>
+  [[nodiscard]] int guarded(const Call& call) {
+    try {
+      if (effort_.evaluations > accuracy_.most_evaluations) {
+        detail::stop_integration(t_, accuracy_.most_evaluations, " evaluations are spent");
+      }
+      return call() ? GSL_SUCCESS : GSL_ERANGE;  // GSL answers the latter with a shorter step
+    } catch (...) {
+      thrown_ = std::current_exception();
+      return GSL_EBADFUNC;  // and this one by giving up
+    }
+  }
+
+  static int call_field(double t, const double* y, double* rate, void* self) {
+    auto& steps = *static_cast<GslSteps*>(self);
+    return steps.guarded([&] {
+      steps.effort_.evaluations += 1;
+      const Vector f = steps.field_(t, Vector(Eigen::Map<const Vector>(y)));
+      Eigen::Map<Vector>{rate} = f;
+      return finite(f);
+    });
+  }
+
+  static int call_jacobian(double t, const double* y, double* of_state, double* of_time,
+                           void* self) {
+    if constexpr (std::is_same_v<J, NoJacobian>) {
+      return GSL_EBADFUNC;
+    } else {
+      auto& steps = *static_cast<GslSteps*>(self);
+      return steps.guarded([&] {
+        const Jacobian<dimension> j = steps.jacobian_(t, Vector(Eigen::Map<const Vector>(y)));
+        constexpr auto rows = dimension == 1 ? Eigen::ColMajor : Eigen::RowMajor;
+        Eigen::Map<Eigen::Matrix<double, dimension, dimension, rows>>{of_state} = j.of_state;
+        Eigen::Map<Vector>{of_time} = j.of_time;
+        return (j.of_state - j.of_state).isZero(0) && finite(j.of_time);
+      });
+    }
+  }
+
+  Field field_;
+  J jacobian_;
+  Accuracy accuracy_;
+  double t_;
+  Vector y_;
+  double length_ = 0;  ///< of the next step; 0 asks for a first one
+  Effort effort_;
+  std::exception_ptr thrown_;
+  detail::GslControl control_;
+  gsl_odeiv2_control gsl_control_ = detail::GslControl::gsl(&control_);
+  gsl_odeiv2_system system_ = {&call_field, &call_jacobian, std::size_t(dimension), this};
+  gsl_odeiv2_driver driver_ = {};
+  std::unique_ptr<gsl_odeiv2_step, decltype(&gsl_odeiv2_step_free)> step_;
+  std::unique_ptr<gsl_odeiv2_evolve, decltype(&gsl_odeiv2_evolve_free)> evolve_;
+};
+
+template <class Field, class Vector, class... More>
+GslSteps(GslMethod, Field, double, Vector, More...) -> GslSteps<Vector, Field>;
+template <class Field, class J, class Vector, class... More>
+requires(!std::is_arithmetic_v<J>) GslSteps(GslMethod, Field, J, double, Vector, More...)
+->GslSteps<Vector, Field, J>;
+
+}  // namespace kreisel

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <utility>
+
+namespace kreisel {
+
+/// The derivatives of a vector field of n components.
+template <int n>
+struct Jacobian {
+  Eigen::Matrix<double, n, n> of_state;  ///< df_i/dy_j
+  Eigen::Matrix<double, n, 1> of_time;   ///< df_i/dt
+};
+
+/// (t, y) -> Jacobian of a field that is a template on the number type, by forward differentiation:
+/// exact, and one evaluation of the field in dual numbers.
+///
+///   const auto jacobian = forward_jacobian<2>([](const auto& t, const auto& y) { ... });
+///
+/// Field  : callable (S t, Eigen::Matrix<S, n, 1> y) -> Eigen::Matrix<S, n, 1> for S = double and
+///          dual numbers
+/// Error  : that of the field's own formula
+/// Cost   : one evaluation in numbers of n + 2 parts
+template <int n, class Field>
+[[nodiscard]] auto forward_jacobian(Field field) {
+  return [field = std::move(field)](double t, const Eigen::Matrix<double, n, 1>& y) {
+    using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, n + 1, 1>>;
+    Eigen::Matrix<Dual, n, 1> state;
+    for (int i = 0; i < n; ++i) state[i] = Dual(y[i], n + 1, i);
+    const Eigen::Matrix<Dual, n, 1> f = field(Dual(t, n + 1, n), state);
+    Jacobian<n> jacobian;
+    for (int i = 0; i < n; ++i) {
+      jacobian.of_state.row(i) = f[i].derivatives().template head<n>().transpose();
+      jacobian.of_time[i] = f[i].derivatives()[n];
+    }
+    return jacobian;
+  };
+}
+
+}  // namespace kreisel
