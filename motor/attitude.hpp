@@ -9,8 +9,8 @@
 namespace kreisel {
 
 /// Aerospace angles: turn by yaw about z, then by pitch about the new y, then by roll about the new
-/// x. For input and output only: at pitch = +-pi/2 yaw and roll are not determined apart, so no state
-/// of the library is kept in them.
+/// x. For input and output only: at pitch = +-pi/2 yaw and roll are not determined apart, so no
+/// state of the library is kept in them.
 ///
 /// Units  : radian
 template <class S = double>
@@ -35,8 +35,8 @@ struct YawPitchRoll {
 
   /// The angles of a rotation: yaw and roll in [-pi, pi], pitch in [-pi/2, pi/2].
   ///
-  /// Error  : of pitch <= 4u everywhere, of yaw and roll <= 4u / cos(pitch); of the rotation that the
-  ///          three describe together <= 8u everywhere (tests/motor/attitude.cpp)
+  /// Error  : of pitch <= 4u everywhere, of yaw and roll <= 4u / cos(pitch); of the rotation that
+  ///          the three describe together <= 8u everywhere (tests/motor/attitude.cpp)
   [[nodiscard]] static YawPitchRoll of(const Matrix3<S>& R) {
     using std::atan2;
     using std::cos;
@@ -58,7 +58,7 @@ struct YawPitchRoll {
 /// turned in all. And q is never scaled to norm 1, which would round in a preferred direction. Over
 /// 1e9 steps the norm walks off by 1e-12, which no reader of an attitude here notices
 /// (Pose::from and all scenes divide by |q|^2), and the attitude by 3e-12 rad
-/// (benchmarks/group_drift.cpp; tests/motor/attitude.cpp runs 3e6 of them).
+/// (benchmarks/group_drift.cpp; tests/motor/attitude.cpp runs 1e6 of them).
 ///
 /// Units  : radian
 template <class S>

@@ -79,9 +79,9 @@ template <Tagged Q>
 
 namespace detail {
 
-/// The type of the result of a legal use. An illegal one is refused in the way of which each compiler
-/// speaks most briefly: clang by the substitution that fails here; g++, to whom that is worth twice
-/// as many lines, by the static_assert in the body (tests/misuse counts them).
+/// The type of the result of a legal use. An illegal one is refused in the way of which each
+/// compiler speaks most briefly: clang by the substitution that fails here; g++, to whom that is
+/// worth twice as many lines, by the static_assert in the body (tests/misuse counts them).
 template <bool legal, class Result>
 struct Checked {
   using Type = Result;

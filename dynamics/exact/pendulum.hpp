@@ -8,27 +8,13 @@
 #include <numbers>
 #include <string>
 
-#include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/refuse.hpp>
+#include <dynamics/step/gsl_errors.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel::exact {
 
 namespace detail {
-
-/// While it lives, GSL returns its error codes instead of ending the program.
-///
-/// GSL keeps one handler for the whole program: do not change it in another thread meanwhile.
-class GslErrorsReturned {
- public:
-  GslErrorsReturned() : previous_(gsl_set_error_handler_off()) {}
-  ~GslErrorsReturned() { gsl_set_error_handler(previous_); }
-  GslErrorsReturned(const GslErrorsReturned&) = delete;
-  GslErrorsReturned& operator=(const GslErrorsReturned&) = delete;
-
- private:
-  gsl_error_handler_t* previous_;
-};
 
 /// Throws : ComputationFailed with GSL's words
 inline void require_success(int status, const char* what) {
@@ -60,7 +46,7 @@ class PlainPendulum {
       detail::refuse("omega", omega, "rad/s must be a finite number above 0");
     }
     // K(k) = R_F(0, 1 - k^2, 1): from cos^2, not from 1 - sin^2, so that it is right near pi.
-    const detail::GslErrorsReturned guard;
+    const kreisel::detail::GslErrorsReturned guard;
     gsl_sf_result quarter;
     detail::require_success(
         gsl_sf_ellint_RF_e(0, k_complement_ * k_complement_, 1, GSL_PREC_DOUBLE, &quarter),
@@ -81,7 +67,7 @@ class PlainPendulum {
   /// Throws: InvalidInput for a time that is not finite
   [[nodiscard]] State at(double time) const {
     if (!std::isfinite(time)) detail::refuse("time", time, "s must be finite");
-    const detail::GslErrorsReturned guard;
+    const kreisel::detail::GslErrorsReturned guard;
     double sn;
     double cn;
     double dn;
@@ -96,88 +82,6 @@ class PlainPendulum {
   double k_;
   double k_complement_;
   double quarter_ = 0;  ///< K(k)
-};
-
-/// The plane pendulum  phi.. + k sin(phi) = 0  from any angle and rate: it swings, turns over, or
-/// on the separatrix ends upright.
-///
-/// With s = sin(phi/2), c = cos(phi/2), h = phi./(2 sqrt(k)) the energy is  e = s^2 + h^2  and what
-/// it lacks at the upper rest point  1 - e = (c - h)(c + h),  free of cancellation near there:
-///
-///   e <= 1, it swings:     s = sqrt(e) sn u,  c = dn u,  h = sqrt(e) cn u,  m = e,
-///                          u' = sqrt(k)
-///   e > 1, it turns over:  s = sn u,          c = cn u,  h = sqrt(e) dn u,  m = 1/e,
-///                          u' = sqrt(k e)
-///
-/// and all mirrored for phi. < 0 at the start.
-///
-/// Source : Whittaker, Analytical Dynamics, art. 44
-/// Units  : 1/s^2, rad, rad/s, s
-/// Error  : <= 1.5u of |angle| + 0.125 and of |rate| + 0.125 for k = 1, 40 s and any start, near
-///          the upper rest point and turning over it, too  (tests/dynamics/exact/pendulum.cpp)
-/// Limits : std::numbers::pi is 1.2e-16 short of the top and falls from there
-class PendulumMotion {
- public:
-  struct State {
-    double angle;  ///< whole turns counted
-    double rate;
-  };
-
-  /// Throws : InvalidInput unless k > 0 and all are finite
-  PendulumMotion(double k, double phi0, double rate0) : root_k_(std::sqrt(Real(k))) {
-    detail::require_positive("k", k);
-    detail::require_finite("phi0", phi0);
-    detail::require_finite("rate0", rate0);
-    turns_ = std::round(Real(phi0) / (2 * pi));
-    const Real sign = std::fmod(turns_, Real(2)) == 0 ? 1 : -1;
-    const Real c = sign * std::cos(Real(phi0) / 2);
-    const Real h = std::abs(Real(rate0)) / (2 * root_k_);
-    if (rate0 < 0) direction_ = -1;
-    const Real s = direction_ * sign * std::sin(Real(phi0) / 2);
-    const Real e = s * s + h * h;
-    const Real lacking = (c - h) * (c + h);
-    root_e_ = std::sqrt(e);
-    if (lacking < 0) {
-      turns_over_ = true;
-      functions_ = {1 / e, -lacking / e};
-      u0_ = EllipticFunctions::argument({s, c, h / root_e_});
-    } else if (e > 0) {
-      functions_ = {e, lacking};
-      u0_ = EllipticFunctions::argument({s / root_e_, h / root_e_, c});
-    }
-  }
-
-  /// Throws : InvalidInput for a time that is not finite
-  [[nodiscard]] State at(double time) const {
-    detail::require_finite("time", time);
-    const Phase phase = functions_.phase(speed() * time + u0_);
-    const Real half_angle = turns_over_
-                                ? pi * phase.half_periods + std::atan2(phase.rest.sn, phase.rest.cn)
-                                : std::atan2(root_e_ * phase.at.sn, phase.at.dn);
-    const Real h = root_e_ * (turns_over_ ? phase.at.dn : phase.at.cn);
-    return {static_cast<double>(2 * (pi * turns_ + direction_ * half_angle)),
-            static_cast<double>(2 * root_k_ * direction_ * h)};
-  }
-
-  /// Of a swing, or of one turn over the top; infinite on the separatrix.
-  [[nodiscard]] double period() const {
-    const Real quarters = turns_over_ ? 2 : 4;
-    return static_cast<double>(quarters * functions_.quarter() / speed());
-  }
-
- private:
-  static constexpr Real pi = std::numbers::pi_v<Real>;
-
-  /// u'
-  [[nodiscard]] Real speed() const { return turns_over_ ? root_k_ * root_e_ : root_k_; }
-
-  Real root_k_;
-  Real root_e_;
-  Real turns_;         ///< whole ones of phi0
-  int direction_ = 1;  ///< in which it starts; formulas know rate0 >= 0 only
-  bool turns_over_ = false;
-  EllipticFunctions functions_;
-  Real u0_ = 0;
 };
 
 }  // namespace kreisel::exact

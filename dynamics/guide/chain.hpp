@@ -22,7 +22,7 @@ inline constexpr bool join<Outer, Inner, Rest...> =
 
 /// Frames in frames: each moves against the one before, the last is the guide.
 ///
-///   const auto guide = Chain(earth, ship, device);   // <Earth, Inertial>, <Ship, Earth>, <Guide, Ship>
+///   const Chain guide(earth, ship, device);  // <Earth, Inertial>, <Ship, Earth>, <Guide, Ship>
 ///
 /// A link that does not begin where the one before ends does not compile.
 template <class... Links>

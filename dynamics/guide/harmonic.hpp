@@ -52,18 +52,20 @@ struct HarmonicSeries {
   }
 };
 
-/// What rolls, pitches and heaves harmonically: angular velocity u(t) and inertial acceleration a(t) of
-/// the origin are given on the frame's OWN axes, as gyros and accelerometers strapped to it read them.
+/// What rolls, pitches and heaves harmonically: angular velocity u(t) and inertial acceleration
+/// a(t) of the origin are given on the frame's OWN axes, as gyros and accelerometers strapped to it
+/// read them.
 ///
-/// u, ou and a come from the series at once. Attitude and place have no closed form when u turns about
-/// more than one axis; they are Taylor series in pieces of 1/(2 Omega), Omega = |u|/2 + the greatest
-/// frequency, computed when the frame is made, over [begin, end].
+/// u, ou and a come from the series at once. Attitude and place have no closed form when u turns
+/// about more than one axis; they are Taylor series in pieces of 1/(2 Omega), Omega = |u|/2 + the
+/// greatest frequency, computed when the frame is made, over [begin, end].
 ///
 /// Units  : rad/s, m/s^2, second
 /// Error  : against long double integration <= 1e-14 rad and 1e-14 of the way over 1000 pieces
 ///          (tests/dynamics/guide/harmonic)
 /// Cost   : 1.1 kB for each piece
-/// Throws : InvalidInput: a number that is not finite, end before begin; a time outside [begin, end]
+/// Throws : InvalidInput: a number that is not finite, end before begin; a time outside [begin,
+///          end]
 template <class G = Guide, class I = Inertial, class S = double>
 class HarmonicFrame {
  public:

@@ -12,9 +12,9 @@ namespace kreisel {
 /// How a frame G moves against a frame I at one moment: pose, velocity, acceleration.
 ///
 /// Velocity and rate are written in G, reduced at G's ORIGIN, and the rate is seen from G: numbers
-/// and their plain time derivatives, nothing to transport (T = P). To reach the body, displace them:
-/// X_BG * V and X_BG * dV. What must not be done is to differentiate the velocity of the guide-fixed
-/// point that coincides with a moving point of the body; that would be a PlainRate.
+/// and their plain time derivatives, nothing to transport (T = P). To reach the body, displace
+/// them: X_BG * V and X_BG * dV. What must not be done is to differentiate the velocity of the
+/// guide-fixed point that coincides with a moving point of the body; that would be a PlainRate.
 ///
 /// Source : paper 002 section 2, F and oF
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2

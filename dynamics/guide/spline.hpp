@@ -11,8 +11,8 @@
 namespace kreisel::detail {
 
 /// The spline of odd degree p through given components at strictly increasing times, in p - 1
-/// continuous derivatives; its knots are the times but for (p - 1)/2 inner ones at either end (not a
-/// knot), so that no derivative has to be guessed there. Spacing may be uneven.
+/// continuous derivatives; its knots are the times but for (p - 1)/2 inner ones at either end (not
+/// a knot), so that no derivative has to be guessed there. Spacing may be uneven.
 ///
 /// Source : C. de Boor, A Practical Guide to Splines: the collocation matrix in B-splines is banded
 ///          and totally positive, so elimination needs no pivots
@@ -81,7 +81,8 @@ class SplineInterpolation {
     return static_cast<std::size_t>(std::upper_bound(first, last, x) - knots_.begin()) - 1;
   }
 
-  /// Replaces the values in points_ by the control points, by elimination in a band of width 2p + 1.
+  /// Replaces the values in points_ by the control points, by elimination in a band of width 2p +
+  /// 1.
   void solve_for_control_points(const std::vector<S>& x) {
     const std::size_t width = 2 * p_ + 1;  // column j of row i is kept at i * width + (j + p - i)
     std::vector<S> band(n_ * width, S(0));
@@ -110,8 +111,8 @@ class SplineInterpolation {
     }
   }
 
-  /// Value and derivatives over factorials at the left end of the span k: the control points of each
-  /// derivative are differences of those before, evaluated by de Boor's scheme.
+  /// Value and derivatives over factorials at the left end of the span k: the control points of
+  /// each derivative are differences of those before, evaluated by de Boor's scheme.
   [[nodiscard]] std::vector<Components> taylor(std::size_t k) const {
     const S& x = knots_[k];
     std::vector<Components> control(points_.begin() + static_cast<std::ptrdiff_t>(k - p_),

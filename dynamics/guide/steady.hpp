@@ -4,8 +4,8 @@
 
 namespace kreisel {
 
-/// A frame in steady screw motion, its velocity motor constant: fixed on a turntable, on the earth, on
-/// a circular orbit.
+/// A frame in steady screw motion, its velocity motor constant: fixed on a turntable, on the earth,
+/// on a circular orbit.
 ///
 ///   X(t) = exp(V t) X(0),   V = (u; v) written in I;  on G's axes V is constant too, so oF = 0.
 template <class G = Guide, class I = Inertial, class S = double>

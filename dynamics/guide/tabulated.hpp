@@ -38,18 +38,19 @@ struct InterpolationError {
 /// A quintic spline (four continuous derivatives; cubic where there are less than six samples) runs
 /// through the samples, through the four components of the quaternion as through those of the
 /// position. The quaternion is then divided by its norm, which differs from 1 by the interpolation
-/// error only. So made, the motion does not depend on the choice of either frame's axes, and angular
-/// velocity and acceleration are exact derivatives of the attitude. Samples may be unevenly spaced;
-/// q and -q count as the same attitude.
+/// error only. So made, the motion does not depend on the choice of either frame's axes, and
+/// angular velocity and acceleration are exact derivatives of the attitude. Samples may be unevenly
+/// spaced; q and -q count as the same attitude.
 ///
-/// The spline does not smooth: noise e of the samples comes out as about e/h in the velocity and e/h^2
-/// in the acceleration, and the error estimate shows it.
+/// The spline does not smooth: noise e of the samples comes out as about e/h in the velocity and
+/// e/h^2 in the acceleration, and the error estimate shows it.
 ///
 /// Error  : O(h^6) attitude, O(h^5) angular velocity, O(h^4) angular acceleration, h the spacing;
 ///          interpolation_error() estimates them
-/// Throws : InvalidInput: under four samples, lengths that differ, a number that is not finite, times
-///          that do not increase, a quaternion whose norm is not 1 within 1 %, a turn of more than
-///          90 degrees from one sample to the next (the motion between them is anybody's guess)
+/// Throws : InvalidInput: under four samples, lengths that differ, a number that is not finite,
+///          times that do not increase, a quaternion whose norm is not 1 within 1 %, a turn of more
+///          than 90 degrees from one sample to the next (the motion between them is anybody's
+///          guess)
 template <class G = Guide, class I = Inertial, class S = double>
 class TabulatedFrame {
  public:
@@ -63,16 +64,18 @@ class TabulatedFrame {
   [[nodiscard]] const S& begin() const { return pose_.begin(); }
   [[nodiscard]] const S& end() const { return pose_.end(); }
 
-  /// What the interpolation adds to the error of the samples, estimated from the samples themselves.
+  /// What the interpolation adds to the error of the samples, estimated from the samples
+  /// themselves.
   ///
   /// The motion is interpolated again from every second and every fourth sample. The distance from
-  /// the first, divided by the factor by which it shrank from the second, times 1.6 to be on the safe
-  /// side, is the estimate: for smooth motion and fine sampling the factor is near 2^6, 2^5, 2^4; for
-  /// noise near 1. With under 24 samples the distance from the cubic spline stands in, which is too
-  /// careful.
+  /// the first, divided by the factor by which it shrank from the second, times 1.6 to be on the
+  /// safe side, is the estimate: for smooth motion and fine sampling the factor is near 2^6, 2^5,
+  /// 2^4; for noise near 1. With under 24 samples the distance from the cubic spline stands in,
+  /// which is too careful.
   ///
-  /// Error  : estimate / true error 1.5 to 2.8 where the log is fine enough for it to be under 1e-8, 1
-  ///          to 15 where it is coarse                       (tests/dynamics/guide/tabulated.cpp)
+  /// Error  : estimate / true error 1.5 to 2.8 where the log is fine enough for it to be under
+  ///          1e-8, 1 to 15 where it is coarse
+  ///          (tests/dynamics/guide/tabulated.cpp)
   [[nodiscard]] InterpolationError<S> interpolation_error() const {
     using std::max;
     const std::size_t n = log_.times.size();

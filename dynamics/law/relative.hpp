@@ -23,10 +23,11 @@ struct ForceParts {
 
 namespace detail {
 
-/// [A (T B)] up to terms that cancel against [B (T A)]: the sum of both, and [A (T A)], come out exact.
+/// [A (T B)] up to terms that cancel against [B (T A)]: the sum of both, and [A (T A)], come out
+/// exact.
 ///
-/// Left out is v_A x m v_B, and u x (s x v) + v x (u x s) is written s x (u x v) (Jacobi). On the earth,
-/// v = 465 m/s, rounding in v x m v = 0 would be a torque of 1e-11 N m on a kilogram.
+/// Left out is v_A x m v_B, and u x (s x v) + v x (u x s) is written s x (u x v) (Jacobi). On the
+/// earth, v = 465 m/s, rounding in v x m v = 0 would be a torque of 1e-11 N m on a kilogram.
 template <class S>
 [[nodiscard]] Motor<S> gyroscopic(const Motor<S>& A, const Inertia<S>& T, const Motor<S>& B) {
   const Vector3<S>& u = A.resultant;
@@ -67,7 +68,8 @@ inline constexpr int extra_coriolis = (std::is_same_v<OfF, B> ? 0 : 1) -
 /// Source : paper 002 (2), (5), (6), (8); the four forms the paper does not print were proved
 /// Frame  : B body, G guide, I inertial, each any tag; everything written in E, usually the body
 /// Error  : <= 20u * sum of |terms|; against 25-digit references <= 1e-14 (tests/dynamics/law)
-/// Cost   : 2 (k = 0) or 3 products of tensor and motor, 4 of 4 cross products, k != 0: a motor product
+/// Cost   : 2 (k = 0) or 3 products of tensor and motor, 4 of 4 cross products, k != 0: a motor
+///          product
 template <class E, class S, class B, class G, class I, class E1, class E2, class OfV, class OfF,
           class DV, class DF>
 [[nodiscard]] auto equation_of_motion(const InertiaTensor<E, S>& T,

@@ -9,8 +9,8 @@
 /// motor forms of relative.hpp and momentum.hpp say the same with fewer operations: these are for
 /// reading, for teaching, and as the second way to the same number.
 ///
-/// Letters: u', v' the relative motor at the body's origin O'; u, v the guide motor at O', v that of
-/// the point of the guide frame that coincides with O'; r = r_s the centre of mass; T the tensor
+/// Letters: u', v' the relative motor at the body's origin O'; u, v the guide motor at O', v that
+/// of the point of the guide frame that coincides with O'; r = r_s the centre of mass; T the tensor
 /// about O'. A mark before a letter is the observer: * body, o guide. All on body axes.
 
 namespace kreisel {

@@ -5,11 +5,12 @@
 
 namespace kreisel {
 
-/// The gravitation of the WGS84 ellipsoid (closed form) at the body's centre of mass, wherever it is.
+/// The gravitation of the WGS84 ellipsoid (closed form) at the body's centre of mass, wherever it
+/// is.
 ///
 /// Inertial is the frame at the earth's centre, z to the pole, as earth_frame() has it; how far the
-/// earth has turned does not matter to a body of revolution. The centrifugal part of gravity is not in
-/// it: that is the guide's motion. The field's gradient over the body is left out (see
+/// earth has turned does not matter to a body of revolution. The centrifugal part of gravity is not
+/// in it: that is the guide's motion. The field's gradient over the body is left out (see
 /// OblateGravitation).
 struct EarthGravitation {
   [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {

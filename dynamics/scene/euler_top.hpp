@@ -12,7 +12,9 @@
 
 namespace kreisel {
 
-/// What stays while a top moves.
+/// What stays while a top moves. Kovalevskaya's invariant, for w = (p, q, r), is
+///
+///   |(p + iq)^2 - (k_x + i k_y)(gamma_x + i gamma_y) / C|^2
 ///
 /// Units  : J, N m s, 1/s^4
 template <class S = double>
@@ -20,7 +22,7 @@ struct TopInvariants {
   S energy;             ///< w.(Theta w)/2 + weight_moment.gamma
   S vertical_momentum;  ///< gamma.(Theta w + h)
   S axial_momentum;     ///< C w_z + h_z: stays if A = B and weight and h lie along z
-  S kovalevskaya;  ///< |(p + iq)^2 - (k_x + i k_y)(gamma_x + i gamma_y) / C|^2: if A = B = 2C, k_z = h = 0
+  S kovalevskaya;       ///< hers, above: stays if A = B = 2C, k_z = 0 and h = 0
   Vector3<S> momentum;  ///< Theta w + h on inertial axes: stays without weight
 };
 
@@ -48,8 +50,8 @@ class EulerTop {
     Vector3<S> angular_velocity = Vector3<S>::Zero();  ///< w, on body axes
   };
 
-  /// `weight_moment` is k = m g r_s, mass times gravity times centre of mass; `rotor_momentum` is h,
-  /// the rotor's inertia times its relative speed (its inertia belongs to `moments` as well).
+  /// `weight_moment` is k = m g r_s, mass times gravity times centre of mass; `rotor_momentum` is
+  /// h, the rotor's inertia times its relative speed (its inertia belongs to `moments` as well).
   explicit EulerTop(const Vector3<S>& moments, const Vector3<S>& weight_moment = Vector3<S>::Zero(),
                     const Vector3<S>& rotor_momentum = Vector3<S>::Zero())
       : moments_(moments), weight_moment_(weight_moment), rotor_momentum_(rotor_momentum) {
@@ -65,6 +67,10 @@ class EulerTop {
       throw InvalidInput("Euler top: weight moment or rotor momentum is not finite");
     }
   }
+
+  [[nodiscard]] const Vector3<S>& moments() const { return moments_; }
+  [[nodiscard]] const Vector3<S>& weight_moment() const { return weight_moment_; }
+  [[nodiscard]] const Vector3<S>& rotor_momentum() const { return rotor_momentum_; }
 
   /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; w).
   [[nodiscard]] Vector rates(const S& /*t*/, const Vector& y) const {

@@ -12,8 +12,8 @@ namespace kreisel {
 
 /// A free rigid body watched from a moving guide: thrown, falling, floating, hung on springs.
 ///
-/// Its origin O' and its centre of mass may differ. The state is attitude, place and velocity motor V'
-/// against the guide; nothing depends on the quaternion's norm (see HeldBody).
+/// Its origin O' and its centre of mass may differ. The state is attitude, place and velocity motor
+/// V' against the guide; nothing depends on the quaternion's norm (see HeldBody).
 ///
 /// Source : paper 002 (5)
 /// Units  : metre, rad/s, m/s

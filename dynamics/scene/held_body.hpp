@@ -14,20 +14,20 @@
 
 namespace kreisel {
 
-/// A rigid body held at one of its points, its origin O', at a point of a moving guide: a pendulum in
-/// a ball joint on a ship, a top on a turntable, an instrument on gimbals without mass.
+/// A rigid body held at one of its points, its origin O', at a point of a moving guide: a pendulum
+/// in a ball joint on a ship, a top on a turntable, an instrument on gimbals without mass.
 ///
-/// Its centre of mass may be anywhere and its inertia general. With the guide at rest this is Euler's
-/// top; without loads and centre of mass at O' the guide does not matter at all.
+/// Its centre of mass may be anywhere and its inertia general. With the guide at rest this is
+/// Euler's top; without loads and centre of mass at O' the guide does not matter at all.
 ///
-/// The state is the attitude in the guide and the angular velocity u' against it. Nothing depends on
-/// the quaternion's norm, which drifts by the steps' error only and is never corrected:
+/// The state is the attitude in the guide and the angular velocity u' against it. Nothing depends
+/// on the quaternion's norm, which drifts by the steps' error only and is never corrected:
 /// the attitude read from it is a rotation to rounding always, however long the run.
 ///
 /// Source : paper 002 (5), (18)-(19), with V' = (u'; 0) at O'
 /// Units  : metre, rad/s
-/// Throws : InvalidInput where the inertia is none or the tensor about O' is singular (a needle along
-///          a line through O', all mass in O')
+/// Throws : InvalidInput where the inertia is none or the tensor about O' is singular (a needle
+///          along a line through O', all mass in O')
 template <class M, class... Loads>
 class HeldBody {
   static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");

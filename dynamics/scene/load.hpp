@@ -47,8 +47,8 @@ struct Situation {
   }
 };
 
-/// What acts on a body: called with a situation it gives force and torque about the body's origin, on
-/// body axes. A user's lambda is one. A load that has a potential says so by a member
+/// What acts on a body: called with a situation it gives force and torque about the body's origin,
+/// on body axes. A user's lambda is one. A load that has a potential says so by a member
 /// potential(situation), which the read-outs add up.
 template <class L, class S = double>
 concept Load = requires(const L& load, const Situation<S>& s) {
@@ -67,8 +67,9 @@ inline constexpr bool are_loads = (Load<Loads> && ...);
 
 /// Weight in a field of gravity that is uniform on the axes of A.
 ///
-/// A = Guide: the field turns with the guide, as the plumb line of a laboratory on the earth does when
-/// g is the EFFECTIVE gravity and the guide's own motion is left out. A = Inertial: gravitation.
+/// A = Guide: the field turns with the guide, as the plumb line of a laboratory on the earth does
+/// when g is the EFFECTIVE gravity and the guide's own motion is left out. A = Inertial:
+/// gravitation.
 ///
 /// Units  : m/s^2
 template <class A, class S = double>
@@ -148,8 +149,8 @@ struct Spring {
   }
 };
 
-/// A rubber mount: restoring force in all directions between a point of the body and the point of the
-/// guide where it sits unloaded; matrices on guide axes.
+/// A rubber mount: restoring force in all directions between a point of the body and the point of
+/// the guide where it sits unloaded; matrices on guide axes.
 ///
 /// Units  : metre, N/m, N s/m, N
 template <class S = double>

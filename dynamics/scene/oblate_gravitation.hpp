@@ -10,8 +10,9 @@ namespace kreisel {
 ///
 ///   g = -(GM / r^2) [ (1 + k (1 - 5 s^2)) e_r + 2 k s e_z ],   k = (3/2) J2 (R / r)^2,  s = z / r
 ///
-/// Inertial is the frame at the planet's centre, z to the pole. The field's gradient over the body is
-/// left out; its torque is at most (3/2) (GM / r^3) (the greatest difference of moments of inertia).
+/// Inertial is the frame at the planet's centre, z to the pole. The field's gradient over the body
+/// is left out; its torque is at most (3/2) (GM / r^3) (the greatest difference of moments of
+/// inertia).
 ///
 /// Units  : m^3/s^2, metre; the defaults are WGS84's
 /// Source : the potential GM/r [1 - J2 (R/r)^2 P2(s)], differentiated

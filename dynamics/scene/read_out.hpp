@@ -15,8 +15,8 @@ struct ReadOut {
 
   /// The left side of the law by cause: relative, guide and Coriolis part.
   ForceParts<Body, S> parts;
-  /// [V (T V)], V = V' + F: what of the left side is there without any acceleration (the negative of
-  /// the centrifugal force and of the gyroscopic moment, as an observer in the body names them).
+  /// [V (T V)], V = V' + F: what of the left side is there without any acceleration (the negative
+  /// of the centrifugal force and of the gyroscopic moment, as an observer in the body names them).
   Force<Body, S> gyroscopic;
   Force<Body, S> applied;   ///< all loads
   Force<Body, S> reaction;  ///< what the guide exerts on the body at O' to hold it there; 0 if free
@@ -52,8 +52,8 @@ template <class S, class L>
   }
 }
 
-/// The left side of the law without T *V', by the vectors of (19): with a the acceleration that O' has
-/// while the body keeps its velocity motor V', and w = u' + u,
+/// The left side of the law without T *V', by the vectors of (19): with a the acceleration that O'
+/// has while the body keeps its velocity motor V', and w = u' + u,
 ///
 ///   {m a + dw x s + w x (w x s);  s x a + Theta dw + w x Theta w},
 ///   a = a_guide(O') + 2 u x v' + u' x v',   dw = ou + u x u'.

@@ -11,8 +11,8 @@
 
 namespace kreisel {
 
-/// The inertia tensor of a body turned by small angles (alpha, beta, gamma), on the axes it is turned
-/// from, to first order:  T + skew(angles) T + (skew(angles) T)^t.
+/// The inertia tensor of a body turned by small angles (alpha, beta, gamma), on the axes it is
+/// turned from, to first order:  T + skew(angles) T + (skew(angles) T)^t.
 ///
 /// Source : paper 002 (41)-(43), the general matrix after (43); Phi = the negative off-diagonals
 /// Error  : |angles|^2 (greatest - least moment of inertia), to leading order
@@ -22,7 +22,8 @@ template <class S>
   return T + Symmetric3<S>::from(turning + turning.transpose());
 }
 
-/// The same for principal axes, moments (Theta_A, Theta_B, Theta_C): only products of inertia appear.
+/// The same for principal axes, moments (Theta_A, Theta_B, Theta_C): only products of inertia
+/// appear.
 ///
 /// Source : paper 002, the last matrix before section 8b
 template <class S>
@@ -32,24 +33,24 @@ template <class S>
   return {A, B, C, (A - B) * angles.z(), (C - A) * angles.y(), (B - C) * angles.x()};
 }
 
-/// A body on elastic mounts, in a guide that moves: the engine block on an aircraft. It swings little
-/// about the place where its frame and the guide coincide:
+/// A body on elastic mounts, in a guide that moves: the engine block on an aircraft. It swings
+/// little about the place where its frame and the guide coincide:
 ///
 ///   M q'' + C q' + K q = f,   q = (displacement r; angles alpha, beta, gamma), on guide axes
 ///
 /// With u, ou the guide's angular velocity and acceleration, W = skew(ou) + skew(u)^2, a the
-/// acceleration of its origin less gravity, s = m r_s, J = sum of m p p^t, b and e the two ends of a
-/// mount, F its force at rest:
+/// acceleration of its origin less gravity, s = m r_s, J = sum of m p p^t:
 ///
-///        r                      angles                                        f
-///   M :  m                      -skew(s)                                      -(m a + W s) + sum F
-///        skew(s)                Theta                                         -(s x a + ax(W J)) + sum b x F
-///   C :  2 m skew(u)            -2 skew(u) skew(s)
-///        2 skew(s) skew(u)      2 skew(J u)
-///   K :  m W                    -W skew(s)
-///        skew(s) W              skew(a) skew(s) + [ax(W E_i J - W J E_i)], i = 1, 2, 3, E_i = skew(e_i)
+///          r                    angles                                     f
+///   M :    m                    -skew(s)                                   -(m a + W s)
+///          skew(s)              Theta                                      -(s x a + ax(W J))
+///   C :    2 m skew(u)          -2 skew(u) skew(s)
+///          2 skew(s) skew(u)    2 skew(J u)
+///   K :    m W                  -W skew(s)
+///          skew(s) W            skew(a) skew(s) + [ax(W E_i J - W J E_i)]
 ///
-/// and to C and K what the mounts add. ax(B) = (B_32 - B_23, B_13 - B_31, B_21 - B_12).
+/// and to C, K and f what the mounts add; [..] has the columns i = 1, 2, 3, E_i = skew(e_i) and
+/// ax(B) = (B_32 - B_23, B_13 - B_31, B_21 - B_12).
 ///
 /// Exact to first order in q, also where the guide turns fast: the static moments m r_s, of first
 /// order too, are in it, which paper 002 leaves out along with the tensor's first-order part.

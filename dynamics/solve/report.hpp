@@ -23,8 +23,8 @@ enum class RunStatus {
 
 /// What a run has cost and how far its result is off.
 ///
-/// error_estimate is of the GLOBAL error, the greatest over the output times and over the parts of the
-/// state: attitudes in radian, other parts relative to their greatest size so far.
+/// error_estimate is of the GLOBAL error, the greatest over the output times and over the parts of
+/// the state: attitudes in radian, other parts relative to their greatest size so far.
 struct RunReport {
   std::string method;
   RunStatus status = RunStatus::complete;

@@ -2,8 +2,8 @@
 
 namespace kreisel::detail {
 
-/// A sum and what rounding has taken from it (Kahan, Neumaier): over many steps the sum's error stays
-/// one rounding instead of growing with their number.
+/// A sum and what rounding has taken from it (Kahan, Neumaier): over many steps the sum's error
+/// stays one rounding instead of growing with their number.
 template <class T>
 struct Compensated {
   T value;

@@ -10,12 +10,12 @@ namespace kreisel {
 /// Which way through zero counts.
 enum class Crossing { any, rising, falling };
 
-/// Integrates until g(t, y) changes its sign, or to `end`. Returns the time of the crossing, at which
-/// the integration then stands and may go on; nothing when `end` is reached first.
+/// Integrates until g(t, y) changes its sign, or to `end`. Returns the time of the crossing, at
+/// which the integration then stands and may go on; nothing when `end` is reached first.
 ///
-/// The integration stands just behind the crossing, where g has its new sign: the next call finds the
-/// next one, and a zero of g at the start does not count. A g that touches zero without crossing is
-/// no event, nor are two crossings within a sixteenth of a step.
+/// The integration stands just behind the crossing, where g has its new sign: the next call finds
+/// the next one, and a zero of g at the start does not count. A g that touches zero without
+/// crossing is no event, nor are two crossings within a sixteenth of a step.
 ///
 /// Steps  : has step_towards, t, y, at and back_to, as ExplicitSteps
 /// Error  : of the time 4 units in its last place beside that of the trajectory

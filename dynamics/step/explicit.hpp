@@ -7,14 +7,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <sstream>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <dynamics/step/compensated.hpp>
+#include <dynamics/step/shared.hpp>
 #include <dynamics/step/verner.hpp>
-#include <motor/error.hpp>
 
 namespace kreisel {
 
@@ -41,18 +39,19 @@ struct Effort {
 /// Explicit Runge-Kutta integration of  y' = field(t, y)  with adaptive steps.
 ///
 /// State and time are added up with compensation, so that rounding does not grow with the number of
-/// steps. A step whose result is not finite is rejected and shortened like one that errs too much, so
-/// a field that only exists in a region is not left; the last good time and state stay readable.
+/// steps. A step whose result is not finite is rejected and shortened like one that errs too much,
+/// so a field that only exists in a region is not left; the last good time and state stay readable.
 ///
 /// Output between the ends of a step is of the method's full order and does not disturb the steps:
-/// at() takes a part of the last step anew (16 evaluations); from the third output in one step on it
-/// reads a polynomial through five such points and their derivatives (51 evaluations a step in all).
+/// at() takes a part of the last step anew (16 evaluations); from the third output in one step on
+/// it reads a polynomial through five such points and their derivatives (51 evaluations a step in
+/// all).
 ///
 /// Field  : callable (S t, Vector y) -> Vector, Vector = Eigen::Matrix<S, n, 1>
 /// Blocks : how many components, in turn, share a unit and a size, e.g. {4, 3} for a quaternion and
 ///          an angular velocity; one block by default
-/// Source : Verner's tableau; step control (PI): E. Hairer, G. Wanner, Solving Ordinary Differential
-///          Equations II, IV.2
+/// Source : Verner's tableau; step control (PI): E. Hairer, G. Wanner, Solving Ordinary
+///          Differential Equations II, IV.2
 /// Cost   : 16 evaluations a step
 /// Throws : InvalidInput for an accuracy out of range or a start that is not finite;
 ///          ComputationFailed naming the time where steps become too short or too many
@@ -70,20 +69,21 @@ class ExplicitSteps {
         state_{y, zero(y)},
         before_{time_, state_, zero(y)} {
     if (!(accuracy.relative >= 1e-16 && accuracy.relative <= 1e-2)) {
-      refuse("accuracy.relative = ", accuracy.relative,
-             " lies outside [1e-16, 1e-2], what steps in double precision can keep");
+      detail::refuse_steps("accuracy.relative = ", accuracy.relative,
+                           " lies outside [1e-16, 1e-2], what steps in double precision can keep");
     }
     if (!(accuracy.smallest >= 0)) {
-      refuse("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
+      detail::refuse_steps("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
     }
-    if (!std::isfinite(static_cast<double>(t))) refuse("the start time is not finite");
-    if (!(y - y).isZero(Scalar(0))) refuse("the state at the start is not finite");
+    if (!std::isfinite(static_cast<double>(t)))
+      detail::refuse_steps("the start time is not finite");
+    if (!(y - y).isZero(Scalar(0))) detail::refuse_steps("the state at the start is not finite");
+    detail::require_blocks(blocks, static_cast<int>(y.size()));
     int begin = 0;
     for (const int size : blocks) {
       blocks_[blocks_used_++] = {begin, size, Scalar(0)};
       begin += size;
     }
-    if (begin != y.size()) refuse("blocks of ", begin, " components for a state of ", y.size());
     note_size(y);
   }
 
@@ -104,11 +104,13 @@ class ExplicitSteps {
   /// One step towards `end`, not past it.
   void step_towards(const Scalar& end) {
     using std::abs;
-    if (!std::isfinite(static_cast<double>(end))) refuse("the end time is not finite");
+    if (!std::isfinite(static_cast<double>(end)))
+      detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
     const Scalar goal = next_stop(end);
     stage_[0] = evaluate(t(), y());
-    if (!(stage_[0] - stage_[0]).isZero(Scalar(0))) give_up("the field is not finite");
+    if (!(stage_[0] - stage_[0]).isZero(Scalar(0)))
+      detail::stop_integration(t(), "the field is not finite");
     if (step_ == Scalar(0)) step_ = first_step();
     before_ = {time_, state_, stage_[0]};
     dense_points_ = 0;
@@ -138,7 +140,8 @@ class ExplicitSteps {
   [[nodiscard]] Vector at(const Scalar& time) {
     const Scalar& from = before_.time.value;
     if (!covers(time)) {
-      refuse("t = ", time, " s lies outside the last step, [", from, ", ", t(), "] s");
+      detail::refuse_steps("t = ", time, " s lies outside the last step, [", from, ", ", t(),
+                           "] s");
     }
     if (time == t()) return y();
     if (time == from) return before_.state.value;
@@ -176,23 +179,6 @@ class ExplicitSteps {
   static constexpr std::size_t nodes = 5;
 
   static Vector zero(const Vector& y) { return Vector::Zero(y.size()); }
-
-  template <class... Words>
-  [[noreturn]] static void refuse(const Words&... words) {
-    std::ostringstream text;
-    text.precision(10);
-    (text << ... << words);
-    throw InvalidInput(text.str());
-  }
-
-  template <class... Words>
-  [[noreturn]] void give_up(const Words&... words) const {
-    std::ostringstream text;
-    text.precision(17);
-    text << "integration stopped at t = " << t() << " s: ";
-    (text << ... << words);
-    throw ComputationFailed(text.str());
-  }
 
   [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
     effort_.evaluations += 1;
@@ -279,10 +265,10 @@ class ExplicitSteps {
     using std::max;
     using std::pow;
     if (abs(h) <= Scalar(4) * std::numeric_limits<Scalar>::epsilon() * abs(t()) || h == Scalar(0)) {
-      give_up("the step has become too short to move time on");
+      detail::stop_integration(t(), "the step has become too short to move time on");
     }
     if (effort_.evaluations > accuracy_.most_evaluations) {
-      give_up(accuracy_.most_evaluations, " evaluations are spent");
+      detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
     fill_stages(time_, state_, h, AllButFirst());
     const Vector change = h * combined<Tableau::b>();

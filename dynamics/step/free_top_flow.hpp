@@ -6,7 +6,7 @@
 #include <concepts>
 
 #include <dynamics/inertia.hpp>
-#include <dynamics/step/fixed.hpp>
+#include <dynamics/step/shared.hpp>
 #include <motor/motor.hpp>
 
 namespace kreisel {

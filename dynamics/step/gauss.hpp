@@ -10,7 +10,7 @@
 #include <utility>
 
 #include <dynamics/step/explicit.hpp>
-#include <dynamics/step/fixed.hpp>
+#include <dynamics/step/shared.hpp>
 
 namespace kreisel {
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
 #include <algorithm>
@@ -14,8 +13,9 @@
 #include <utility>
 
 #include <dynamics/step/explicit.hpp>
-#include <dynamics/step/fixed.hpp>
+#include <dynamics/step/gsl_errors.hpp>
 #include <dynamics/step/jacobian.hpp>
+#include <dynamics/step/shared.hpp>
 
 namespace kreisel {
 
@@ -27,19 +27,6 @@ enum class GslMethod { rkf45, rk8pd, msadams, msbdf, bsimp };
 struct NoJacobian {};
 
 namespace detail {
-
-/// While it lives, GSL returns its error codes instead of ending the program. GSL keeps one handler
-/// for all threads.
-class GslHandlerOff {
- public:
-  GslHandlerOff() : previous_(gsl_set_error_handler_off()) {}
-  ~GslHandlerOff() { gsl_set_error_handler(previous_); }
-  GslHandlerOff(const GslHandlerOff&) = delete;
-  GslHandlerOff& operator=(const GslHandlerOff&) = delete;
-
- private:
-  gsl_error_handler_t* previous_;
-};
 
 [[nodiscard]] inline const gsl_odeiv2_step_type* gsl_type(GslMethod method) {
   switch (method) {
@@ -200,7 +187,7 @@ class GslSteps {
       length_ = -length_;
       forget();
     }
-    const detail::GslHandlerOff handler_off;
+    const detail::GslErrorsReturned guard;
     while (t_ != end) take_step(end);
     return y_;
   }

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <dynamics/step/explicit.hpp>
-#include <dynamics/step/fixed.hpp>
 #include <dynamics/step/free_top_flow.hpp>
+#include <dynamics/step/shared.hpp>
 
 namespace kreisel {
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <dynamics/exact/pendulum.hpp>
+#include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/scene/pendulum_period.hpp>
 
 #include <support/near.hpp>
@@ -272,7 +273,7 @@ BOOST_AUTO_TEST_CASE(errors_become_exceptions_and_the_callers_handler_stays) {
       gsl_set_error_handler([](const char*, const char*, int, int) { ++calls; });
   BOOST_CHECK_EXCEPTION(
       {
-        const exact::detail::GslErrorsReturned guard;
+        const detail::GslErrorsReturned guard;
         gsl_sf_result result;
         exact::detail::require_success(gsl_sf_ellint_RF_e(-1, 1, 1, GSL_PREC_DOUBLE, &result),
                                        "integral of nothing");

@@ -184,7 +184,8 @@ BOOST_DATA_TEST_CASE(is_eulers_top_on_a_guide_at_rest, data::xrange(50u), seed) 
   const auto T = lopsided_body();
   const HeldBody body(T, {1, 2, 3}, RestingFrame<>{});
   const Vector3<double> u = sample.magnitude(-2, 2) * sample.direction();
-  const Vector3<double> du = body.acceleration(body.situation(0, {{}, u}));
+  const Vector3<double> du =
+      body.acceleration(body.situation(0, {Eigen::Quaterniond::Identity(), u}));
   const double size = 0.5 * u.squaredNorm();
   BOOST_TEST(near(euler_torque(T.value.tensor, u, du), Vector3<double>(0, 0, 0), size, 16));
 }

@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(err_by_the_square_of_the_motion) {
     decltype(linear)::State start;
     start.displacement = size * Vector3<double>(0.01, -0.02, 0.01);
     start.angles = size * Vector3<double>(0.03, 0.02, -0.04);
-    return linear_error(linear, start, 0, 0.5);
+    return linear_error(linear, start, 0, 0.2, 20);
   };
   const auto whole = error(1);
   const auto half = error(0.5);
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(err_by_the_square_of_the_motion) {
 // On an aircraft in a turn the engine follows, to the square of what it swings.
 BOOST_AUTO_TEST_CASE(describe_an_engine_on_an_aircraft) {
   const auto linear = engine(posed(aircraft), 2e5);
-  const auto error = linear_error(linear, {}, 0, 5);
+  const auto error = linear_error(linear, {}, 0, 1, 20);
   BOOST_TEST_MESSAGE("angles to " << error.greatest_angle << ": error " << error.angle << " rad, "
                                   << error.displacement << " m");
   BOOST_TEST(error.greatest_angle > 1e-4);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include <dynamics/exact/pendulum.hpp>
+#include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/step/gauss.hpp>
 
 #include <support/near.hpp>

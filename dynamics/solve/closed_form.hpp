@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <dynamics/exact/free_top.hpp>
+#include <dynamics/exact/gyrostat.hpp>
+#include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/scene/euler_top.hpp>
+
+namespace kreisel {
+
+/// A motion known in closed form: the state at any time, and how far it is off.
+template <class State>
+struct ClosedForm {
+  std::string name;
+  std::function<State(double)> at;
+  std::function<double(double)> error;  ///< by the measure of RunReport::error_estimate
+};
+
+/// The closed form of a top, where it has one: free of torque, Lagrange's, or a symmetric gyrostat.
+///
+/// Error  : the estimate is four roundings and what 64 bits leave of the angle turned through, as
+///          the tests of exact/ measure it
+[[nodiscard]] inline std::optional<ClosedForm<EulerTop::State>> closed_form(
+    const EulerTop& top, double begin, const EulerTop::State& start) {
+  const Vector3<double>& I = top.moments();
+  const Vector3<double>& k = top.weight_moment();
+  const Vector3<double>& h = top.rotor_momentum();
+  const auto& [q, w] = start;
+  const bool free = k.isZero(0);
+  const bool rotor = !h.isZero(0);
+  const bool symmetric = I.x() == I.y();
+  const auto along_z = [](const Vector3<double>& v) { return v.x() == 0 && v.y() == 0; };
+
+  const auto made = [&](const char* name, const auto& motion) {
+    // The angle of the momentum's turn: rate times time, in the inertia's least direction.
+    const double rate =
+        (I.cwiseProduct(w) + h).norm() / I.minCoeff() + std::sqrt(k.norm() / I.minCoeff());
+    return ClosedForm<EulerTop::State>{
+        name,
+        [motion, begin](double t) {
+          const exact::TopMotion m = motion.at(t - begin);
+          return EulerTop::State{m.attitude, m.angular_velocity};
+        },
+        [rate, begin](double t) {
+          constexpr double u = std::numeric_limits<double>::epsilon() / 2;
+          return 4 * u + 8 * double(std::numeric_limits<exact::Real>::epsilon()) * rate *
+                             std::abs(t - begin);
+        }};
+  };
+  if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));
+  if (free && symmetric && along_z(h)) {
+    return made("symmetric gyrostat", exact::SymmetricGyrostat(I.x(), I.z(), h.z(), w, q));
+  }
+  if (!rotor && symmetric && along_z(k) && k.z() > 0) {
+    return made("Lagrange's top, elliptic functions",
+                exact::LagrangeTop(I.x(), I.z(), k.z(), w, q));
+  }
+  return std::nullopt;
+}
+
+}  // namespace kreisel

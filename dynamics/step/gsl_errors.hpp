@@ -1,0 +1,20 @@
+#pragma once
+
+#include <gsl/gsl_errno.h>
+
+namespace kreisel::detail {
+
+/// While it lives, GSL returns its error codes instead of ending the program. GSL keeps one handler
+/// for all threads.
+class GslErrorsReturned {
+ public:
+  GslErrorsReturned() : previous_(gsl_set_error_handler_off()) {}
+  ~GslErrorsReturned() { gsl_set_error_handler(previous_); }
+  GslErrorsReturned(const GslErrorsReturned&) = delete;
+  GslErrorsReturned& operator=(const GslErrorsReturned&) = delete;
+
+ private:
+  gsl_error_handler_t* previous_;
+};
+
+}  // namespace kreisel::detail
