@@ -30,7 +30,8 @@ struct ClosedForm {
   const Vector3<double>& I = top.moments();
   const Vector3<double>& k = top.weight_moment();
   const Vector3<double>& h = top.rotor_momentum();
-  const auto& [q, w] = start;
+  const Eigen::Quaterniond& q = start.attitude;
+  const Vector3<double>& w = start.angular_velocity;
   const bool free = k.isZero(0);
   const bool rotor = !h.isZero(0);
   const bool symmetric = I.x() == I.y();
