@@ -220,20 +220,27 @@ class ExplicitSteps {
     return rate > Scalar(0) ? Scalar(Scalar(0.01) / rate) : Scalar(1);
   }
 
-  /// sum of c_j k_j over the stages, skipping what is 0.
-  template <const auto& row, std::size_t... j>
-  void accumulate(Vector& sum, std::index_sequence<j...>) const {
-    const auto add = [&]<std::size_t i>() {
-      if constexpr (row[i] != 0) sum += static_cast<Scalar>(row[i]) * stage_[i];
-    };
-    (add.template operator()<j>(), ...);
-  }
+  /// Where a row of coefficients is not 0.
+  template <const auto& row>
+  static constexpr auto occupied = [] {
+    constexpr auto count =
+        std::size_t(std::count_if(row.begin(), row.end(), [](auto c) { return c != 0; }));
+    std::array<std::size_t, count> places{};
+    std::size_t next = 0;
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (row[j] != 0) places[next++] = j;
+    }
+    return places;
+  }();
 
+  /// sum of c_j k_j over the stages, in one pass over the components and without what is 0.
   template <const auto& row>
   [[nodiscard]] Vector combined() const {
-    Vector sum = zero(y());
-    accumulate<row>(sum, std::make_index_sequence<Tableau::stages>());
-    return sum;
+    constexpr auto& places = occupied<row>;
+    return [this]<std::size_t... k>(std::index_sequence<k...>)->Vector {
+      return ((static_cast<Scalar>(row[places[k]]) * stage_[places[k]]) + ...);
+    }
+    (std::make_index_sequence<places.size()>());
   }
 
   template <std::size_t i>
@@ -244,14 +251,12 @@ class ExplicitSteps {
   void fill_stages(const Compensated<Scalar>& time, const Compensated<Vector>& state,
                    const Scalar& h, std::index_sequence<i...>) {
     const auto fill = [&]<std::size_t k>() {
-      Vector sum = zero(state.value);
-      accumulate<row<k>>(sum, std::make_index_sequence<k>());
       const Scalar c = static_cast<Scalar>(Tableau::node[k]);
       const Scalar stage_time = time.value + (c * h + time.rest);
       const bool late =
           h > Scalar(0) ? stage_time > last_stage_time_ : stage_time < last_stage_time_;
-      stage_[k] =
-          evaluate(late ? last_stage_time_ : stage_time, state.value + (h * sum + state.rest));
+      stage_[k] = evaluate(late ? last_stage_time_ : stage_time,
+                           state.value + (h * combined<row<k>>() + state.rest));
     };
     (fill.template operator()<i + 1>(), ...);
   }
