@@ -400,7 +400,7 @@ void draw(const std::string& dir, const std::vector<Point>& points) {
         "set terminal svg size 900,600 font 'Helvetica,13' background 'white'\n"
         "set output '{}/{}.svg'\nset logscale xy\nset xrange [1e-1:1e-16] reverse\n"
         "set format x '10^{{%T}}'\nset format y '10^{{%T}}'\n"
-        "set xlabel 'error (rad, relative)'\nset ylabel 'CPU time, ms'\nset title '{}'\n"
+        "set xlabel 'error (rad, relative)'\nset ylabel 'CPU time, ms'\nset title '{}' noenhanced\n"
         "set grid lc rgb '#dddddd'\nset key outside right\n{}\n",
         dir, scene, scene, plot);
     out.close();

@@ -21,7 +21,8 @@ struct ClosedForm {
   std::function<double(double)> error;  ///< by the measure of RunReport::error_estimate
 };
 
-/// The closed form of a top, where it has one: free of torque, Lagrange's, or a symmetric gyrostat.
+/// The closed form of a top, where it has one: free of torque, Lagrange's, or a
+/// gyrostat whose rotor lies on a principal axis.
 ///
 /// Error  : the estimate is four roundings and what 64 bits leave of the angle turned through, as
 ///          the tests of exact/ measure it
@@ -54,8 +55,9 @@ struct ClosedForm {
         }};
   };
   if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));
-  if (free && symmetric && along_z(h)) {
-    return made("symmetric gyrostat", exact::SymmetricGyrostat(I.x(), I.z(), h.z(), w, q));
+  const bool rotor_on_an_axis = (h.array() != 0).count() == 1;
+  if (free && rotor_on_an_axis) {
+    return made("gyrostat, elliptic functions", exact::Gyrostat(I, h, w, q));
   }
   if (!rotor && symmetric && along_z(k) && k.z() > 0) {
     return made("Lagrange's top, elliptic functions",

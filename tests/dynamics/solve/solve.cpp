@@ -124,6 +124,8 @@ BOOST_AUTO_TEST_CASE(takes_the_closed_form_where_there_is_one) {
   check(EulerTop({2, 2, 3}, {0, 0, 5}), w, exact::LagrangeTop(2, 3, 5, w, tilted));
   check(EulerTop({2, 2, 3}, {0, 0, 0}, {0, 0, 0.5}), w,
         exact::SymmetricGyrostat(2, 3, 0.5, w, tilted));
+  check(EulerTop({1, 2, 2.5}, {0, 0, 0}, {0, 0.5, 0}), w,
+        exact::Gyrostat({1, 2, 2.5}, {0, 0.5, 0}, w, tilted));
   // Begun at another time, the same motion later.
   const EulerTop top({1, 2, 3});
   const auto later = solve(top, {tilted, w}, {.begin = 1000, .times = {1010}});
