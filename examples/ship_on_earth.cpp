@@ -9,7 +9,7 @@
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/scene/earth_gravitation.hpp>
 #include <dynamics/scene/held_body.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/solve/solve.hpp>
 #include <motor/attitude.hpp>
 
 // A pendulum hangs in a ball joint above the deck of a ship that rolls in a swell, on the turning
@@ -34,7 +34,7 @@ void print(const char* name, const Motor<double>& P) {
   fmt::print("  {:<10}{:13.9f}{:13.9f}{:13.9f}\n", name, P.moment.x(), P.moment.y(), P.moment.z());
 }
 
-void run() {
+void swing() {
   const EarthSite<double> berth{.latitude = 53.5, .azimuth = 90};
   const Chain ship(earth_frame<Earth>(berth), posed<Guide, Earth>(swell));
 
@@ -43,25 +43,26 @@ void run() {
       2, {0.5, 0, 0}, Matrix3<double>(Vector3<double>(1e-3, 1.0 / 6, 1.0 / 6).asDiagonal()));
   const HeldBody pendulum(rod, {-4, 0, 0}, ship, EarthGravitation{}, ViscousDrag<>{0.02});
 
-  Advance swing(pendulum, 0, {});
-  for (const double t : {0.0, 5.0, 10.0}) {
-    const auto r = pendulum.read_out(t, swing.to(t));
+  const auto run = solve(pendulum, {}, {.times = {0, 5, 10}, .tolerance = 1e-10});
+  for (std::size_t i = 0; i < run.times.size(); ++i) {
+    const auto r = pendulum.read_out(run.times[i], run.states[i]);
     const Vector3<double> force = r.reaction.value.resultant;
-    fmt::print("t = {:.0f} s, torque about the joint on the rod's axes, N m\n", t);
+    fmt::print("t = {:.0f} s, torque about the joint on the rod's axes, N m\n", run.times[i]);
     print("relative", r.parts.relative.value);
     print("guide", r.parts.guide.value);
     print("Coriolis", r.parts.coriolis.value);
     print("loads", r.applied.value);
     fmt::print("  the joint bears {:.6f} N\n", force.norm());
   }
-  fmt::print("{:.0f} evaluations\n", swing.effort().evaluations);
+  fmt::print("error below {:.0e} rad, {:.0f} evaluations\n", run.report.error_estimate,
+             run.report.all_evaluations);
 }
 
 }  // namespace
 
 int main() {
   try {
-    run();
+    swing();
   } catch (const std::exception& error) {
     fmt::print(stderr, "ship_on_earth: {}\n", error.what());
     return 3;
