@@ -18,16 +18,18 @@ struct LinearError {
   double greatest_angle = 0;  ///< of the linear motion: the errors are of its second order
 };
 
-/// Runs a linear scene and the exact one it approximates side by side from t_begin to t_end.
+/// Runs a linear scene and the exact one it approximates side by side from t_begin to t_end. The
+/// accuracy of the steps has to be finer than the error that is looked for.
 ///
 /// Scene  : has State with displacement and angles, exact() and exact_state(State)
 /// Throws : as Advance does
 template <class Linear>
 [[nodiscard]] LinearError linear_error(const Linear& linear, const typename Linear::State& start,
-                                       double t_begin, double t_end, int samples = 200) {
+                                       double t_begin, double t_end, int samples = 200,
+                                       const Accuracy& accuracy = {.relative = 1e-10}) {
   const auto exact = linear.exact();
-  Advance approximate(linear, t_begin, start);
-  Advance true_run(exact, t_begin, Linear::exact_state(start));
+  Advance approximate(linear, t_begin, start, accuracy);
+  Advance true_run(exact, t_begin, Linear::exact_state(start), accuracy);
   LinearError error;
   for (int i = 0; i <= samples; ++i) {
     const double t = t_begin + (t_end - t_begin) * i / samples;
