@@ -4,7 +4,8 @@
 
 namespace kreisel {
 
-/// A frame that rests in another: u = v = 0.
+/// A frame that rests in another: u = v = 0. Exact; all kinds at rest give the same numbers as this
+/// one (tests/dynamics/scene/held_body.cpp).
 template <class G = Guide, class I = Inertial, class S = double>
 struct RestingFrame {
   Displacement<I, G, S> X = {};  ///< where it rests

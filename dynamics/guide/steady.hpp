@@ -8,6 +8,10 @@ namespace kreisel {
 /// on a circular orbit.
 ///
 ///   X(t) = exp(V t) X(0),   V = (u; v) written in I;  on G's axes V is constant too, so oF = 0.
+///
+/// Source : the exponential map of SE(3); paper 002 section 5 has the earth so
+/// Units  : metre, rad/s, m/s, second
+/// Error  : <= 32u of |u| and lengths up to some turns     (tests/dynamics/guide/kinds.cpp)
 template <class G = Guide, class I = Inertial, class S = double>
 struct SteadyFrame {
   Displacement<I, G, S> X = {};  ///< at t = 0

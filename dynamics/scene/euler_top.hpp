@@ -31,8 +31,8 @@ struct TopInvariants {
 ///
 ///   Theta w' + w x (Theta w + h) = -k x gamma,   gamma = the vertical on body axes
 ///
-/// HeldBody has the same and more, on a guide that moves; this one knows that nothing does, takes
-/// principal axes, and costs a third.
+/// HeldBody has the same and more, on a guide that moves; this one knows that nothing does, and
+/// takes principal axes.
 ///
 /// Source : L. Euler; Lagrange; S. Kovalevskaya, Acta Math. 12 (1889) 177, whose invariant is named
 ///          after her; paper 002 section 4 (the case V' = V); gyrostat: paper 000

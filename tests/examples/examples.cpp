@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(euler_top_stays_near_the_closed_form_and_draws) {
   std::getline(all, line);  // the heading
   int rows = 0;
   for (double t = 0, p = 0, q = 0, r = 0, off = 0; all >> t >> p >> q >> r >> off; ++rows) {
-    BOOST_TEST(off < 2e-9);  // the separatrix multiplies rounding by 1e7
+    BOOST_TEST(off < 1e-9);  // near the separatrix rounding grows by 1e6 and more
     BOOST_TEST(std::abs(p * p + 4 * q * q + 9 * r * r - 16.00001) < 2e-5);  // L^2, six decimals
   }
   BOOST_TEST(rows == 13);
