@@ -3,11 +3,13 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cmath>
 #include <complex>
 #include <utility>
 #include <vector>
 
 #include <dynamics/inertia.hpp>
+#include <motor/attitude.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -54,7 +56,12 @@ class EulerTop {
   /// h, the rotor's inertia times its relative speed (its inertia belongs to `moments` as well).
   explicit EulerTop(const Vector3<S>& moments, const Vector3<S>& weight_moment = Vector3<S>::Zero(),
                     const Vector3<S>& rotor_momentum = Vector3<S>::Zero())
-      : moments_(moments), weight_moment_(weight_moment), rotor_momentum_(rotor_momentum) {
+      : moments_(moments),
+        weight_moment_(weight_moment),
+        rotor_momentum_(rotor_momentum),
+        heavy_(!weight_moment.isZero(0)),
+        has_rotor_(!rotor_momentum.isZero(0)),
+        inverse_(moments.cwiseInverse()) {
     check(Inertia<S>{0, Vector3<S>::Zero(), {moments.x(), moments.y(), moments.z()}},
           Mass::zero_allowed, "Euler top");
     if (!(moments.minCoeff() > 0)) {
@@ -66,6 +73,9 @@ class EulerTop {
         !(rotor_momentum - rotor_momentum).isZero(0)) {
       throw InvalidInput("Euler top: weight moment or rotor momentum is not finite");
     }
+    for (int i = 0; i < 3; ++i) {
+      inverse_rest_[i] = -std::fma(moments[i], inverse_[i], S(-1)) * inverse_[i];
+    }
   }
 
   [[nodiscard]] const Vector3<S>& moments() const { return moments_; }
@@ -75,16 +85,15 @@ class EulerTop {
   /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; w).
   [[nodiscard]] Vector rates(const S& /*t*/, const Vector& y) const {
     const auto [q, w] = from_vector(y);
-    const Vector3<S> half = w / 2;
     // Differences of moments come first: exact where two of them agree, so that a symmetric top
     // keeps its spin to the last bit.
-    const auto& [A, B, C] = std::array{moments_.x(), moments_.y(), moments_.z()};
-    const Vector3<S> torque =
-        Vector3<S>((B - C) * w.y() * w.z(), (C - A) * w.z() * w.x(), (A - B) * w.x() * w.y()) +
-        rotor_momentum_.cross(w) - weight_moment_.cross(vertical(q));
-    return (Vector() << (q * Eigen::Quaternion<S>(0, half.x(), half.y(), half.z())).coeffs(),
-            torque.cwiseQuotient(moments_))
-        .finished();
+    const S A = moments_.x(), B = moments_.y(), C = moments_.z();
+    Vector3<S> torque((B - C) * w.y() * w.z(), (C - A) * w.z() * w.x(), (A - B) * w.x() * w.y());
+    if (heavy_) torque -= weight_moment_.cross(vertical(q));
+    if (has_rotor_) torque += rotor_momentum_.cross(w);
+    const Eigen::Vector4d dq = attitude_rate(q, w);
+    const auto turn = [&](int i) { return torque[i] * inverse_[i] + torque[i] * inverse_rest_[i]; };
+    return Vector(dq[0], dq[1], dq[2], dq[3], turn(0), turn(1), turn(2));
   }
 
   [[nodiscard]] TopInvariants<S> invariants(const State& state) const {
@@ -133,13 +142,18 @@ class EulerTop {
   /// Inertial z on body axes, the last row of the rotation.
   [[nodiscard]] static Vector3<S> vertical(const Eigen::Quaternion<S>& q) {
     const S x = q.x(), y = q.y(), z = q.z(), w = q.w();
-    return Vector3<S>(2 * (x * z - w * y), 2 * (y * z + w * x), w * w + z * z - x * x - y * y) /
-           q.squaredNorm();
+    const S scale = 1 / (x * x + y * y + z * z + w * w);
+    return {2 * scale * (x * z - w * y), 2 * scale * (y * z + w * x),
+            scale * (w * w + z * z - x * x - y * y)};
   }
 
   Vector3<S> moments_;
   Vector3<S> weight_moment_;
   Vector3<S> rotor_momentum_;
+  bool heavy_;
+  bool has_rotor_;
+  Vector3<S> inverse_;
+  Vector3<S> inverse_rest_;  ///< what the rounded inverses lack: else a long run would show it
 };
 
 }  // namespace kreisel

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <dynamics/scene/read_out.hpp>
+#include <motor/attitude.hpp>
 
 namespace kreisel {
 
@@ -57,11 +58,10 @@ class FreeBody {
     const State state = from_vector(y);
     const Situation<S> s = situation(t, state);
     const auto& [u, v] = state.velocity.value;
-    const Vector3<S> half = u / 2;
-    const Eigen::Quaternion<S> dq =
-        state.attitude * Eigen::Quaternion<S>(0, half.x(), half.y(), half.z());
     const Motor<S> dV = acceleration(s).value;
-    return (Vector() << dq.coeffs(), s.X.value.rotation * v, dV.resultant, dV.moment).finished();
+    return (Vector() << attitude_rate(state.attitude, u), s.X.value.rotation * v, dV.resultant,
+            dV.moment)
+        .finished();
   }
 
   [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {

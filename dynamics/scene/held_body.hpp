@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <dynamics/scene/read_out.hpp>
+#include <motor/attitude.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -81,10 +82,9 @@ class HeldBody {
   /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; u').
   [[nodiscard]] Vector rates(const S& t, const Vector& y) const {
     const State state = from_vector(y);
-    const Vector3<S> half = state.angular_velocity / 2;
-    const Eigen::Quaternion<S> dq =
-        state.attitude * Eigen::Quaternion<S>(0, half.x(), half.y(), half.z());
-    return (Vector() << dq.coeffs(), acceleration(situation(t, state))).finished();
+    const Eigen::Vector4d dq = attitude_rate(state.attitude, state.angular_velocity);
+    const Vector3<S> du = acceleration(situation(t, state));
+    return Vector(dq[0], dq[1], dq[2], dq[3], du[0], du[1], du[2]);
   }
 
   [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {

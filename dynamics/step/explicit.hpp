@@ -108,11 +108,11 @@ class ExplicitSteps {
       detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
     const Scalar goal = next_stop(end);
-    stage_[0] = evaluate(t(), y());
+    fill_stage(0, t(), y());
     if (!(stage_[0] - stage_[0]).isZero(Scalar(0)))
       detail::stop_integration(t(), "the field is not finite");
     if (step_ == Scalar(0)) step_ = first_step();
-    before_ = {time_, state_, stage_[0]};
+    before_ = {time_, state_, unpadded(stage_[0])};
     dense_points_ = 0;
     while (true) {
       const Scalar left = (goal - time_.value) - time_.rest;
@@ -178,11 +178,22 @@ class ExplicitSteps {
 
   static constexpr std::size_t nodes = 5;
 
+  static constexpr int components = int(Vector::RowsAtCompileTime);
+
+  /// Stages are filled up with zeros to whole packets of 4: 7 numbers would be added one by one.
+  static constexpr int padded = components < 3 ? components : (components + 3) / 4 * 4;
+  using Stage = Eigen::Matrix<Scalar, padded, 1>;
+
   static Vector zero(const Vector& y) { return Vector::Zero(y.size()); }
 
   [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
     effort_.evaluations += 1;
     return field_(t, y);
+  }
+
+  void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
+    const Vector f = evaluate(t, y);
+    for (int i = 0; i < components; ++i) stage_[k][i] = f[i];
   }
 
   /// The end, or the first jump on the way to it.
@@ -215,7 +226,7 @@ class ExplicitSteps {
   [[nodiscard]] Scalar first_step() const {
     Scalar rate(0);
     for (std::size_t i = 0; i < blocks_used_; ++i) {
-      rate = std::max(rate, Scalar(norm(stage_[0], blocks_[i]) / scale(blocks_[i])));
+      rate = std::max(rate, Scalar(norm(unpadded(stage_[0]), blocks_[i]) / scale(blocks_[i])));
     }
     return rate > Scalar(0) ? Scalar(Scalar(0.01) / rate) : Scalar(1);
   }
@@ -233,18 +244,36 @@ class ExplicitSteps {
     return places;
   }();
 
-  /// sum of c_j k_j over the stages, in one pass over the components and without what is 0.
-  template <const auto& row>
-  [[nodiscard]] Vector combined() const {
+  /// sum of c_j k_j over the stages, in one pass over the components and without what is 0; without
+  /// the last term or with it.
+  template <const auto& row, std::size_t without_last = 0>
+  [[nodiscard]] Stage combined() const {
     constexpr auto& places = occupied<row>;
-    return [this]<std::size_t... k>(std::index_sequence<k...>)->Vector {
-      return ((static_cast<Scalar>(row[places[k]]) * stage_[places[k]]) + ...);
+    if constexpr (places.size() == without_last) {
+      return Stage::Zero();
+    } else {
+      return [this]<std::size_t... k>(std::index_sequence<k...>)->Stage {
+        return (... + (static_cast<Scalar>(row[places[k]]) * stage_[places[k]]));
+      }
+      (std::make_index_sequence<places.size() - without_last>());
     }
-    (std::make_index_sequence<places.size()>());
   }
 
   template <std::size_t i>
   static constexpr auto row = Tableau::a[i];
+
+  [[nodiscard]] static Vector unpadded(const Stage& v) { return v.template head<components>(); }
+
+  [[nodiscard]] static std::array<Stage, Tableau::stages> zero_stages() {
+    std::array<Stage, Tableau::stages> zeros;
+    zeros.fill(Stage::Zero());
+    return zeros;
+  }
+
+  [[nodiscard]] static Vector moved(const Compensated<Vector>& from, const Scalar& h,
+                                    const Stage& rate) {
+    return from.value + (h * unpadded(rate) + from.rest);
+  }
 
   /// All stages but the first of a step of length h.
   template <std::size_t... i>
@@ -255,8 +284,11 @@ class ExplicitSteps {
       const Scalar stage_time = time.value + (c * h + time.rest);
       const bool late =
           h > Scalar(0) ? stage_time > last_stage_time_ : stage_time < last_stage_time_;
-      stage_[k] = evaluate(late ? last_stage_time_ : stage_time,
-                           state.value + (h * combined<row<k>>() + state.rest));
+      // Only the last stage is waited for.
+      constexpr std::size_t last = occupied<row<k>>.back();
+      const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
+      const Vector before = moved(state, h, combined<row<k>, 1>());
+      fill_stage(k, late ? last_stage_time_ : stage_time, before + weight * unpadded(stage_[last]));
     };
     (fill.template operator()<i + 1>(), ...);
   }
@@ -276,8 +308,8 @@ class ExplicitSteps {
       detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
     fill_stages(time_, state_, h, AllButFirst());
-    const Vector change = h * combined<Tableau::b>();
-    const Vector error = combined<Tableau::difference>();
+    const Vector change = h * unpadded(combined<Tableau::b>());
+    const Vector error = unpadded(combined<Tableau::difference>());
     Scalar worst(0);  // in units of what is allowed
     for (std::size_t i = 0; i < blocks_used_; ++i) {
       const Block& block = blocks_[i];
@@ -311,9 +343,9 @@ class ExplicitSteps {
   /// The last step taken anew up to a time within it: of full order.
   [[nodiscard]] Vector part_of_step(const Scalar& time) {
     const Scalar h = (time - before_.time.value) - before_.time.rest;
-    stage_[0] = before_.rate;
+    for (int i = 0; i < components; ++i) stage_[0][i] = before_.rate[i];
     fill_stages(before_.time, before_.state, h, AllButFirst());
-    return before_.state.value + (h * combined<Tableau::b>() + before_.state.rest);
+    return moved(before_.state, h, combined<Tableau::b>());
   }
 
   [[nodiscard]] Scalar node_time(std::size_t i) const {
@@ -369,7 +401,7 @@ class ExplicitSteps {
   Compensated<Vector> state_;
   Scalar step_ = Scalar(0);
   Scalar worst_before_ = Scalar(1);
-  std::array<Vector, Tableau::stages> stage_ = {};
+  std::array<Stage, Tableau::stages> stage_ = zero_stages();
   std::array<Block, 8> blocks_ = {};
   std::size_t blocks_used_ = 0;
   std::vector<Scalar> jumps_;
