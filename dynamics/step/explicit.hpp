@@ -10,31 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/compensated.hpp>
 #include <dynamics/step/shared.hpp>
 #include <dynamics/step/verner.hpp>
 
 namespace kreisel {
-
-/// How exact an integration is to be.
-struct Accuracy {
-  /// Of the error made in one step, relative to each block of the state; 1e-16 to 1e-2.
-  double relative = 1e-14;
-
-  /// A block smaller than this (in its SI unit) counts as being so large. Set it to the size of the
-  /// signal where that is smaller.
-  double smallest = 1e-3;
-
-  /// Evaluations of the field after which the integration gives up.
-  double most_evaluations = 1e8;
-};
-
-/// What an integration has cost so far.
-struct Effort {
-  double steps = 0;
-  double rejected = 0;
-  double evaluations = 0;
-};
 
 /// Explicit Runge-Kutta integration of  y' = field(t, y)  with adaptive steps.
 ///
@@ -67,29 +48,25 @@ class ExplicitSteps {
         accuracy_(accuracy),
         time_{t, Scalar(0)},
         state_{y, zero(y)},
+        allowed_(accuracy.relative),
+        sizes_(blocks, Scalar(accuracy.smallest), y),
         before_{time_, state_, zero(y)} {
-    if (!(accuracy.relative >= 1e-16 && accuracy.relative <= 1e-2)) {
-      detail::refuse_steps("accuracy.relative = ", accuracy.relative,
-                           " lies outside [1e-16, 1e-2], what steps in double precision can keep");
-    }
-    if (!(accuracy.smallest >= 0)) {
-      detail::refuse_steps("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
-    }
+    detail::check(accuracy);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
     if (!(y - y).isZero(Scalar(0))) detail::refuse_steps("the state at the start is not finite");
-    detail::require_blocks(blocks, static_cast<int>(y.size()));
-    int begin = 0;
-    for (const int size : blocks) {
-      blocks_[blocks_used_++] = {begin, size, Scalar(0)};
-      begin += size;
-    }
-    note_size(y);
   }
 
   [[nodiscard]] const Scalar& t() const { return time_.value; }
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
+
+  /// Whether the last 20 steps that were looked at were as short as they were because the field is
+  /// stiff, not because the solution bends: then RadauSteps is the better choice. Every eighth is.
+  ///
+  /// Source : Hairer, Wanner, Solving Ordinary Differential Equations II, IV.2: the field's greatest
+  ///          rate, from two stages at the same time, against what the method is stable for
+  [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
   /// Times at which the field jumps (a thrust that sets in, a guide that is jerked), in any order.
   /// Steps end there exactly and see the field of their own side only.
@@ -107,18 +84,18 @@ class ExplicitSteps {
     if (!std::isfinite(static_cast<double>(end)))
       detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
-    const Scalar goal = next_stop(end);
-    fill_stage(0, t(), y());
+    const Scalar goal = detail::next_stop(t(), end, jumps_);
+    fill_stage(0, detail::on_this_side(t(), goal, jumps_), y());
     if (!(stage_[0] - stage_[0]).isZero(Scalar(0)))
       detail::stop_integration(t(), "the field is not finite");
-    if (step_ == Scalar(0)) step_ = first_step();
+    if (step_ == Scalar(0)) step_ = sizes_.first_step(unpadded(stage_[0]));
     before_ = {time_, state_, unpadded(stage_[0])};
     dense_points_ = 0;
     while (true) {
       const Scalar left = (goal - time_.value) - time_.rest;
       const bool last = abs(left) <= abs(step_);
       const Scalar wanted = step_;
-      last_stage_time_ = goal == end ? goal : std::nextafter(goal, t());
+      last_stage_time_ = detail::on_this_side(goal, t(), jumps_);
       if (!attempt(last ? left : std::copysign(step_, left))) continue;
       if (last) {
         time_ = {goal, Scalar(0)};
@@ -163,17 +140,18 @@ class ExplicitSteps {
   template <class T>
   using Compensated = detail::Compensated<T>;
 
-  struct Block {
-    int begin;
-    int size;
-    Scalar scale;
-  };
-
   /// Where a step began, and the field there.
   struct Begin {
     Compensated<Scalar> time;
     Compensated<Vector> state;
     Vector rate;
+  };
+
+  /// The last try at this step, if it did not stand.
+  struct Rejected {
+    Scalar step = Scalar(0);
+    Scalar worst = Scalar(0);
+    int in_vain = 0;
   };
 
   static constexpr std::size_t nodes = 5;
@@ -194,41 +172,6 @@ class ExplicitSteps {
   void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
     const Vector f = evaluate(t, y);
     for (int i = 0; i < components; ++i) stage_[k][i] = f[i];
-  }
-
-  /// The end, or the first jump on the way to it.
-  [[nodiscard]] Scalar next_stop(const Scalar& end) const {
-    Scalar next = end;
-    for (const Scalar& jump : jumps_) {
-      const bool on_the_way = t() < end ? t() < jump && jump < next : next < jump && jump < t();
-      if (on_the_way) next = jump;
-    }
-    return next;
-  }
-
-  [[nodiscard]] Scalar norm(const Vector& v, const Block& block) const {
-    Scalar sum(0);  // a loop, because g++ 12 sees v.segment().norm() read past the end of v
-    for (int i = block.begin; i < block.begin + block.size; ++i) sum += v[i] * v[i];
-    return std::sqrt(sum);
-  }
-
-  void note_size(const Vector& y) {
-    for (std::size_t i = 0; i < blocks_used_; ++i) {
-      blocks_[i].scale = std::max(blocks_[i].scale, norm(y, blocks_[i]));
-    }
-  }
-
-  [[nodiscard]] Scalar scale(const Block& block) const {
-    return std::max(block.scale, Scalar(accuracy_.smallest));
-  }
-
-  /// A hundredth of the time in which a block changes by its own size.
-  [[nodiscard]] Scalar first_step() const {
-    Scalar rate(0);
-    for (std::size_t i = 0; i < blocks_used_; ++i) {
-      rate = std::max(rate, Scalar(norm(unpadded(stage_[0]), blocks_[i]) / scale(blocks_[i])));
-    }
-    return rate > Scalar(0) ? Scalar(Scalar(0.01) / rate) : Scalar(1);
   }
 
   /// Where a row of coefficients is not 0.
@@ -310,21 +253,18 @@ class ExplicitSteps {
     fill_stages(time_, state_, h, AllButFirst());
     const Vector change = h * unpadded(combined<Tableau::b>());
     const Vector error = unpadded(combined<Tableau::difference>());
-    Scalar worst(0);  // in units of what is allowed
-    for (std::size_t i = 0; i < blocks_used_; ++i) {
-      const Block& block = blocks_[i];
-      const Scalar size = max(scale(block), Scalar(norm(change, block)));
-      const Scalar ratio = abs(h) * norm(error, block) / (Scalar(accuracy_.relative) * size);
-      worst = ratio <= worst || worst != worst ? worst : ratio;  // a NaN stays
-    }
+    // In units of what is allowed.
+    const Scalar worst = sizes_.relative(h * error, change) / allowed_;
     const bool finite = isfinite(static_cast<double>(worst)) && (change - change).isZero(Scalar(0));
     if (!finite || worst > Scalar(1)) {
       const Scalar aim =
           finite ? Scalar(0.9) * pow(worst, Scalar(-1) / Tableau::order) : Scalar(0.125);
       step_ = abs(h) * max(aim, Scalar(0.125));
       effort_.rejected += 1;
+      if (finite) heed_rounding(abs(h), worst);
       return false;
     }
+    rejected_ = {};
     // PI: the next step answers this one's error and, a little, its change since the step before.
     constexpr Scalar little = Scalar(0.04);
     const Scalar aim =
@@ -334,10 +274,34 @@ class ExplicitSteps {
     step_ = abs(h) * std::clamp(aim, Scalar(0.2), Scalar(5));
     worst_before_ = max(worst, Scalar(1e-4));
     effort_.steps += 1;
+    if (std::fmod(effort_.steps, 8) == 0) look_for_stiffness();
     state_.add(change);
     time_.add(h);
-    note_size(y());
+    sizes_.note(y());
     return true;
+  }
+
+  void look_for_stiffness() {
+    constexpr std::size_t last = Tableau::stages - 1;
+    const Stage apart = combined<row<last>>() - combined<row<last - 1>>();
+    const Scalar rate = (stage_[last] - stage_[last - 1]).norm();
+    const bool at_the_limit = rate > Scalar(0.6 * Tableau::stable) * apart.norm();
+    short_steps_ = at_the_limit ? short_steps_ + 1 : 0;
+  }
+
+  /// What does not fall with the step is rounding in the field, which no shorter step makes good: a
+  /// rate held to 1e-17 may well be a difference of terms that rounding has left only 1e-16 of.
+  /// After three steps that were rejected in vain so much is allowed, up to 1e-12.
+  void heed_rounding(const Scalar& h, const Scalar& worst) {
+    using std::pow;
+    const bool in_vain =
+        rejected_.step > h && worst > rejected_.worst * pow(h / rejected_.step, Scalar(3));
+    rejected_ = {h, worst, in_vain ? rejected_.in_vain + 1 : 0};
+    if (rejected_.in_vain < 2) return;
+    const Scalar most = std::max(Scalar(1e-12), Scalar(accuracy_.relative));
+    allowed_ = std::min(most, Scalar(2) * worst * allowed_);
+    step_ = h;
+    rejected_ = {};
   }
 
   /// The last step taken anew up to a time within it: of full order.
@@ -401,13 +365,15 @@ class ExplicitSteps {
   Compensated<Vector> state_;
   Scalar step_ = Scalar(0);
   Scalar worst_before_ = Scalar(1);
+  Rejected rejected_;
+  Scalar allowed_;  ///< accuracy_.relative, or what rounding leaves of it
   std::array<Stage, Tableau::stages> stage_ = zero_stages();
-  std::array<Block, 8> blocks_ = {};
-  std::size_t blocks_used_ = 0;
+  detail::BlockSizes<Vector> sizes_;
   std::vector<Scalar> jumps_;
   Scalar last_stage_time_ = Scalar(0);  ///< none is later, on the way of the step
   Begin before_;
   int dense_points_ = 0;
+  int short_steps_ = 0;
   std::array<Vector, 2 * nodes> difference_ = {};
   Effort effort_;
 };

@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <unsupported/Eigen/AutoDiff>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace kreisel {
@@ -35,6 +38,28 @@ template <int n, class Field>
       jacobian.of_state.row(i) = f[i].derivatives().template head<n>().transpose();
       jacobian.of_time[i] = f[i].derivatives()[n];
     }
+    return jacobian;
+  };
+}
+
+/// (t, y) -> Jacobian of any field, by differences: for fields that know no dual numbers.
+///
+/// Error  : of of_state some 1e-8 of each column: good enough for the iterations of RadauSteps.
+///          of_time stays 0
+/// Cost   : n + 1 evaluations
+template <int n, class Field>
+[[nodiscard]] auto difference_jacobian(Field field) {
+  return [field = std::move(field)](double t, const Eigen::Matrix<double, n, 1>& y) {
+    const double little = std::sqrt(std::numeric_limits<double>::epsilon());
+    const double size = std::max(y.cwiseAbs().maxCoeff(), 1e-3);
+    const Eigen::Matrix<double, n, 1> f = field(t, y);
+    Jacobian<n> jacobian;
+    for (int j = 0; j < n; ++j) {
+      Eigen::Matrix<double, n, 1> moved = y;
+      moved[j] += little * std::max(std::abs(y[j]), 1e-3 * size);
+      jacobian.of_state.col(j) = (field(t, moved) - f) / (moved[j] - y[j]);
+    }
+    jacobian.of_time.setZero();
     return jacobian;
   };
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <sstream>
+#include <vector>
 
 #include <dynamics/step/compensated.hpp>
 #include <motor/error.hpp>
@@ -44,6 +45,25 @@ inline void require_step(double step) {
   if (!(step > 0 && std::isfinite(step))) {
     refuse_steps("step = ", step, " s must be a finite number above 0");
   }
+}
+
+/// `end`, or the first jump on the way from t to it.
+template <class S>
+[[nodiscard]] S next_stop(const S& t, const S& end, const std::vector<S>& jumps) {
+  S next = end;
+  for (const S& jump : jumps) {
+    const bool on_the_way = t < end ? t < jump && jump < next : next < jump && jump < t;
+    if (on_the_way) next = jump;
+  }
+  return next;
+}
+
+/// A time just on this side of t where the field jumps at t, as seen from `side`; else t.
+template <class S>
+[[nodiscard]] S on_this_side(const S& t, const S& side, const std::vector<S>& jumps) {
+  using std::nextafter;
+  const bool jumps_here = std::find(jumps.begin(), jumps.end(), t) != jumps.end();
+  return jumps_here ? S(nextafter(t, side)) : t;
 }
 
 /// `count` steps of one length, never above the one asked for. The length is kept to 64 bits: over

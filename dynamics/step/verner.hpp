@@ -17,6 +17,9 @@ struct Verner98 {
   static constexpr int order = 9;
   static constexpr std::size_t stages = 16;
 
+  /// Steps h are stable for  y' = -k y  up to h k = 4.47; the last two stages stand at one time.
+  static constexpr double stable = 4.47;
+
   using Row = std::array<long double, stages>;
 
   static constexpr Row node = {0.0L,

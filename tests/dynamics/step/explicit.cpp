@@ -161,6 +161,35 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
   BOOST_TEST(near(steps.y()[2], 1e-9, 1e-9, 1e5));
 }
 
+BOOST_AUTO_TEST_CASE(tell_a_stiff_field_from_a_fast_one) {
+  const auto with = [](double spring, double damping, double accuracy) {
+    const auto field = [=](double, const State<2>& y) {
+      return State<2>(y[1], -spring * y[0] - damping * y[1]);
+    };
+    ExplicitSteps steps(field, 0.0, State<2>(1, 0), {.relative = accuracy});
+    steps.advance_to(spring == 1 ? 1000 : 10);
+    return steps.stiff();
+  };
+  for (const double accuracy : {1e-3, 1e-6, 1e-10, 1e-14}) {
+    BOOST_TEST(with(1, 0, accuracy) == false);
+    BOOST_TEST(with(1e4, 0, accuracy) == false);
+    BOOST_TEST(with(1e4, 1e4, accuracy) == true);
+  }
+}
+
+// The field is a difference of terms that leave 1e-12 of rounding, and the solution stays below the
+// 1e-3 that counts as large: 1e-17 is asked of each step, which only steps of 1e-5 s would keep.
+BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
+  const auto field = [](double t, const State<2>& y) {
+    return State<2>(y[1], -y[0] + 1e-3 * (((1e4 + std::cos(7 * t)) - 1e4) - std::cos(7 * t)));
+  };
+  ExplicitSteps steps(field, 0.0, State<2>(1e-5, 0), {.relative = 1e-14}, std::array<int, 2>{1, 1});
+  steps.advance_to(10);
+  BOOST_TEST_MESSAGE(steps.effort().evaluations << " evaluations");
+  BOOST_TEST(steps.effort().evaluations < 2e4);
+  BOOST_TEST(std::abs(steps.y()[0] - 1e-5 * std::cos(10.0)) < 1e-14);
+}
+
 BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   const auto with = [](const Accuracy& accuracy) {
     return ExplicitSteps(circle, 0.0, State<2>(1, 0), accuracy);

@@ -1,0 +1,233 @@
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/step/events.hpp>
+#include <dynamics/step/radau.hpp>
+
+#include <support/near.hpp>
+
+using namespace kreisel;
+using test::near;
+
+namespace {
+
+template <int n, class S = double>
+using State = Eigen::Matrix<S, n, 1>;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// phi'' + k sin(phi) = 0.
+struct Pendulum {
+  double k = 1;
+
+  template <class S>
+  State<2, S> operator()(const S& /*t*/, const State<2, S>& y) const {
+    using std::sin;
+    return {y[1], -k * sin(y[0])};
+  }
+};
+
+/// Prothero and Robinson: x follows cos(t), however stiff the spring that holds it there.
+struct Follower {
+  double stiffness;
+
+  template <class S>
+  State<1, S> operator()(const S& t, const State<1, S>& y) const {
+    using std::cos;
+    using std::sin;
+    return State<1, S>(-stiffness * (y[0] - cos(t)) - sin(t));
+  }
+};
+
+/// Robertson's three reactions over 1e5 s, a standard stiff test: rates from 0.04 to 1e4 and more.
+struct Robertson {
+  template <class S>
+  State<3, S> operator()(const S& /*t*/, const State<3, S>& y) const {
+    const S slow = 0.04 * y[0];
+    const S fast = 1e4 * y[1] * y[2];
+    const S fastest = 3e7 * y[1] * y[1];
+    return {fast - slow, slow - fast - fastest, fastest};
+  }
+};
+
+template <int stages, class Field, int n>
+auto radau(const Field& field, double t, const State<n>& y, const Accuracy& accuracy) {
+  const auto jacobian = forward_jacobian<n>(field);
+  return RadauSteps<State<n>, Field, decltype(jacobian), stages>(field, jacobian, t, y, accuracy);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(radau_coefficients)
+
+template <int s>
+void hold() {
+  const RadauCoefficients<s> radau;
+  const auto A = radau.inverse.inverse().eval();
+  for (int k = 0; k < s; ++k) {
+    for (int i = 0; i < s; ++i) {
+      double integral = 0;
+      for (int j = 0; j < s; ++j) integral += A(i, j) * std::pow(radau.node[j], k);
+      BOOST_TEST(near(integral, std::pow(radau.node[i], k + 1) / (k + 1), 1.0, 64));
+    }
+  }
+  // The weights are A's last row; they integrate up to the power 2 s - 2.
+  for (int k = 0; k < 2 * s - 1; ++k) {
+    double integral = 0;
+    for (int j = 0; j < s; ++j) integral += A(s - 1, j) * std::pow(radau.node[j], k);
+    BOOST_TEST(near(integral, 1.0 / (k + 1), 1.0, 64));
+  }
+  BOOST_TEST(radau.node[s - 1] == 1);
+  auto again = (radau.real_eigenvalue * radau.real_vector * radau.real_covector.transpose()).eval();
+  for (std::size_t k = 0; k < std::size_t(radau.pairs); ++k) {
+    again +=
+        2 * (radau.eigenvalue[k] * radau.vector[k] * radau.covector[k].transpose()).real().eval();
+  }
+  const double greatest = radau.inverse.cwiseAbs().maxCoeff();
+  BOOST_TEST((again - radau.inverse).cwiseAbs().maxCoeff() <= 2e-14 * greatest);
+}
+
+BOOST_AUTO_TEST_CASE(integrate_powers_and_split_the_inverse) {
+  hold<1>();
+  hold<3>();
+  hold<5>();
+  hold<7>();
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(radau_steps)
+
+// How the error falls with the mean length of steps that choose their own.
+template <int stages>
+double observed_order(double coarse) {
+  const exact::PendulumMotion truth(1, 1.5, 0);
+  struct Run {
+    double error;
+    double steps;
+  };
+  const auto run = [&](double accuracy) {
+    auto steps = radau<stages>(Pendulum(), 0, State<2>(1.5, 0), {.relative = accuracy});
+    const State<2> y = steps.advance_to(40);
+    const auto [angle, rate] = truth.at(40);
+    return Run{std::hypot(y[0] - angle, y[1] - rate), steps.effort().steps};
+  };
+  const Run few = run(coarse);
+  const Run many = run(coarse * 1e-5);
+  const double order = std::log(few.error / many.error) / std::log(many.steps / few.steps);
+  BOOST_TEST_MESSAGE(stages << " stages: " << few.error << " to " << many.error << ", order "
+                            << order);
+  return order;
+}
+
+BOOST_AUTO_TEST_CASE(converge_with_twice_as_many_powers_as_stages_less_one) {
+  BOOST_TEST(std::abs(observed_order<3>(1e-4) - 5) < 0.5);
+  BOOST_TEST(std::abs(observed_order<5>(1e-6) - 9) < 0.9);
+  BOOST_TEST(observed_order<7>(1e-7) > 12);
+}
+
+BOOST_AUTO_TEST_CASE(follow_a_stiff_spring_at_no_more_cost_the_stiffer_it_is) {
+  double mild = 0;
+  for (const double stiffness : {1e2, 1e5, 1e8, 1e12}) {
+    auto steps = radau<7>(Follower{stiffness}, 0, State<1>(1), {.relative = 1e-11, .smallest = 1});
+    BOOST_TEST(std::abs(steps.advance_to(20.0)[0] - std::cos(20.0)) <= 1.6e-7);  // 0.3 a^(8/14)
+    BOOST_TEST_MESSAGE("stiffness " << stiffness << ": " << steps.effort().evaluations
+                                    << " evaluations");
+    if (stiffness == 1e5) mild = steps.effort().evaluations;
+    if (stiffness > 1e5) BOOST_TEST(steps.effort().evaluations <= 1.5 * mild);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(solve_robertsons_reactions) {
+  // F. Mazzia, C. Magherini, Test Set for Initial Value Problem Solvers.
+  auto steps = radau<7>(Robertson(), 0, State<3>(1, 0, 0), {.relative = 1e-11, .smallest = 1e-6});
+  const State<3> y = steps.advance_to(40);
+  BOOST_TEST(std::abs(y[0] - 0.7158270687194) <= 1e-11);
+  BOOST_TEST(std::abs(y[1] - 9.185534764558e-6) <= 1e-15);
+  BOOST_TEST(std::abs(y.sum() - 1) <= 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(run_back_to_where_they_began) {
+  auto steps = radau<7>(Pendulum{9}, 0, State<2>(0.3, 0.1), {.relative = 1e-13});
+  steps.advance_to(7);
+  const State<2> y = steps.advance_to(0);
+  BOOST_TEST(std::hypot(y[0] - 0.3, y[1] - 0.1) <= 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(give_output_within_a_step_that_does_not_disturb_it) {
+  const exact::PendulumMotion truth(4, 0.7, 0);
+  auto steps = radau<7>(Pendulum{4}, 0, State<2>(0.7, 0), {.relative = 1e-12});
+  auto alone = steps;
+  while (steps.t() < 10) {
+    steps.step_towards(20);
+    alone.step_towards(20);
+    const double before = alone.t();
+    for (const double back : {0.1, 0.02}) {
+      const double t = std::max(before - back, 0.0);
+      if (!steps.covers(t)) continue;
+      BOOST_TEST(std::abs(steps.at(t)[0] - truth.at(t).angle) <= 1e-11);
+    }
+  }
+  BOOST_TEST(steps.t() == alone.t());
+  BOOST_TEST(std::abs(steps.y()[0] - truth.at(steps.t()).angle) <= 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(find_events) {
+  const exact::PendulumMotion truth(1, 1, 0);
+  auto steps = radau<7>(Pendulum(), 0, State<2>(1, 0), {.relative = 1e-13});
+  const auto time = advance_to_event(
+      steps, [](double, const State<2>& y) { return y[0]; }, 10.0);
+  BOOST_TEST_REQUIRE(time.has_value());
+  BOOST_TEST(std::abs(*time - truth.period() / 4) <= 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(take_a_jacobian_by_differences_as_well) {
+  const Follower field{1e8};
+  const auto jacobian = difference_jacobian<1>(field);
+  BOOST_TEST(std::abs(jacobian(0.3, State<1>(0.9)).of_state(0, 0) / -1e8 - 1) <= 1e-6);
+  RadauSteps<State<1>, Follower, decltype(jacobian)> steps(field, jacobian, 0, State<1>(1),
+                                                           {.relative = 1e-10, .smallest = 1});
+  BOOST_TEST(std::abs(steps.advance_to(20.0)[0] - std::cos(20.0)) <= 1e-8);
+}
+
+BOOST_AUTO_TEST_CASE(stop_at_jumps) {
+  const auto field = []<class S>(const S& t, const State<1, S>& y) {
+    return State<1, S>(-1e6 * (y[0] - (t < 1 ? 0.0 : 1.0)));
+  };
+  const auto jacobian = forward_jacobian<1>(field);
+  RadauSteps<State<1>, decltype(field), decltype(jacobian)> steps(field, jacobian, 0, State<1>(0),
+                                                                  {.relative = 1e-9});
+  steps.stop_at({1});
+  BOOST_TEST(steps.advance_to(1.0)[0] == 0);
+  BOOST_TEST(std::abs(steps.advance_to(1 + 1e-6)[0] - (1 - std::exp(-1.0))) <= 1e-7);
+}
+
+BOOST_AUTO_TEST_CASE(keep_the_last_good_state_where_the_field_ends) {
+  const auto field = []<class S>(const S& t, const State<1, S>& y) {
+    using std::sqrt;
+    return State<1, S>(-1e4 * y[0] + sqrt(S(1) - t));
+  };
+  const auto jacobian = forward_jacobian<1>(field);
+  RadauSteps<State<1>, decltype(field), decltype(jacobian)> steps(field, jacobian, 0, State<1>(0),
+                                                                  {.most_evaluations = 1e5});
+  BOOST_CHECK_THROW((void)steps.advance_to(2), ComputationFailed);
+  BOOST_TEST(steps.t() <= 1.0);
+  BOOST_TEST(std::isfinite(steps.y()[0]));
+}
+
+BOOST_AUTO_TEST_CASE(refuse_nonsense) {
+  const Pendulum field;
+  const State<2> y(1, 0);
+  BOOST_CHECK_THROW((void)radau<7>(field, 0, y, {.relative = 0}), InvalidInput);
+  BOOST_CHECK_THROW((void)radau<7>(field, not_a_number, y, {}), InvalidInput);
+  BOOST_CHECK_THROW((void)radau<7>(field, 0, State<2>(not_a_number, 0), {}), InvalidInput);
+  auto steps = radau<7>(field, 0, y, {});
+  BOOST_CHECK_THROW((void)steps.advance_to(not_a_number), InvalidInput);
+  steps.advance_to(1);
+  BOOST_CHECK_THROW((void)steps.at(2), InvalidInput);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
