@@ -1,0 +1,58 @@
+#pragma once
+
+#include <dynamics/body/description.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+/// How a link moves against the one before it. A universal joint is two revolute links with nothing
+/// between, so that what is computed knows no such kind.
+enum class LinkKind { fixed, revolute, prismatic, spherical, free };
+
+/// A body as the passes over the tree see it. Link 0 is the guide.
+struct Link {
+  LinkKind kind = LinkKind::fixed;
+  JointRule rule = JointRule::forces;
+  int parent = 0;
+  int body = -1;          ///< to which it belongs; the guide belongs to none
+  bool is_cross = false;  ///< of a universal joint, without mass
+  int q = 0;              ///< where its coordinates and its rates begin
+  int v = 0;
+  int factor = 0;  ///< of spherical and free links: which of the workspace's factors is its own
+  Vector3<double> position = Vector3<double>::Zero();  ///< on the parent's axes, as the axis
+  Vector3<double> axis = Vector3<double>::Zero();
+  /// Body to parent at the coordinate q:  still + cos(q) cosine + sin(q) sine. Only `still` where
+  /// nothing turns by a single angle.
+  Matrix3<double> still = Matrix3<double>::Identity();
+  Matrix3<double> cosine = Matrix3<double>::Zero();
+  Matrix3<double> sine = Matrix3<double>::Zero();
+  Inertia<double> inertia = {};
+
+  [[nodiscard]] bool moved_by_forces() const {
+    return rule == JointRule::forces && kind != LinkKind::fixed;
+  }
+  [[nodiscard]] bool moves() const { return rule != JointRule::held && kind != LinkKind::fixed; }
+};
+
+[[nodiscard]] inline int coordinate_count(LinkKind kind) {
+  switch (kind) {
+    case LinkKind::fixed: return 0;
+    case LinkKind::spherical: return 4;
+    case LinkKind::free: return 7;
+    default: return 1;
+  }
+}
+
+[[nodiscard]] inline int rate_count(LinkKind kind) {
+  switch (kind) {
+    case LinkKind::fixed: return 0;
+    case LinkKind::spherical: return 3;
+    case LinkKind::free: return 6;
+    default: return 1;
+  }
+}
+
+}  // namespace detail
+
+}  // namespace kreisel

@@ -1,0 +1,300 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <dynamics/body/balance.hpp>
+#include <dynamics/body/passes.hpp>
+#include <dynamics/body/reaction.hpp>
+#include <dynamics/guide/resting.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+template <class M>
+inline constexpr bool rests = std::is_same_v<M, RestingFrame<Guide, Inertial, double>>;
+
+}  // namespace detail
+
+/// A tree of rigid bodies on a moving guide: any number of them, joined to the guide or to each
+/// other, with springs, dampers, drives, locks and loads.
+///
+/// The guide's motion enters by its velocity and acceleration motors where the tree begins, so it
+/// costs the same for one body and for a thousand, and a guide at rest costs nothing.
+///
+/// Everything is const and may be called from several threads, each with its own workspace(). No
+/// call that takes a workspace asks for memory, save for results that have not their size yet.
+///
+/// Source : paper 002 (26), (27): T_i V'*_i + [V'_i (T_i V'_i)] + ... = P_i + sum_j R_ij, with the
+///          R_ij eliminated (dynamics/body/elimination.hpp)
+/// Error  : accelerations and reactions <= 1e-11 relative, times the condition of the mass matrix
+///          where that is above 1e3, against another formulation (tests/dynamics/scene/body_system)
+/// Cost   : linear in the number of bodies; benchmarks/body_system.cpp
+/// Throws : InvalidInput as BodyTree does, or where a state has the wrong size; ComputationFailed
+///          where a motion of a joint meets no inertia, naming body and direction
+template <class M>
+class BodySystem {
+  static_assert(detail::is_guide<M>, "the guide of a system says how Guide moves against Inertial");
+
+ public:
+  using S = double;
+  using Vector = Eigen::VectorXd;  ///< y = (coordinates of all joints; rates of all joints)
+
+  struct State {
+    Vector coordinates;
+    Vector rates;
+  };
+
+  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {})
+      : guide_(std::move(guide)), tree_(std::move(bodies)), gravity_(gravity) {
+    if (!detail::is_finite(detail::field(gravity_, {})))
+      throw InvalidInput("system of bodies: gravity is not finite");
+  }
+
+  [[nodiscard]] const BodyTree& tree() const { return tree_; }
+  [[nodiscard]] BodyWorkspace workspace() const { return BodyWorkspace(tree_); }
+  [[nodiscard]] int body_count() const { return static_cast<int>(tree_.bodies().size()); }
+
+  /// All coordinates and rates 0, all quaternions 1.
+  [[nodiscard]] State rest() const {
+    State state{Vector::Zero(tree_.coordinates()), Vector::Zero(tree_.rates())};
+    for (const detail::Link& link : tree_.links()) {
+      if (detail::coordinate_count(link.kind) >= 4) state.coordinates[link.q + 3] = 1;
+    }
+    return state;
+  }
+
+  [[nodiscard]] static Vector to_vector(const State& state) {
+    Vector y(state.coordinates.size() + state.rates.size());
+    y << state.coordinates, state.rates;
+    return y;
+  }
+
+  [[nodiscard]] State from_vector(const Vector& y) const {
+    return {y.head(tree_.coordinates()), y.tail(tree_.rates())};
+  }
+
+  /// For integrators: components that share unit and size.
+  [[nodiscard]] std::vector<int> blocks() const { return tree_.blocks(); }
+
+  /// Forward dynamics: the rates of the joint rates. `extra` are joint forces besides those of the
+  /// description, empty or one for each rate.
+  ///
+  /// Source : paper 002 (26) solved for V'*
+  void accelerations(double t, const Vector& y, const Vector& extra, Vector& result,
+                     BodyWorkspace& w) const {
+    require(y, extra, w);
+    result.resize(tree_.rates());
+    accelerate(t, y, extra, result.data(), w);
+  }
+
+  /// The vector field  y' = rates(t, y).
+  void rates(double t, const Vector& y, Vector& result, BodyWorkspace& w) const {
+    require(y, {}, w);
+    result.resize(y.size());
+    detail::set_coordinate_rates(tree_, y.data(), rates_of(y), result.data());
+    accelerate(t, y, {}, result.data() + tree_.coordinates(), w);
+  }
+
+  [[nodiscard]] Vector rates(double t, const Vector& y) const {
+    BodyWorkspace w = workspace();
+    Vector result;
+    rates(t, y, result, w);
+    return result;
+  }
+
+  /// Inverse dynamics: the joint forces, besides those of the description, that bring about the
+  /// accelerations dv.
+  void joint_forces(double t, const Vector& y, const Vector& dv, Vector& result,
+                    BodyWorkspace& w) const {
+    require(y, dv, w);
+    result.resize(tree_.rates());
+    const FrameMotion<Guide, Inertial> guide = guide_(t);
+    detail::set_poses_and_motions(tree_, root(guide), y.data(), rates_of(y),
+                                  dv.size() ? dv.data() : nullptr, w);
+    detail::take_off_loads(tree_, t, guide, rates_of(y), w);
+    detail::sum_inwards(tree_, w);
+    detail::project(tree_, w, result.data());
+    detail::set_joint_forces(tree_, y.data(), rates_of(y), w);
+    result -= w.joint_force;
+  }
+
+  /// The mass matrix of all joints, drives and locks taken as free. Does not depend on the guide.
+  ///
+  /// Cost : the number of rates times the depth of the tree
+  void mass_matrix(const Vector& y, Eigen::MatrixXd& result, BodyWorkspace& w) const {
+    require(y, {}, w);
+    detail::set_poses(tree_, y.data(), w);
+    detail::mass_matrix(tree_, w, result);
+  }
+
+  /// The reaction motors R_ij of all joints.
+  ///
+  /// Source : paper 002 (26), read from the ends of the tree inwards
+  void reactions(double t, const Vector& y, JointReactions& result, BodyWorkspace& w) const {
+    accelerations(t, y, {}, w.acceleration, w);
+    joint_forces(t, y, w.acceleration, result.drive, w);
+    for (const detail::Link& link : tree_.links()) {
+      if (!link.moved_by_forces()) continue;
+      for (int k = 0; k < detail::rate_count(link.kind); ++k) result.drive[link.v + k] = 0;
+    }
+    result.on_body.resize(tree_.bodies().size());
+    for (int i = 0; i < body_count(); ++i) {
+      result.on_body[index(i)] = detail::joint_reaction(tree_, i, w);
+    }
+  }
+
+  /// The same by causes. Costs about four times as much.
+  void reaction_parts(double t, const Vector& y, std::vector<ReactionParts>& result,
+                      BodyWorkspace& w) const {
+    require(y, {}, w);
+    const FrameMotion<Guide, Inertial> guide = guide_(t);
+    const LinkMotion moving{guide.V.value.resultant, guide.dV.value.resultant,
+                            guide.origin_acceleration()};
+    const Vector3<double> zero = Vector3<double>::Zero();
+    const LinkMotion weight{zero, zero, -detail::field(gravity_, guide)};
+    result.resize(tree_.bodies().size());
+    detail::set_poses(tree_, y.data(), w);
+    detail::eliminate_all(tree_, w);
+    const double* v = rates_of(y);
+    const double* still = w.still.data();
+    const auto note = [&](Force<Body> ReactionParts::*part) {
+      for (int i = 0; i < body_count(); ++i) {
+        result[index(i)].*part = detail::joint_reaction(tree_, i, w);
+      }
+    };
+    w.joint_force.setZero();
+    answer({}, v, nullptr, y, w);
+    note(&ReactionParts::spin);
+    answer(moving, v, nullptr, y, w);
+    note(&ReactionParts::guide);
+    for (ReactionParts& parts : result) parts.guide = parts.guide - parts.spin;
+    answer(weight, still, nullptr, y, w);
+    note(&ReactionParts::gravity);
+    detail::set_joint_forces(tree_, y.data(), v, w);
+    const Situation<> now{t, {}, {}, guide, {}};
+    answer({}, still, &now, y, w);
+    note(&ReactionParts::forces);
+  }
+
+  /// Where the body is and how it moves: what a Load is given.
+  [[nodiscard]] Situation<> situation(double t, const Vector& y, int body, BodyWorkspace& w) const {
+    require(y, {}, w);
+    detail::set_poses(tree_, y.data(), w);
+    detail::set_places(tree_, rates_of(y), w);
+    return detail::situation(tree_, t, guide_(t), body, w);
+  }
+
+  /// The left side of the law of one body, with the accelerations that the forces bring about.
+  ///
+  /// Source : paper 002 (26), its relative, guide and Coriolis terms in turn
+  [[nodiscard]] ForceParts<Body> terms(double t, const Vector& y, int body,
+                                       BodyWorkspace& w) const {
+    accelerations(t, y, {}, w.acceleration, w);
+    const FrameMotion<Guide, Inertial> guide = guide_(t);
+    detail::set_motions(tree_, root(guide), rates_of(y), w.acceleration.data(), w);
+    detail::set_places(tree_, rates_of(y), w);
+    return detail::terms(tree_, detail::situation(tree_, t, guide, body, w), body,
+                         detail::field(gravity_, guide), w);
+  }
+
+  [[nodiscard]] BodyBalance balance(double t, const Vector& y, BodyWorkspace& w) const {
+    require(y, {}, w);
+    const FrameMotion<Guide, Inertial> guide = guide_(t);
+    detail::set_poses(tree_, y.data(), w);
+    detail::set_places(tree_, rates_of(y), w);
+    return detail::balance(tree_, t, guide, gravity_, y.data(), w);
+  }
+
+  /// What does not change during a motion, as far as the description shows it: the energy where the
+  /// guide rests and all forces have a potential, the momentum where nothing acts from outside.
+  [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(double t,
+                                                                 const State& state) const {
+    std::vector<std::pair<const char*, S>> result;
+    if constexpr (detail::rests<M>) {
+      BodyWorkspace w = workspace();
+      const BodyBalance now = balance(t, to_vector(state), w);
+      if (detail::keeps_energy(tree_)) {
+        result.emplace_back("energy", now.kinetic_energy + now.potential_energy);
+      }
+      if (detail::keeps_momentum(tree_, gravity_)) {
+        const auto& [p, L] = now.momentum.value;
+        static constexpr const char* linear[] = {"momentum x", "momentum y", "momentum z"};
+        static constexpr const char* angular[] = {"angular momentum x", "angular momentum y",
+                                                  "angular momentum z"};
+        for (int k = 0; k < 3; ++k) result.emplace_back(linear[k], p[k]);
+        for (int k = 0; k < 3; ++k) result.emplace_back(angular[k], L[k]);
+      }
+    }
+    return result;
+  }
+
+ private:
+  using LinkMotion = detail::LinkMotion;
+
+  [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+  [[nodiscard]] const double* rates_of(const Vector& y) const {
+    return y.data() + tree_.coordinates();
+  }
+
+  void require(const Vector& y, const Vector& per_rate, const BodyWorkspace& w) const {
+    if (y.size() != tree_.coordinates() + tree_.rates()) {
+      throw InvalidInput("system of bodies: a state of " + std::to_string(y.size()) +
+                         " components, not " + std::to_string(tree_.coordinates() + tree_.rates()));
+    }
+    if (per_rate.size() != 0 && per_rate.size() != tree_.rates()) {
+      throw InvalidInput("system of bodies: " + std::to_string(per_rate.size()) + " numbers for " +
+                         std::to_string(tree_.rates()) + " rates");
+    }
+    if (w.pose.size() != tree_.links().size() || w.joint_force.size() != tree_.rates()) {
+      throw InvalidInput("system of bodies: the workspace is of another system");
+    }
+  }
+
+  /// Where the tree begins. In a uniform field the weights of all bodies are what a guide
+  /// accelerated by -g would ask for.
+  [[nodiscard]] LinkMotion root(const FrameMotion<Guide, Inertial>& guide) const {
+    if constexpr (detail::rests<M>) {
+      return {Vector3<double>::Zero(), Vector3<double>::Zero(), -detail::field(gravity_, guide)};
+    } else {
+      return {guide.V.value.resultant, guide.dV.value.resultant,
+              guide.origin_acceleration() - detail::field(gravity_, guide)};
+    }
+  }
+
+  void accelerate(double t, const Vector& y, const Vector& extra, double* result,
+                  BodyWorkspace& w) const {
+    const FrameMotion<Guide, Inertial> guide = guide_(t);
+    detail::set_poses_and_motions(tree_, root(guide), y.data(), rates_of(y), nullptr, w);
+    detail::take_off_loads(tree_, t, guide, rates_of(y), w);
+    detail::set_joint_forces(tree_, y.data(), rates_of(y), w);
+    if (extra.size()) w.joint_force += extra;
+    detail::eliminate_and_solve(tree_, w.joint_force.data(), result, w);
+  }
+
+  /// Reactions to a part of the causes; the joints are eliminated and w.joint_force is set.
+  void answer(const LinkMotion& root, const double* v, const Situation<>* loads_at, const Vector& y,
+              BodyWorkspace& w) const {
+    const auto set_forces = [&](const double* dv) {
+      detail::set_motions(tree_, root, v, dv, w);
+      if (loads_at) detail::take_off_loads(tree_, loads_at->t, loads_at->guide, rates_of(y), w);
+    };
+    set_forces(nullptr);
+    detail::solve(tree_, w.joint_force.data(), w.acceleration.data(), w);
+    set_forces(w.acceleration.data());
+    detail::sum_inwards(tree_, w);
+  }
+
+  M guide_;
+  BodyTree tree_;
+  Gravity gravity_;
+};
+
+}  // namespace kreisel

@@ -1,0 +1,646 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/inertia.hpp>
+#include <dynamics/scene/load.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+/// The principal moments of inertia (A, B, C) of a Cardan gyro's three bodies about the point where
+/// its three axes meet, which is the centre of mass of each.
+///
+/// C of the rotor lies along its spin axis, B of the inner ring along the inner bearing, A of the
+/// outer ring along the outer one. A ring of zeros has no mass.
+///
+/// Source : paper 002 section 6: Theta_A .. Theta_C with the indices 1, 2 and 3
+/// Units  : kg m^2
+struct CardanMoments {
+  Vector3<double> rotor;
+  Vector3<double> inner_ring = Vector3<double>::Zero();
+  Vector3<double> outer_ring = Vector3<double>::Zero();
+};
+
+/// What a bearing does about its axis:  torque = -stiffness q - damping q',  q from `reference`.
+///
+/// The state counts the angle from `reference` too, so that a stiff bearing's torque keeps its
+/// digits: at 1e12 N m/rad the last digit of an angle of 0.3 is worth 5.5e-5 N m.
+///
+/// Units  : N m/rad, N m s/rad, radian
+struct CardanBearing {
+  double stiffness = 0;
+  double damping = 0;
+  double reference = 0;  ///< where the spring is slack and the state's angle is 0
+};
+
+struct CardanBearings {
+  CardanBearing outer = {};  ///< of alpha, between the guide and the outer ring
+  CardanBearing inner = {};  ///< of beta, between both rings
+};
+
+/// A rotor left to itself. Friction acts between it and the inner ring, in N m s/rad.
+struct FreeRotor {
+  double friction = 0;
+};
+
+/// A rotor driven from the inner ring by a torque in N m: a number, or a function of the time and
+/// of phi', which for an exact Jacobian has to take dual numbers.
+template <class Torque = double>
+struct DrivenRotor {
+  Torque torque;
+  double friction = 0;
+};
+template <class Torque>
+DrivenRotor(Torque) -> DrivenRotor<Torque>;
+template <class Torque>
+DrivenRotor(Torque, double) -> DrivenRotor<Torque>;
+
+/// A rotor whose speed against the inner ring a motor keeps constant.
+struct RegulatedRotor {
+  double friction = 0;  ///< what the motor works against besides
+};
+
+/// The moments in the bearings of a Cardan gyro, springs, friction and drive included. What acts
+/// back on the other body is the negative.
+///
+/// Source : paper 002 (35)-(40), whose names stand behind
+/// Units  : N m, W
+struct CardanReactions {
+  Vector3<double> rotor_on_inner_ring;       ///< M_A21, M_B21, M_C21 on the axes of the inner ring
+  Vector3<double> inner_ring_on_outer_ring;  ///< M_A32, M_B32, M_C32 on the axes of the outer ring
+  Vector3<double> guide_on_outer_ring;       ///< M_A3, M_BL, M_CL on the axes of the outer ring
+
+  double motor_torque;  ///< the motor's on the rotor, without friction
+  double motor_power;   ///< motor_torque phi', what the motor gives
+};
+
+/// Energies and momenta of a Cardan gyro.
+///
+/// Units  : J, N m s
+struct CardanBalance {
+  double kinetic_energy;             ///< absolute
+  double potential_energy;           ///< of the springs
+  double alpha_momentum;             ///< dT/d alpha': of everything, about the outer axis
+  double beta_momentum;              ///< dT/d beta': of inner ring and rotor, about the inner axis
+  double rotor_momentum;             ///< dT/d phi' = C_1 u_C1: of the rotor, about its own axis
+  Vector3<double> angular_momentum;  ///< of everything, absolute, on guide axes
+};
+
+namespace detail {
+
+/// A zero known when the program is compiled. What it multiplies is left out, so that one set of
+/// formulas serves a guide at rest and a symmetric rotor at the cost of theirs alone.
+struct Absent {
+  template <class T>
+  friend Absent operator*(const T&, Absent) {
+    return {};
+  }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend Absent operator*(Absent, const T&) { return {}; }
+
+  friend Absent operator+(Absent, Absent) { return {}; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend T operator+(const T& x, Absent) { return x; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend T operator+(Absent, const T& x) { return x; }
+
+  friend Absent operator-(Absent, Absent) { return {}; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend T operator-(const T& x, Absent) { return x; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend auto operator-(Absent, const T& x) { return -x; }
+};
+
+template <class A, class B>
+using AbsentIfBoth = std::conditional_t<std::is_same_v<A, Absent>, B, A>;
+
+template <class M>
+inline constexpr bool is_resting = false;
+template <class G, class I, class S>
+inline constexpr bool is_resting<RestingFrame<G, I, S>> = true;
+
+template <class Rotor>
+inline constexpr bool is_driven = false;
+template <class Torque>
+inline constexpr bool is_driven<DrivenRotor<Torque>> = true;
+
+template <class S>
+struct SinCos {
+  S sin = {};
+  S cos = {};
+};
+
+/// Sine and cosine of reference + deviation, both relatively exact to 2u also where one of them
+/// is nearly 0: what rounding leaves of the sum is added to first order.
+template <class S>
+[[nodiscard]] SinCos<S> sin_cos(double reference, const S& deviation) {
+  using std::cos, std::sin;
+  if (reference == 0) return {S(sin(deviation)), S(cos(deviation))};
+  const S sum = reference + deviation;
+  const S back = sum - reference;
+  const S rest = (reference - S(sum - back)) + S(deviation - back);
+  const S s = sin(sum);
+  const S c = cos(sum);
+  return {S(s + rest * c), S(c - rest * s)};
+}
+
+/// u and its rate on guide axes; G is a number or Absent.
+template <class G>
+struct Turning {
+  std::array<G, 3> u = {};
+  std::array<G, 3> du = {};
+};
+
+/// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
+/// number or, for a symmetric rotor, Absent.
+template <class S, class N>
+struct TurnedRotor {
+  S P;  ///< about A_2
+  S Q;  ///< about B_2
+  N R;  ///< the product of inertia, + off the diagonal
+  N W;  ///< P - Q without cancellation
+};
+
+/// Rates of the angles, and where they are given their rates too.
+template <class S, class D>
+struct CardanMotion {
+  S da, db, df;
+  D dda = {}, ddb = {};
+};
+
+/// Rates of angular momentum of the three bodies, each on its ring's axes, the rotor's on the inner
+/// ring's; of phi'' nothing.
+template <class S, class K>
+struct CardanRates {
+  K outer_a, outer_b, outer_c;
+  S inner_a, inner_b, inner_c;
+  S rotor_a, rotor_b;
+  S dz_2;   ///< of the angular velocity of the inner ring about C
+  S twist;  ///< u_A L_B - u_B L_A of the rotor, which with C_1 (dz_2 + phi'') is its rate about C
+};
+
+}  // namespace detail
+
+/// The gyro in Cardan's suspension: a rotor in an inner ring in an outer ring, all with mass, on a
+/// guide that moves in any way. Exact, for all angles.
+///
+///   alpha about A (guide x), then beta about B, then phi about the spin axis C:
+///   (p)_guide = R_x(alpha) R_y(beta) R_z(phi) (p)_rotor
+///
+/// All centres of mass lie where the axes meet, so that of the guide's motion only u and ou matter,
+/// and gravity not at all. The angles count whole turns; alpha and beta count from the references
+/// of their bearings.
+///
+/// phi'' is eliminated by the rotor's own equation, which leaves two equations for alpha'' and
+/// beta'' with the determinant
+///
+///   (A_3 + J sin^2 beta) (B_2 + Q) + cos^2 beta (A_2 (B_2 + Q) + B_2 P + A_1 B_1),
+///
+/// J = C_2, or C_1 + C_2 if the rotor is regulated: a sum of what is not negative, so nothing
+/// cancels, however light the rings are. Nothing is divided by cos beta. Only if A_3 + J sin^2 beta
+/// = 0 are the equations singular at beta = 90 degrees.
+///
+/// Source : paper 002 (35)-(40) corrected: the rates of the rings are not those of the rotor,
+///          u'_C2 = u'_A3 sin beta, u'_A3 = (u'_A cos phi - u'_B sin phi)/cos beta,
+///          phi' = u'_C - u'_C2; in (40) sin beta for sin^2 beta. These and the printed ones:
+///          tests/dynamics/scene/cardan_gyro_laws.cpp
+/// Units  : rad/s, N m
+/// Error  : of the accelerations <= 1e-14 of the greatest, rings with 1e-8 of the mass at 1e-8
+///          from 90 degrees included (tests/dynamics/scene/cardan_gyro.cpp)
+/// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving: one more
+/// Throws : InvalidInput where no body has such moments, the rotor's C is 0, the equations are
+///          singular at every angle, or stiffness, damping or friction is below 0;
+///          ComputationFailed from rates() and all that needs accelerations where they are singular
+template <class M, class Rotor = FreeRotor>
+class CardanGyro {
+  static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
+  static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, RegulatedRotor> ||
+                    detail::is_driven<Rotor>,
+                "the rotor is a FreeRotor, a DrivenRotor or a RegulatedRotor");
+
+ public:
+  using Vector = Eigen::Matrix<double, 6, 1>;
+
+  struct State {
+    double alpha = 0;       ///< of the outer ring, from bearings().outer.reference
+    double beta = 0;        ///< of the inner ring, from bearings().inner.reference
+    double phi = 0;         ///< of the rotor
+    double alpha_rate = 0;  ///< against the guide
+    double beta_rate = 0;   ///< against the outer ring
+    double phi_rate = 0;    ///< against the inner ring
+  };
+
+  CardanGyro(const CardanMoments& moments, const CardanBearings& bearings, M guide,
+             Rotor rotor = {})
+      : moments_(moments),
+        bearings_(bearings),
+        guide_(std::move(guide)),
+        rotor_(std::move(rotor)),
+        symmetric_(moments.rotor.x() == moments.rotor.y()) {
+    check_moments();
+    check_bearing("outer", bearings.outer);
+    check_bearing("inner", bearings.inner);
+    require_not_negative("rotor friction", rotor_.friction, "N m s/rad");
+    if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
+      if (!std::isfinite(rotor_.torque)) refuse("torque of the drive = ", rotor_.torque, " N m");
+    }
+  }
+
+  [[nodiscard]] const CardanMoments& moments() const { return moments_; }
+  [[nodiscard]] const CardanBearings& bearings() const { return bearings_; }
+  [[nodiscard]] const Rotor& rotor() const { return rotor_; }
+
+  /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, phi; their rates), for double and
+  /// what calculates like it: long double, dual numbers.
+  ///
+  /// With dual numbers the derivative with respect to t is exact if the guide takes them too (a
+  /// lambda of auto does). A guide of double gives the rate of u, which is ou, but none of ou: its
+  /// part is left out.
+  template <class S>
+  [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
+                                             const Eigen::Matrix<S, 6, 1>& y) const {
+    if (symmetric_) return rates_of<detail::Absent>(t, y);
+    return rates_of<S>(t, y);
+  }
+  [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
+
+  /// The moments in the bearings.
+  ///
+  /// Error  : <= 1e-13 of the largest; those about the bearings' axes are exact, the sum of spring,
+  ///          friction and drive
+  [[nodiscard]] CardanReactions reactions(double t, const State& state) const {
+    const Vector dy = rates(t, to_vector(state));
+    const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
+    const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
+    const auto k = momentum_rates<double, double, double, double>(
+        turning_at<double>(t), {sa, ca}, {sb, cb}, turned_rotor<double>(state.phi),
+        {state.alpha_rate, state.beta_rate, state.phi_rate, dy[3], dy[4]});
+    const double friction = rotor_.friction * state.phi_rate;
+    const double on_rotor = regulated ? moments_.rotor.z() * (k.dz_2 + dy[5]) + k.twist
+                                      : spin_torque<double>(t, state.phi_rate);
+    const double N_a = k.rotor_a + k.inner_a;
+    const double N_c = on_rotor + k.inner_c;
+    const double on_outer = -resistance(bearings_.outer, state.alpha, state.alpha_rate);
+    const double on_inner = -resistance(bearings_.inner, state.beta, state.beta_rate);
+    const double motor = on_rotor + friction;
+    return {{-k.rotor_a, -k.rotor_b, -on_rotor},
+            {-(cb * N_a + sb * N_c), -on_inner, sb * N_a - cb * N_c},
+            {on_outer, k.outer_b + on_inner, k.outer_c - sb * N_a + cb * N_c},
+            motor,
+            motor * state.phi_rate};
+  }
+
+  [[nodiscard]] CardanBalance balance(double t, const State& state) const {
+    const auto& [A_1, B_1, C_1] =
+        std::array{moments_.rotor[0], moments_.rotor[1], moments_.rotor[2]};
+    const auto& J_2 = moments_.inner_ring;
+    const auto& J_3 = moments_.outer_ring;
+    const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
+    const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
+    const auto [P, Q, R, W] = turned_rotor<double>(state.phi);
+    const auto [u, du] = turning_at<double>(t);
+    const Vector3<double> w_3(state.alpha_rate + u[0], u[1] * ca + u[2] * sa,
+                              u[2] * ca - u[1] * sa);
+    const Vector3<double> w_2(w_3.x() * cb - w_3.z() * sb, w_3.y() + state.beta_rate,
+                              w_3.x() * sb + w_3.z() * cb);
+    const double spin = w_2.z() + state.phi_rate;
+    const Vector3<double> L_1(P * w_2.x() + R * w_2.y(), R * w_2.x() + Q * w_2.y(), C_1 * spin);
+    const Vector3<double> L_21 = J_2.cwiseProduct(w_2) + L_1;
+    const Vector3<double> L_321 =
+        J_3.cwiseProduct(w_3) +
+        Vector3<double>(cb * L_21.x() + sb * L_21.z(), L_21.y(), cb * L_21.z() - sb * L_21.x());
+    const double kinetic = w_3.dot(J_3.cwiseProduct(w_3)) + w_2.dot(J_2.cwiseProduct(w_2)) +
+                           w_2.x() * L_1.x() + w_2.y() * L_1.y() + spin * L_1.z();
+    return {
+        kinetic / 2, spring_energy(state),
+        L_321.x(),   L_21.y(),
+        L_1.z(),     {L_321.x(), ca * L_321.y() - sa * L_321.z(), sa * L_321.y() + ca * L_321.z()}};
+  }
+
+  /// Those of the balance that stay, by name.
+  ///
+  ///   energy             guide at rest, free rotor, no friction
+  ///   energy of rings    guide at rest, regulated symmetric rotor, no friction in the rings:
+  ///                      kinetic energy without what phi' adds to it, and springs
+  ///   alpha momentum     guide at rest, outer bearing without spring and friction
+  ///   rotor momentum     free symmetric rotor without friction, any guide
+  [[nodiscard]] std::vector<std::pair<const char*, double>> conserved(double t,
+                                                                      const State& state) const {
+    const CardanBalance all = balance(t, state);
+    const auto& [outer, inner] = bearings_;
+    const bool rings_free = outer.damping == 0 && inner.damping == 0;
+    const bool rotor_free = std::is_same_v<Rotor, FreeRotor> && rotor_.friction == 0;
+    std::vector<std::pair<const char*, double>> kept;
+    if constexpr (detail::is_resting<M>) {
+      if (rings_free && rotor_free) {
+        kept.emplace_back("energy", all.kinetic_energy + all.potential_energy);
+      }
+      if (rings_free && regulated && symmetric_) {
+        State without_spin = state;
+        without_spin.phi_rate = 0;
+        kept.emplace_back("energy of rings",
+                          balance(t, without_spin).kinetic_energy + all.potential_energy);
+      }
+      if (outer.stiffness == 0 && outer.damping == 0) {
+        kept.emplace_back("alpha momentum", all.alpha_momentum);
+      }
+    }
+    if (rotor_free && symmetric_) kept.emplace_back("rotor momentum", all.rotor_momentum);
+    return kept;
+  }
+
+  /// For integrators. One by one: a stiff bearing's angle is far smaller than the other, phi far
+  /// greater.
+  static constexpr std::array<int, 6> blocks = {1, 1, 1, 1, 1, 1};
+
+  [[nodiscard]] static Vector to_vector(const State& s) {
+    return (Vector() << s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate).finished();
+  }
+
+  [[nodiscard]] static State from_vector(const Vector& y) {
+    return {y[0], y[1], y[2], y[3], y[4], y[5]};
+  }
+
+ private:
+  static constexpr bool regulated = std::is_same_v<Rotor, RegulatedRotor>;
+
+  template <class... Words>
+  [[noreturn]] static void refuse(const Words&... words) {
+    std::ostringstream text;
+    text.precision(10);
+    text << "Cardan gyro: ";
+    (text << ... << words);
+    throw InvalidInput(text.str());
+  }
+
+  static void require_not_negative(const char* what, double value, const char* unit) {
+    if (!(value >= 0 && std::isfinite(value))) {
+      refuse(what, " = ", value, ' ', unit, " is not a finite number >= 0");
+    }
+  }
+
+  static void check_bearing(const std::string& name, const CardanBearing& bearing) {
+    require_not_negative((name + " bearing: stiffness").c_str(), bearing.stiffness, "N m/rad");
+    require_not_negative((name + " bearing: damping").c_str(), bearing.damping, "N m s/rad");
+    if (!std::isfinite(bearing.reference)) {
+      refuse(name, " bearing: reference = ", bearing.reference, " rad is not finite");
+    }
+  }
+
+  void check_moments() const {
+    const auto check_body = [](const char* name, const Vector3<double>& m) {
+      check(Inertia<double>{0, Vector3<double>::Zero(), {m.x(), m.y(), m.z()}}, Mass::zero_allowed,
+            name);
+    };
+    check_body("Cardan gyro, rotor", moments_.rotor);
+    check_body("Cardan gyro, inner ring", moments_.inner_ring);
+    check_body("Cardan gyro, outer ring", moments_.outer_ring);
+    if (!(moments_.rotor.z() > 0)) {
+      refuse("C of the rotor = ", moments_.rotor.z(),
+             " kg m^2: its rotation about the spin axis is not determined");
+    }
+    const bool needle = moments_.rotor.x() == 0 || moments_.rotor.y() == 0;
+    if (needle && !regulated && moments_.outer_ring.x() == 0 && moments_.inner_ring.isZero(0)) {
+      refuse(
+          "a rotor with A or B = 0 in rings without mass: the mass matrix is singular at every "
+          "angle");
+    }
+  }
+
+  [[nodiscard]] double spring_energy(const State& s) const {
+    return (bearings_.outer.stiffness * s.alpha * s.alpha +
+            bearings_.inner.stiffness * s.beta * s.beta) /
+           2;
+  }
+
+  /// What spring and friction resist with; the torque is its negative.
+  template <class S>
+  [[nodiscard]] static S resistance(const CardanBearing& bearing, const S& q, const S& dq) {
+    return bearing.stiffness * q + bearing.damping * dq;
+  }
+
+  /// On a rotor that is not regulated, about C: drive and friction.
+  template <class S>
+  [[nodiscard]] S spin_torque([[maybe_unused]] const S& t, const S& df) const {
+    const S friction = rotor_.friction * df;
+    if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
+      return rotor_.torque - friction;
+    } else if constexpr (detail::is_driven<Rotor>) {
+      return rotor_.torque(t, df) - friction;
+    } else {
+      return -friction;
+    }
+  }
+
+  /// Whether the guide itself calculates with S.
+  template <class S>
+  static constexpr bool guide_takes = GuideMotion<M, Guide, Inertial, S>;
+
+  template <class S>
+  [[nodiscard]] detail::Turning<S> turning_at(const S& t) const {
+    detail::Turning<S> result;
+    const auto fill = [&result](const auto& u, const auto& du) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        result.u[i] = S(u[static_cast<Eigen::Index>(i)]);
+        result.du[i] = S(du[static_cast<Eigen::Index>(i)]);
+      }
+    };
+    if constexpr (guide_takes<S>) {
+      const auto motion = guide_(t);
+      fill(motion.V.value.resultant, motion.dV.value.resultant);
+    } else {
+      const double time = static_cast<double>(detail::number_in(t));
+      const auto motion = guide_(time);
+      fill(motion.V.value.resultant, motion.dV.value.resultant);
+      // First order in t - time, which is 0 but for its derivatives.
+      for (std::size_t i = 0; i < 3; ++i) {
+        const S added = (t - time) * motion.dV.value.resultant[static_cast<Eigen::Index>(i)];
+        result.u[i] = S(result.u[i] + added);
+      }
+    }
+    return result;
+  }
+
+  template <class N, class S>
+  [[nodiscard]] detail::TurnedRotor<S, N> turned_rotor(const S& phi) const {
+    const double A = moments_.rotor.x();
+    const double B = moments_.rotor.y();
+    if constexpr (std::is_same_v<N, detail::Absent>) {
+      return {S(A), S(A), {}, {}};
+    } else {
+      using std::cos, std::sin;
+      const S s = sin(phi);
+      const S c = cos(phi);
+      const S ss = s * s;
+      const S cc = c * c;
+      return {S(A * cc + B * ss), S(A * ss + B * cc), S((A - B) * (s * c)),
+              S((A - B) * ((c - s) * (c + s)))};
+    }
+  }
+
+  /// The left sides of the equations of motion.
+  ///
+  /// G, N, D are S or Absent: a guide that moves, a rotor that is not symmetric, angular
+  /// accelerations that are given.
+  template <class S, class G, class N, class D>
+  [[nodiscard]] auto momentum_rates(const detail::Turning<G>& guide, const detail::SinCos<G>& alpha,
+                                    const detail::SinCos<S>& beta,
+                                    const detail::TurnedRotor<S, N>& rotor,
+                                    const detail::CardanMotion<S, D>& motion) const {
+    using K = detail::AbsentIfBoth<G, D>;
+    const auto& [ux, uy, uz] = guide.u;
+    const auto& [vx, vy, vz] = guide.du;
+    const auto& [sa, ca] = alpha;
+    const auto& [sb, cb] = beta;
+    const auto& [P, Q, R, W] = rotor;
+    const auto& [da, db, df, dda, ddb] = motion;
+    const auto& J_2 = moments_.inner_ring;
+    const auto& J_3 = moments_.outer_ring;
+
+    // Absolute angular velocities of outer (3) and inner ring (2) on their own axes, and rates.
+    const S x3 = da + ux;
+    const G y3 = uy * ca + uz * sa;
+    const G z3 = uz * ca - uy * sa;
+    const K dx3 = dda + vx;
+    const G dy3 = vy * ca + vz * sa + da * z3;
+    const G dz3 = vz * ca - vy * sa - da * y3;
+    const S x2 = x3 * cb - z3 * sb;
+    const S y2 = y3 + db;
+    const S z2 = x3 * sb + z3 * cb;
+    const S dx2 = dx3 * cb - dz3 * sb - db * z2;
+    const K dy2 = dy3 + ddb;
+    const S dz2 = dx3 * sb + dz3 * cb + db * x2;
+
+    const S L_a = P * x2 + R * y2;
+    const S L_b = Q * y2 + R * x2;
+    const S L_c = moments_.rotor.z() * S(z2 + df);
+    detail::CardanRates<S, K> k;
+    k.outer_a = J_3.x() * dx3 + (J_3.z() - J_3.y()) * (y3 * z3);
+    k.outer_b = J_3.y() * dy3 + (J_3.x() - J_3.z()) * (z3 * x3);
+    k.outer_c = J_3.z() * dz3 + (J_3.y() - J_3.x()) * (x3 * y3);
+    k.inner_a = J_2.x() * dx2 + (J_2.z() - J_2.y()) * S(y2 * z2);
+    k.inner_b = J_2.y() * dy2 + (J_2.x() - J_2.z()) * S(z2 * x2);
+    k.inner_c = J_2.z() * dz2 + (J_2.y() - J_2.x()) * S(x2 * y2);
+    k.rotor_a = P * dx2 + R * dy2 + df * (W * y2 - 2.0 * (R * x2)) + (y2 * L_c - z2 * L_b);
+    k.rotor_b = Q * dy2 + R * dx2 + df * (W * x2 + 2.0 * (R * y2)) + (z2 * L_a - x2 * L_c);
+    k.dz_2 = dz2;
+    k.twist = S(0) + (R * S((x2 - y2) * (x2 + y2)) - W * S(x2 * y2));
+    return k;
+  }
+
+  /// N is S, or Absent if the rotor is symmetric.
+  template <class N, class S>
+  [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
+    using G = std::conditional_t<detail::is_resting<M>, detail::Absent, S>;
+    constexpr bool round = std::is_same_v<N, detail::Absent>;
+    const double A_1 = moments_.rotor.x();
+    const double B_1 = moments_.rotor.y();
+    const double C_1 = moments_.rotor.z();
+    const double A_2 = moments_.inner_ring.x();
+    const double B_2 = moments_.inner_ring.y();
+    const double A_3 = moments_.outer_ring.x();
+
+    detail::Turning<G> guide;
+    detail::SinCos<G> alpha;
+    if constexpr (!detail::is_resting<M>) {
+      guide = turning_at<S>(t);
+      alpha = detail::sin_cos(bearings_.outer.reference, y[0]);
+    }
+    const detail::SinCos<S> beta = detail::sin_cos(bearings_.inner.reference, y[1]);
+    const auto& [sb, cb] = beta;
+    const detail::TurnedRotor<S, N> rotor = turned_rotor<N>(y[2]);
+    const auto& [P, Q, R, W] = rotor;
+    const auto k =
+        momentum_rates<S, G, N, detail::Absent>(guide, alpha, beta, rotor, {y[3], y[4], y[5]});
+
+    // The rotor's torque about C stands in for C_1 (dz_2 + phi''), or phi'' = 0 does.
+    S on_rotor;
+    if constexpr (regulated) {
+      on_rotor = C_1 * k.dz_2 + k.twist;
+    } else {
+      on_rotor = spin_torque<S>(t, y[5]);
+    }
+    const S left_a = resistance(bearings_.outer, y[0], y[3]) +
+                     (cb * S(k.rotor_a + k.inner_a) + sb * S(on_rotor + k.inner_c) + k.outer_a);
+    const S left_b = resistance(bearings_.inner, y[1], y[4]) + (k.rotor_b + k.inner_b);
+    const S across = A_3 + carried() * S(sb * sb);
+    const S cc = cb * cb;
+    const S M_bb = B_2 + Q;
+    const S M_aa = across + cc * S(A_2 + P);
+    S dda;
+    S ddb;
+    if constexpr (round) {
+      if (M_aa <= singular_) stop(y[1]);
+      dda = -left_a / M_aa;
+      ddb = -left_b / M_bb;
+    } else {
+      const S det = across * M_bb + cc * S(A_2 * M_bb + B_2 * P + A_1 * B_1);
+      if (det <= singular_) stop(y[1]);
+      const S M_ab = R * cb;
+      dda = (M_ab * left_b - M_bb * left_a) / det;
+      ddb = (M_ab * left_a - M_aa * left_b) / det;
+    }
+    S ddf(0);
+    if constexpr (!regulated) ddf = (on_rotor - k.twist) / C_1 - k.dz_2 - sb * dda;
+    Eigen::Matrix<S, 6, 1> dy;
+    dy[0] = y[3];
+    dy[1] = y[4];
+    dy[2] = y[5];
+    dy[3] = dda;
+    dy[4] = ddb;
+    dy[5] = ddf;
+    return dy;
+  }
+
+  /// How small the determinant (of a symmetric rotor: its factor M_aa) counts as 0. It has no error
+  /// but rounding's; what makes it meaningless is the rounding of beta, where cos^2 beta is all
+  /// that keeps it from 0. A NaN is not less: steps answer it by shorter ones.
+  [[nodiscard]] double singular() const {
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    const auto& [rotor, inner, outer] = moments_;
+    const double most = std::max(rotor.x(), rotor.y());
+    const double about_a = outer.x() + inner.x() + carried() + most;
+    return 64 * eps * eps * about_a * (symmetric_ ? 1 : inner.y() + most);
+  }
+
+  /// What turns with the inner ring about C.
+  [[nodiscard]] double carried() const {
+    if constexpr (regulated) return moments_.inner_ring.z() + moments_.rotor.z();
+    return moments_.inner_ring.z();
+  }
+
+  template <class S>
+  [[noreturn]] void stop(const S& beta) const {
+    std::ostringstream text;
+    text.precision(17);
+    text << "Cardan gyro: at beta = "
+         << bearings_.inner.reference + static_cast<double>(detail::number_in(beta))
+         << " rad the mass matrix is singular: ";
+    const bool light = moments_.outer_ring.x() == 0 && moments_.inner_ring.z() == 0 && !regulated;
+    text << (light ? "nothing resists the rotation alpha of the outer ring (A_3 + C_2 sin^2 beta = "
+                     "0 and cos beta = 0: gimbal lock of rings without mass)"
+                   : "nothing resists the rotation beta of the inner ring (B_2 + Q = 0)");
+    throw ComputationFailed(text.str());
+  }
+
+  CardanMoments moments_;
+  CardanBearings bearings_;
+  M guide_;
+  [[no_unique_address]] Rotor rotor_;
+  bool symmetric_;
+  double singular_ = singular();
+};
+
+}  // namespace kreisel

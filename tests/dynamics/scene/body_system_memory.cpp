@@ -1,0 +1,142 @@
+#include <Eigen/Core>
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/body_system.hpp>
+
+/// Once workspace and results are made, nothing that a system computes asks for memory, and the
+/// workspace grows linearly. Counted: every operator new, and every malloc and the like called from
+/// this file, which is where header-only code is; the linker passes them through here (--wrap).
+
+namespace {
+
+std::size_t requests = 0;
+std::size_t bytes = 0;
+
+void note(std::size_t size) {
+  ++requests;
+  bytes += size;
+}
+
+}  // namespace
+
+extern "C" {
+
+void* __real_malloc(std::size_t);
+void* __real_calloc(std::size_t, std::size_t);
+void* __real_realloc(void*, std::size_t);
+void* __real_aligned_alloc(std::size_t, std::size_t);
+int __real_posix_memalign(void**, std::size_t, std::size_t);
+
+void* __wrap_malloc(std::size_t size) {
+  note(size);
+  return __real_malloc(size);
+}
+void* __wrap_calloc(std::size_t count, std::size_t size) {
+  note(count * size);
+  return __real_calloc(count, size);
+}
+void* __wrap_realloc(void* old, std::size_t size) {
+  note(size);
+  return __real_realloc(old, size);
+}
+void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
+  note(size);
+  return __real_aligned_alloc(alignment, size);
+}
+int __wrap_posix_memalign(void** result, std::size_t alignment, std::size_t size) {
+  note(size);
+  return __real_posix_memalign(result, alignment, size);
+}
+}
+
+// Not inline, or the compiler sees through delete to free and finds no malloc at the other end.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  note(size);
+  if (void* memory = __real_malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete[](void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+using namespace kreisel;
+
+namespace {
+
+/// Every joint kind in turn, with springs, dampers and loads.
+BodySystem<RotatingFrame<>> chain(int n) {
+  std::vector<BodyDescription> bodies;
+  for (int i = 0; i < n; ++i) {
+    BodyDescription b;
+    b.name = "body " + std::to_string(i);
+    if (i > 0) b.parent = "body " + std::to_string(i - 1);
+    b.joint = {.kind = static_cast<JointKind>(i % 6),
+               .axis = {1, 0.5, 0},
+               .second_axis = {0, 0, 1},
+               .position = {0, 0.25, -0.5}};
+    b.inertia = InertiaTensor<Body>::about_centre(
+        1, {0, 0.1, 0.2}, Vector3<double>(0.1, 0.12, 0.15).asDiagonal().toDenseMatrix());
+    if (b.joint.kind == JointKind::revolute) b.forces = {{.stiffness = 1, .damping = 0.1}};
+    b.loads.emplace_back(ConstantLoad<Inertial>{.force = {1, 2, 3}});
+    b.loads.emplace_back(ViscousDrag<>{.torque_per_rate = 0.1});
+    bodies.push_back(b);
+  }
+  return {{.angular_velocity = {0, 0, 1}}, bodies, UniformGravity<Guide>{{0, 0, -9}}};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(a_system_of_bodies)
+
+BOOST_AUTO_TEST_CASE(computes_without_memory_of_its_own) {
+  const auto system = chain(24);
+  BodyWorkspace w = system.workspace();
+  Eigen::VectorXd y(system.tree().coordinates() + system.tree().rates());
+  for (int i = 0; i < y.size(); ++i) y[i] = std::sin(i + 1.0);
+  Eigen::VectorXd rates, dv, force;
+  Eigen::MatrixXd mass;
+  JointReactions reactions;
+  std::vector<ReactionParts> parts;
+  const auto everything = [&] {
+    system.rates(0.1, y, rates, w);
+    system.accelerations(0.1, y, {}, dv, w);
+    system.joint_forces(0.1, y, dv, force, w);
+    system.mass_matrix(y, mass, w);
+    system.reactions(0.1, y, reactions, w);
+    system.reaction_parts(0.1, y, parts, w);
+    (void)system.situation(0.1, y, 3, w);
+    (void)system.terms(0.1, y, 5, w);
+    (void)system.balance(0.1, y, w);
+  };
+  std::size_t before = requests;
+  everything();
+  BOOST_TEST(requests > before);  // the results get their size: the counter counts
+  before = requests;
+  everything();
+  BOOST_TEST(requests == before);
+}
+
+BOOST_AUTO_TEST_CASE(needs_memory_in_proportion_to_its_bodies) {
+  const auto workspace_bytes = [](int n) {
+    const auto system = chain(n);
+    const std::size_t before = bytes;
+    const BodyWorkspace w = system.workspace();
+    return static_cast<double>(bytes - before);
+  };
+  const double one = (workspace_bytes(66) - workspace_bytes(6)) / 60;
+  BOOST_TEST_MESSAGE("workspace: " << one << " bytes for each body");
+  BOOST_TEST(std::abs(workspace_bytes(1206) - workspace_bytes(6) - 1200 * one) <=
+             0.01 * 1200 * one);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
