@@ -34,12 +34,21 @@ struct HarmonicSeries {
     return sum;
   }
 
-  [[nodiscard]] Vector3<S> rate(const S& t) const {
+  /// Value and rate in turn; sine and cosine of an angle cost little more than one of them.
+  [[nodiscard]] std::pair<Vector3<S>, Vector3<S>> with_rate(const S& t) const {
     using std::cos;
-    Vector3<S> sum = Vector3<S>::Zero();
-    for (const Term& k : terms) sum += k.amplitude * (k.frequency * cos(k.frequency * t + k.phase));
-    return sum;
+    using std::sin;
+    Vector3<S> sum = constant;
+    Vector3<S> rate = Vector3<S>::Zero();
+    for (const Term& k : terms) {
+      const S angle = k.frequency * t + k.phase;
+      sum += k.amplitude * sin(angle);
+      rate += k.amplitude * (k.frequency * cos(angle));
+    }
+    return {sum, rate};
   }
+
+  [[nodiscard]] Vector3<S> rate(const S& t) const { return with_rate(t).second; }
 
   /// The same in another scalar.
   template <class T>
@@ -90,11 +99,17 @@ class HarmonicFrame {
     const PoseDerivatives<S> pose = pose_(t);
     FrameMotion<G, I, S> motion;
     motion.X.value = Pose<S>::from(pose.q, pose.x);
-    const Vector3<S> u = u_(t);
+    const auto [u, du] = u_.with_rate(t);
     const Vector3<S> v = motion.X.value.rotation.transpose() * pose.dx;
     motion.V.value = {u, v};
-    motion.dV.value = {u_.rate(t), a_(t) - u.cross(v)};
+    motion.dV.value = {du, a_(t) - u.cross(v)};
     return motion;
+  }
+
+  [[nodiscard]] FrameTurning<S> turning(const S& t) const {
+    pose_.require(t);
+    const auto [u, du] = u_.with_rate(t);
+    return {u, du};
   }
 
  private:

@@ -34,6 +34,15 @@ struct FrameMotion {
   }
 };
 
+/// How a frame turns against another at one moment: u and its rate ou on the frame's own axes.
+///
+/// Units  : rad/s, rad/s^2
+template <class S = double>
+struct FrameTurning {
+  Vector3<S> u = Vector3<S>::Zero();
+  Vector3<S> du = Vector3<S>::Zero();
+};
+
 /// A kind of guide motion: called with a time it tells how its frame moves then.
 ///
 /// Whatever can be called so is one, a user's lambda too. The kinds here have a file each:
@@ -42,6 +51,19 @@ template <class M, class G = Guide, class I = Inertial, class S = double>
 concept GuideMotion = requires(const M& motion, const S& t) {
   { motion(t) } -> std::same_as<FrameMotion<G, I, S>>;
 };
+
+/// u and ou alone, which is all that matters to bodies with their centre of mass at a guide-fixed
+/// point. A guide that has them without its pose offers them as turning(t), the same numbers.
+template <class M, class S>
+[[nodiscard]] auto turning(const M& motion, const S& t) {
+  if constexpr (requires { motion.turning(t); }) {
+    return motion.turning(t);
+  } else {
+    const auto now = motion(t);
+    using Number = typename decltype(now)::Scalar;
+    return FrameTurning<Number>{now.V.value.resultant, now.dV.value.resultant};
+  }
+}
 
 /// The motion of C against A from those of C against B and of B against A. Exact: poses multiply,
 /// velocities add, and the rate of V_BA is handed to the observer C by its transport term.

@@ -41,14 +41,18 @@ class PiecewisePose {
   [[nodiscard]] const std::vector<S>& breakpoints() const { return begins_; }
 
   /// Throws : InvalidInput outside [begin, end]: nothing is extrapolated
+  void require(const S& t) const {
+    if (t >= begin() && t <= end_) return;
+    std::ostringstream text;
+    text.precision(10);
+    text << name_ << ": t = " << t << " s lies outside [" << begin() << ", " << end_
+         << "] s, for which the motion is known";
+    throw InvalidInput(text.str());
+  }
+
+  /// Throws : as require() does
   [[nodiscard]] PoseDerivatives<S> operator()(const S& t) const {
-    if (!(t >= begin() && t <= end_)) {
-      std::ostringstream text;
-      text.precision(10);
-      text << name_ << ": t = " << t << " s lies outside [" << begin() << ", " << end_
-           << "] s, for which the motion is known";
-      throw InvalidInput(text.str());
-    }
+    require(t);
     const auto next = std::upper_bound(begins_.begin() + 1, begins_.end(), t);
     const auto piece = static_cast<std::size_t>(next - begins_.begin()) - 1;
     const S s = t - begins_[piece];

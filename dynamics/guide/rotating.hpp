@@ -41,6 +41,10 @@ struct RotatingFrame {
     return motion;
   }
 
+  [[nodiscard]] FrameTurning<S> turning(const S& /*t*/) const {
+    return {angular_velocity, Vector3<S>::Zero()};
+  }
+
  private:
   /// J(w) a, the integral of (1 - s) exp(s skew(w)) a over s from 0 to 1.
   [[nodiscard]] static Vector3<S> twice_integrated(const Vector3<S>& w, const Vector3<S>& a) {

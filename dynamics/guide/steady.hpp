@@ -20,6 +20,10 @@ struct SteadyFrame {
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     return {{exp(V.value * t) * X.value}, X.inverse() * V, {}};
   }
+
+  [[nodiscard]] FrameTurning<S> turning(const S& /*t*/) const {
+    return {(X.inverse() * V).value.resultant, Vector3<S>::Zero()};
+  }
 };
 
 }  // namespace kreisel

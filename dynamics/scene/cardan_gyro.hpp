@@ -451,22 +451,20 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] detail::Turning<S> turning_at(const S& t) const {
     detail::Turning<S> result;
-    const auto fill = [&result](const auto& u, const auto& du) {
+    const auto fill = [&result](const auto& guide) {
       for (std::size_t i = 0; i < 3; ++i) {
-        result.u[i] = S(u[static_cast<Eigen::Index>(i)]);
-        result.du[i] = S(du[static_cast<Eigen::Index>(i)]);
+        result.u[i] = S(guide.u[static_cast<Eigen::Index>(i)]);
+        result.du[i] = S(guide.du[static_cast<Eigen::Index>(i)]);
       }
     };
     if constexpr (guide_takes<S>) {
-      const auto motion = guide_(t);
-      fill(motion.V.value.resultant, motion.dV.value.resultant);
+      fill(turning(guide_, t));
     } else {
       const double time = static_cast<double>(detail::number_in(t));
-      const auto motion = guide_(time);
-      fill(motion.V.value.resultant, motion.dV.value.resultant);
+      fill(turning(guide_, time));
       // First order in t - time, which is 0 but for its derivatives.
       for (std::size_t i = 0; i < 3; ++i) {
-        const S added = (t - time) * motion.dV.value.resultant[static_cast<Eigen::Index>(i)];
+        const S added = (t - time) * result.du[i];
         result.u[i] = S(result.u[i] + added);
       }
     }

@@ -1,126 +1,24 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
+#include <cstddef>
 #include <limits>
 #include <optional>
-#include <sstream>
-#include <string>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 #include <dynamics/solve/closed_form.hpp>
+#include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/report.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/solve/runs.hpp>
+#include <dynamics/solve/task.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
 
-/// How a run is computed.
-enum class Method {
-  automatic,  ///< the closed form where the scene has one, else steps
-  steps       ///< Verner98, ExplicitSteps
-};
-
-/// What is asked of a run.
-struct Task {
-  double begin = 0;
-  std::vector<double> times;  ///< of output, in order, forwards or backwards; the last is the end
-  std::vector<double> jumps = {};  ///< when guide or loads jump: steps end there
-  double tolerance = 1e-10;        ///< of the global error; see RunReport::error_estimate
-
-  Method method = Method::automatic;
-
-  /// A part of the state smaller than this (SI) counts as being so large.
-  double smallest = 1e-3;
-
-  /// Called at every output with the time; false cancels the run. What was computed is kept.
-  std::function<bool(double t)> progress = nullptr;
-};
-
 namespace detail {
-
-/// The distance of two states in the measure of RunReport::error_estimate.
-///
-/// Attitudes (blocks of four) by the angle between them, whatever their norms; q and -q are one.
-template <class Scene>
-class ErrorMeasure {
-  using Vector = typename Scene::Vector;
-
- public:
-  explicit ErrorMeasure(double smallest) { size_.fill(smallest); }
-
-  double operator()(const Vector& a, const Vector& b) {
-    double worst = 0;
-    int begin = 0;
-    for (std::size_t i = 0; i < Scene::blocks.size(); ++i) {
-      const int n = Scene::blocks[i];
-      const bool attitude = n == 4;
-      if (attitude) {
-        const Eigen::Vector4d p = part<4>(a, begin);
-        const Eigen::Vector4d q = part<4>(b, begin);
-        // |p -+ q| / 2 of unit quaternions is the sine of a quarter of the angle between.
-        const Eigen::Vector4d unit_p = p / p.norm();
-        const Eigen::Vector4d unit_q = q / (p.dot(q) < 0 ? -q.norm() : q.norm());
-        worst = worse(worst, 4 * std::asin(std::min(1.0, (unit_p - unit_q).norm() / 2)));
-      } else {
-        double difference2 = 0;
-        double size2 = 0;
-        for (int k = begin; k < begin + n; ++k) {
-          difference2 += (a[k] - b[k]) * (a[k] - b[k]);
-          size2 += b[k] * b[k];
-        }
-        size_[i] = std::max(size_[i], std::sqrt(size2));
-        worst = worse(worst, difference2 == 0 ? 0 : std::sqrt(difference2) / size_[i]);
-      }
-      begin += n;
-    }
-    return worst;
-  }
-
- private:
-  /// The greater; a NaN stays.
-  [[nodiscard]] static double worse(double a, double b) { return b <= a || a != a ? a : b; }
-
-  template <int n>
-  [[nodiscard]] static Eigen::Matrix<double, n, 1> part(const Vector& v, int begin) {
-    Eigen::Matrix<double, n, 1> result;
-    for (int k = 0; k < n; ++k) result[k] = v[begin + k];
-    return result;
-  }
-
-  std::array<double, Scene::blocks.size()> size_;
-};
-
-template <class... Words>
-[[noreturn]] void refuse_task(const Words&... words) {
-  std::ostringstream text;
-  text.precision(17);
-  (text << ... << words);
-  throw InvalidInput(text.str());
-}
-
-inline void check(const Task& task) {
-  if (!(task.tolerance >= 1e-15 && task.tolerance <= 1e-2)) {
-    refuse_task("tolerance = ", task.tolerance,
-                " lies outside [1e-15, 1e-2], what double precision can promise");
-  }
-  if (!(task.smallest >= 0)) refuse_task("smallest = ", task.smallest, " must be 0 or above");
-  if (task.times.empty()) refuse_task("no output times are given");
-  const double direction = task.times.back() < task.begin ? -1 : 1;
-  double before = task.begin;
-  if (!std::isfinite(before)) refuse_task("the time of the beginning is not finite");
-  for (const double t : task.times) {
-    if (!std::isfinite(t)) refuse_task("an output time is not finite");
-    if (direction * (t - before) < 0) {
-      refuse_task("output times turn round: t = ", t, " s comes after ", before, " s");
-    }
-    before = t;
-  }
-}
 
 /// Keeps the largest drift of what a scene says is conserved.
 template <class Scene>
@@ -195,13 +93,13 @@ template <class Scene>
 /// other's. Their distance is, to a thirtieth, the error of the coarser one, which is returned; the
 /// estimate is 1.3 times that and a random walk of rounding, 2.5 u a step. Where it exceeds the
 /// tolerance the run begins again with shorter steps, until rounding stops it.
-template <class Scene>
-[[nodiscard]] Trajectory<typename Scene::State> solve_by_steps(const Scene& scene,
-                                                               const typename Scene::State& start,
-                                                               const Task& task) {
-  constexpr double finer = 30;
+///
+/// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
+template <class Scene, class Runs>
+[[nodiscard]] std::optional<Trajectory<typename Scene::State>> solve_in_pairs(
+    const Scene& scene, const Runs& runs, const typename Scene::State& start, const Task& task,
+    double& spent) {
   constexpr double caution = 1.3;
-  constexpr double least = 1e-16;  // of the steps' accuracy
   constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
   const Clock::time_point clock = Clock::now();
 
@@ -209,28 +107,31 @@ template <class Scene>
   // The finer run ends at the middle first, lest a short run be one and the same step in both.
   const double end = task.times.back();
   const double middle = (task.begin + end) / 2;
-  double spent = 0;
-  double accuracy = std::max(task.tolerance / 10, 4 * least);
+  double setting = runs.first();
   while (true) {
     result = {};
     RunReport& report = result.report;
-    report.method = "verner98";
+    report.method = name(Runs::method);
     report.tolerance = task.tolerance;
     InvariantWatch<Scene> watch(scene);
-    ErrorMeasure<Scene> distance(task.smallest);
-    const bool last_try = accuracy <= 4 * least;
-    Advance coarse(scene, task.begin, start, {accuracy, task.smallest});
-    Advance fine(scene, task.begin, start, {std::max(accuracy / finer, least), task.smallest});
-    coarse.stop_at(task.jumps);
-    fine.stop_at(task.jumps);
+    ErrorMeasure<Scene> distance(scene, task.smallest);
+    const bool last_try = runs.last(setting);
+    auto coarse = runs.run(setting);
+    auto fine = runs.run(runs.finer(setting));
     watch.note(task.begin, start);
     bool too_coarse = false;
     try {
       for (const double t : task.times) {
         const typename Scene::State state = coarse.on_the_way(t, end);
+        if constexpr (requires { coarse.stiff(); }) {
+          if (coarse.stiff()) {
+            spent += coarse.effort().evaluations + fine.effort().evaluations;
+            return std::nullopt;
+          }
+        }
         const typename Scene::State better =
             fine.on_the_way(t, (t < middle) == (end > task.begin) ? middle : end);
-        const double off = distance(Scene::to_vector(state), Scene::to_vector(better));
+        const double off = distance(scene.to_vector(state), scene.to_vector(better));
         const double rounding = 2.5 * unit_roundoff * std::sqrt(coarse.effort().steps);
         report.error_estimate = std::max(report.error_estimate, caution * off + rounding);
         too_coarse = report.error_estimate > task.tolerance && !last_try;
@@ -243,18 +144,75 @@ template <class Scene>
     }
     spent += coarse.effort().evaluations + fine.effort().evaluations;
     if (too_coarse) {
-      const double wanted =
-          accuracy * std::clamp(task.tolerance / (3 * report.error_estimate), 1e-4, 0.2);
-      accuracy = std::max(wanted, 4 * least);
+      setting = runs.tightened(setting, task.tolerance / (3 * report.error_estimate));
       continue;
     }
     report.effort = coarse.effort();
     report.all_evaluations = spent;
-    report.tolerance_kept = report.error_estimate <= task.tolerance;
+    report.tolerance_kept =
+        report.status != RunStatus::failed && report.error_estimate <= task.tolerance;
     report.invariants = watch.drifts();
     report.run_time = seconds_since(clock);
     return result;
   }
+}
+
+template <class Scene>
+[[nodiscard]] Trajectory<typename Scene::State> solve_by_steps(const Scene& scene,
+                                                               const typename Scene::State& start,
+                                                               const Task& task) {
+  const Clock::time_point clock = Clock::now();
+  const bool automatic = task.method == Method::automatic;
+  double spent = 0;
+  const auto with = [&](const auto& runs) {
+    auto result = solve_in_pairs(scene, runs, start, task, spent);
+    if (result) result->report.run_time = seconds_since(clock);
+    return result;
+  };
+
+  if constexpr (std::is_same_v<Scene, EulerTop>) {
+    const bool pays = automatic && splits(scene) && is_fast(scene, start);
+    if (pays || task.method == Method::splitting) return *with(SplittingRuns(scene, task, start));
+  }
+  if constexpr (has_fixed_size<Scene>) {
+    if (task.method == Method::radau13) return *with(RadauRuns(scene, task, start));
+    if (task.method == Method::gauss16) return *with(GaussRuns(scene, task, start));
+  }
+  const auto explicitly = with(VernerRuns(scene, task, start));
+  if constexpr (has_fixed_size<Scene>) {
+    if (!explicitly) return *with(RadauRuns(scene, task, start));
+    // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
+    const RunReport& report = explicitly->report;
+    const bool long_run = report.status == RunStatus::complete && report.effort.steps > 1e5;
+    if (automatic && long_run && !report.tolerance_kept && task.jumps.empty()) {
+      auto fixed = with(GaussRuns(scene, task, start));
+      if (fixed->report.status == RunStatus::complete &&
+          fixed->report.error_estimate < report.error_estimate) {
+        return *fixed;
+      }
+    }
+  }
+  return *explicitly;
+}
+
+/// Throws what is wrong with the method asked for, for this scene.
+template <class Scene>
+void check_method(const Scene& scene, const Task& task) {
+  const auto refuse = [&](const char* why) {
+    refuse_task("method ", name(task.method), " does not apply: ", why);
+  };
+  const bool fixed_steps = task.method == Method::gauss16 || task.method == Method::splitting;
+  if (fixed_steps && !task.jumps.empty()) refuse("its equal steps cannot end at the jumps");
+  if constexpr (!has_fixed_size<Scene>) {
+    if (task.method == Method::gauss16 || task.method == Method::radau13) {
+      refuse("it needs a state of a size known when compiled");
+    }
+  }
+  if (task.method != Method::splitting) return;
+  if constexpr (std::is_same_v<Scene, EulerTop>) {
+    if (splits(scene)) return;
+  }
+  refuse("it is for an EulerTop with two equal moments, under weight and without rotor");
 }
 
 }  // namespace detail
@@ -267,18 +225,23 @@ template <class Scene>
 ///          (tests/dynamics/solve/solve.cpp). Where the tolerance cannot be reached the best is
 ///          returned and RunReport::tolerance_kept is false
 /// Cost   : by steps 2.5 times the integration alone, reported as all_evaluations
-/// Throws : InvalidInput for a task that is none. What fails on the way is told by the report, with
-///          the trajectory up to there
+/// Throws : InvalidInput for a task that is none or a method that does not fit the scene. What
+///          fails on the way is told by the report, with the trajectory up to there
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
                                                       const typename Scene::State& start,
                                                       const Task& task) {
   detail::check(task);
+  detail::check_method(scene, task);
+  const bool closed_wanted = task.method == Method::closed_form || task.method == Method::automatic;
   if constexpr (requires { closed_form(scene, task.begin, start); }) {
-    const auto motion = closed_form(scene, task.begin, start);
-    if (motion && task.method == Method::automatic) {
-      return detail::solve_closed(scene, start, task, *motion);
+    if (closed_wanted) {
+      const auto motion = closed_form(scene, task.begin, start);
+      if (motion) return detail::solve_closed(scene, start, task, *motion);
     }
+  }
+  if (task.method == Method::closed_form) {
+    detail::refuse_task("method closed form does not apply: this scene has none that is known");
   }
   return detail::solve_by_steps(scene, start, task);
 }

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
+#include <span>
+#include <vector>
 
 #include <dynamics/step/shared.hpp>
 
@@ -51,13 +51,15 @@ class BlockSizes {
  public:
   using Scalar = typename Vector::Scalar;
 
-  template <std::size_t n>
-  BlockSizes(const std::array<int, n>& blocks, const Scalar& smallest, const Vector& y)
+  /// Without any blocks all of y is one.
+  BlockSizes(std::span<const int> blocks, const Scalar& smallest, const Vector& y)
       : smallest_(smallest) {
-    require_blocks(blocks, static_cast<int>(y.size()));
+    const int all = static_cast<int>(y.size());
+    if (blocks.empty()) blocks = {&all, 1};
+    require_blocks(blocks, all);
     int begin = 0;
     for (const int size : blocks) {
-      blocks_[used_++] = {begin, size, Scalar(0)};
+      blocks_.push_back({begin, size, Scalar(0)});
       begin += size;
     }
     note(y);
@@ -65,28 +67,28 @@ class BlockSizes {
 
   /// To be called with every state that stands.
   void note(const Vector& y) {
-    for (std::size_t i = 0; i < used_; ++i) {
-      blocks_[i].size = std::max(blocks_[i].size, norm(y, blocks_[i]));
-    }
+    for (Block& block : blocks_) block.size = std::max(block.size, norm(y, block));
   }
 
   /// The largest of the blocks' |error|, each in proportion to its size, which is |change| where
   /// the step has made that. A NaN stays.
   [[nodiscard]] Scalar relative(const Vector& error, const Vector& change) const {
     Scalar worst(0);
-    for (std::size_t i = 0; i < used_; ++i) {
-      const Scalar size = std::max(scale(blocks_[i]), norm(change, blocks_[i]));
-      const Scalar ratio = norm(error, blocks_[i]) / size;
+    for (const Block& block : blocks_) {
+      const Scalar off = norm(error, block);
+      if (off == Scalar(0)) continue;
+      const Scalar ratio = off / std::max(scale(block), norm(change, block));
       worst = ratio <= worst || worst != worst ? worst : ratio;
     }
     return worst;
   }
 
-  /// A hundredth of the time in which a block changes by its own size.
+  /// A hundredth of the time in which a block changes by its own size, if it has one already.
   [[nodiscard]] Scalar first_step(const Vector& rate) const {
     Scalar fastest(0);
-    for (std::size_t i = 0; i < used_; ++i) {
-      fastest = std::max(fastest, Scalar(norm(rate, blocks_[i]) / scale(blocks_[i])));
+    for (const Block& block : blocks_) {
+      if (scale(block) == Scalar(0)) continue;
+      fastest = std::max(fastest, Scalar(norm(rate, block) / scale(block)));
     }
     return fastest > Scalar(0) ? Scalar(Scalar(0.01) / fastest) : Scalar(1);
   }
@@ -107,8 +109,7 @@ class BlockSizes {
   [[nodiscard]] Scalar scale(const Block& block) const { return std::max(block.size, smallest_); }
 
   Scalar smallest_;
-  std::array<Block, 8> blocks_ = {};
-  std::size_t used_ = 0;
+  std::vector<Block> blocks_;
 };
 
 }  // namespace detail

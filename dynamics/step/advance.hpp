@@ -6,50 +6,90 @@
 
 namespace kreisel {
 
+namespace detail {
+
+/// The vector field of a scene, as a stepper calls it.
+template <class Scene>
+struct SceneField {
+  const Scene* scene;
+
+  template <class S, class Vector>
+  [[nodiscard]] Vector operator()(const S& t, const Vector& y) const {
+    return scene->rates(t, y);
+  }
+};
+
+/// Of a scene that computes in a workspace.
+template <class Scene>
+requires requires(const Scene& scene) { scene.workspace(); }
+struct SceneField<Scene> {
+  const Scene* scene;
+  decltype(scene->workspace()) workspace = scene->workspace();
+
+  template <class S, class Vector>
+  void operator()(const S& t, const Vector& y, Vector& rate) {
+    scene->rates(t, y, rate, workspace);
+  }
+};
+
+/// The scene's class knows its blocks, or only the scene itself does.
+template <class Scene>
+[[nodiscard]] auto blocks_of(const Scene& scene) {
+  if constexpr (requires { scene.blocks(); }) {
+    return scene.blocks();
+  } else {
+    return scene.blocks;
+  }
+}
+
+}  // namespace detail
+
 /// A scene integrated step by step: State in, State out.
 ///
 ///   Advance run(body, 0, start);
 ///   for (double t = 0.1; t <= 10; t += 0.1) print(t, run.to(t));
 ///
-/// Scene  : has State, to_vector, from_vector, rates(t, y) and blocks; is kept by reference
+/// Scene  : has State, Vector, to_vector, from_vector, blocks and rates(t, y), or a workspace() and
+///          rates(t, y, result, workspace); is kept by reference
 /// Throws : as ExplicitSteps does
 template <class Scene, class Tableau = Verner98>
 class Advance {
-  struct Field {
-    const Scene* scene;
-
-    template <class S, class Vector>
-    [[nodiscard]] Vector operator()(const S& t, const Vector& y) const {
-      return scene->rates(t, y);
-    }
-  };
-
  public:
   using State = typename Scene::State;
 
   Advance(const Scene& scene, double t, const State& state, const Accuracy& accuracy = {})
-      : steps_({&scene}, t, Scene::to_vector(state), accuracy, Scene::blocks) {}
+      : scene_(&scene),
+        steps_({&scene}, t, scene.to_vector(state), accuracy, detail::blocks_of(scene)) {}
   Advance(Scene&&, double, const State&, const Accuracy& = {}) = delete;
 
   /// The state at the time `end`, before or after the present one.
-  State to(double end) { return Scene::from_vector(steps_.advance_to(end)); }
+  State to(double end) { return scene_->from_vector(steps_.advance_to(end)); }
 
   /// The state at a time on the way to `end`, not before the last one asked for; the steps go on as
   /// if nobody had asked.
   State on_the_way(double time, double end) {
-    while (!steps_.covers(time)) steps_.step_towards(end);
-    return Scene::from_vector(steps_.at(time));
+    while (!covers(time)) step_towards(end);
+    return at(time);
   }
+
+  /// One step towards `end`, whether a time lies within it, and the state there.
+  void step_towards(double end) { steps_.step_towards(end); }
+  [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
+  [[nodiscard]] State at(double time) { return scene_->from_vector(steps_.at(time)); }
+
+  /// Whether the field has proved stiff, as ExplicitSteps tells it.
+  [[nodiscard]] bool stiff() const { return steps_.stiff(); }
 
   /// Announces times at which the scene's guide or loads jump.
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
   [[nodiscard]] double t() const { return steps_.t(); }
-  [[nodiscard]] State state() const { return Scene::from_vector(steps_.y()); }
+  [[nodiscard]] State state() const { return scene_->from_vector(steps_.y()); }
   [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
 
  private:
-  ExplicitSteps<typename Scene::Vector, Field, Tableau> steps_;
+  const Scene* scene_;
+  ExplicitSteps<typename Scene::Vector, detail::SceneField<Scene>, Tableau> steps_;
 };
 
 }  // namespace kreisel

@@ -15,6 +15,14 @@ struct Compensated {
     rest = corrected - (sum - value);
     value = sum;
   }
+
+  /// Becomes from + increment, like add() but without a T for the time being: a vector of a size
+  /// known at run time only would ask for memory.
+  void set_sum(const Compensated& from, const T& increment) {
+    rest = increment + from.rest;
+    value = from.value + rest;
+    rest -= value - from.value;
+  }
 };
 
 }  // namespace kreisel::detail

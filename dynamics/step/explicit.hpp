@@ -7,12 +7,15 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/compensated.hpp>
 #include <dynamics/step/shared.hpp>
+#include <dynamics/step/stage_memory.hpp>
 #include <dynamics/step/verner.hpp>
 
 namespace kreisel {
@@ -28,7 +31,10 @@ namespace kreisel {
 /// it reads a polynomial through five such points and their derivatives (51 evaluations a step in
 /// all).
 ///
-/// Field  : callable (S t, Vector y) -> Vector, Vector = Eigen::Matrix<S, n, 1>
+/// Vector : Eigen::Matrix<S, n, 1>; n may be Eigen::Dynamic, and then all memory is asked for when
+///          the steps are made, none while they go on
+/// Field  : callable (S t, Vector y) -> Vector, or (S t, Vector y, Vector& rate), which writes into
+///          a rate that has its size already
 /// Blocks : how many components, in turn, share a unit and a size, e.g. {4, 3} for a quaternion and
 ///          an angular velocity; one block by default
 /// Source : Verner's tableau; step control (PI): E. Hairer, G. Wanner, Solving Ordinary
@@ -41,16 +47,17 @@ class ExplicitSteps {
  public:
   using Scalar = typename Vector::Scalar;
 
-  template <std::size_t n = 1>
   ExplicitSteps(Field field, const Scalar& t, const Vector& y, const Accuracy& accuracy = {},
-                const std::array<int, n>& blocks = {int(Vector::RowsAtCompileTime)})
+                std::span<const int> blocks = {})
       : field_(std::move(field)),
         accuracy_(accuracy),
         time_{t, Scalar(0)},
         state_{y, zero(y)},
         allowed_(accuracy.relative),
+        stage_(y),
         sizes_(blocks, Scalar(accuracy.smallest), y),
         before_{time_, state_, zero(y)} {
+    difference_.fill(zero(y));
     detail::check(accuracy);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
@@ -61,11 +68,12 @@ class ExplicitSteps {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
-  /// Whether the last 20 steps that were looked at were as short as they were because the field is
-  /// stiff, not because the solution bends: then RadauSteps is the better choice. Every eighth is.
+  /// Whether the last 20 steps that were looked at, every eighth, were as short as they were
+  /// because the field is stiff, not because the solution bends: then RadauSteps is the better
+  /// choice.
   ///
-  /// Source : Hairer, Wanner, Solving Ordinary Differential Equations II, IV.2: the field's greatest
-  ///          rate, from two stages at the same time, against what the method is stable for
+  /// Source : Hairer, Wanner, Solving Ordinary Differential Equations II, IV.2: the greatest rate
+  ///          of the field, from two stages at the same time, against what the method is stable for
   [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
   /// Times at which the field jumps (a thrust that sets in, a guide that is jerked), in any order.
@@ -88,8 +96,10 @@ class ExplicitSteps {
     fill_stage(0, detail::on_this_side(t(), goal, jumps_), y());
     if (!(stage_[0] - stage_[0]).isZero(Scalar(0)))
       detail::stop_integration(t(), "the field is not finite");
-    if (step_ == Scalar(0)) step_ = sizes_.first_step(unpadded(stage_[0]));
-    before_ = {time_, state_, unpadded(stage_[0])};
+    before_.time = time_;
+    before_.state = state_;
+    before_.rate = Memory::own(stage_[0]);
+    if (step_ == Scalar(0)) step_ = sizes_.first_step(before_.rate);
     dense_points_ = 0;
     while (true) {
       const Scalar left = (goal - time_.value) - time_.rest;
@@ -115,25 +125,38 @@ class ExplicitSteps {
   ///
   /// Throws : InvalidInput for a time outside of it
   [[nodiscard]] Vector at(const Scalar& time) {
+    Vector result;
+    at(time, result);
+    return result;
+  }
+
+  /// The same, written in place.
+  void at(const Scalar& time, Vector& result) {
     const Scalar& from = before_.time.value;
     if (!covers(time)) {
       detail::refuse_steps("t = ", time, " s lies outside the last step, [", from, ", ", t(),
                            "] s");
     }
-    if (time == t()) return y();
-    if (time == from) return before_.state.value;
-    dense_points_ += 1;
-    if (dense_points_ < 3) return part_of_step(time);
-    if (dense_points_ == 3) fit_polynomial();
-    return polynomial(time);
+    if (time == t()) {
+      result = y();
+    } else if (time == from) {
+      result = before_.state.value;
+    } else if (++dense_points_ < 3) {
+      part_of_step(time, result);
+    } else {
+      if (dense_points_ == 3) fit_polynomial();
+      polynomial(time, result);
+    }
   }
 
   /// Goes back to a time within the last step and continues from there.
   void back_to(const Scalar& time) {
-    const Vector there = at(time);
+    at(time, state_.value);
+    state_.rest.setZero();
     time_ = {time, Scalar(0)};
-    state_ = {there, zero(there)};
-    before_ = {time_, state_, zero(there)};
+    before_.time = time_;
+    before_.state = state_;
+    before_.rate.setZero();
   }
 
  private:
@@ -156,22 +179,32 @@ class ExplicitSteps {
 
   static constexpr std::size_t nodes = 5;
 
-  static constexpr int components = int(Vector::RowsAtCompileTime);
+  using Memory = detail::StageMemory<Vector, Tableau::stages>;
 
-  /// Stages are filled up with zeros to whole packets of 4: 7 numbers would be added one by one.
-  static constexpr int padded = components < 3 ? components : (components + 3) / 4 * 4;
-  using Stage = Eigen::Matrix<Scalar, padded, 1>;
+  static constexpr bool writes_in_place =
+      std::is_invocable_v<Field&, const Scalar&, const Vector&, Vector&>;
 
   static Vector zero(const Vector& y) { return Vector::Zero(y.size()); }
 
-  [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
+  void evaluate(const Scalar& t, const Vector& y, Vector& rate) {
     effort_.evaluations += 1;
-    return field_(t, y);
+    if constexpr (writes_in_place) {
+      field_(t, y, rate);
+    } else {
+      rate = field_(t, y);
+    }
+    if constexpr (!Memory::fixed) {
+      if (rate.size() != y.size()) {
+        detail::refuse_steps("the field gives ", rate.size(), " rates of ", y.size(),
+                             " components");
+      }
+    }
   }
 
   void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
-    const Vector f = evaluate(t, y);
-    for (int i = 0; i < components; ++i) stage_[k][i] = f[i];
+    typename Memory::Passing rate = stage_.rate(k);
+    evaluate(t, y, rate);
+    stage_.keep(k, rate);
   }
 
   /// Where a row of coefficients is not 0.
@@ -190,13 +223,13 @@ class ExplicitSteps {
   /// sum of c_j k_j over the stages, in one pass over the components and without what is 0; without
   /// the last term or with it.
   template <const auto& row, std::size_t without_last = 0>
-  [[nodiscard]] Stage combined() const {
+  [[nodiscard]] auto combined() const {
     constexpr auto& places = occupied<row>;
     if constexpr (places.size() == without_last) {
-      return Stage::Zero();
+      return stage_.nothing();
     } else {
-      return [this]<std::size_t... k>(std::index_sequence<k...>)->Stage {
-        return (... + (static_cast<Scalar>(row[places[k]]) * stage_[places[k]]));
+      return [this]<std::size_t... k>(std::index_sequence<k...>) {
+        return Memory::sum((... + (static_cast<Scalar>(row[places[k]]) * stage_[places[k]])));
       }
       (std::make_index_sequence<places.size() - without_last>());
     }
@@ -205,17 +238,11 @@ class ExplicitSteps {
   template <std::size_t i>
   static constexpr auto row = Tableau::a[i];
 
-  [[nodiscard]] static Vector unpadded(const Stage& v) { return v.template head<components>(); }
-
-  [[nodiscard]] static std::array<Stage, Tableau::stages> zero_stages() {
-    std::array<Stage, Tableau::stages> zeros;
-    zeros.fill(Stage::Zero());
-    return zeros;
-  }
-
-  [[nodiscard]] static Vector moved(const Compensated<Vector>& from, const Scalar& h,
-                                    const Stage& rate) {
-    return from.value + (h * unpadded(rate) + from.rest);
+  /// result = from + h rate
+  template <class Rate>
+  static void move(const Compensated<Vector>& from, const Scalar& h, const Rate& rate,
+                   Vector& result) {
+    result = from.value + (h * Memory::own(rate) + from.rest);
   }
 
   /// All stages but the first of a step of length h.
@@ -230,8 +257,10 @@ class ExplicitSteps {
       // Only the last stage is waited for.
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
-      const Vector before = moved(state, h, combined<row<k>, 1>());
-      fill_stage(k, late ? last_stage_time_ : stage_time, before + weight * unpadded(stage_[last]));
+      typename Memory::Passing point = stage_.point();
+      move(state, h, combined<row<k>, 1>(), point);
+      point += weight * Memory::own(stage_[last]);
+      fill_stage(k, late ? last_stage_time_ : stage_time, point);
     };
     (fill.template operator()<i + 1>(), ...);
   }
@@ -251,10 +280,12 @@ class ExplicitSteps {
       detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
     fill_stages(time_, state_, h, AllButFirst());
-    const Vector change = h * unpadded(combined<Tableau::b>());
-    const Vector error = unpadded(combined<Tableau::difference>());
+    typename Memory::Passing change = stage_.change();
+    typename Memory::Passing error = stage_.error();
+    change = h * Memory::own(combined<Tableau::b>());
+    error = h * Memory::own(combined<Tableau::difference>());
     // In units of what is allowed.
-    const Scalar worst = sizes_.relative(h * error, change) / allowed_;
+    const Scalar worst = sizes_.relative(error, change) / allowed_;
     const bool finite = isfinite(static_cast<double>(worst)) && (change - change).isZero(Scalar(0));
     if (!finite || worst > Scalar(1)) {
       const Scalar aim =
@@ -275,7 +306,7 @@ class ExplicitSteps {
     worst_before_ = max(worst, Scalar(1e-4));
     effort_.steps += 1;
     if (std::fmod(effort_.steps, 8) == 0) look_for_stiffness();
-    state_.add(change);
+    state_.set_sum(before_.state, change);
     time_.add(h);
     sizes_.note(y());
     return true;
@@ -283,9 +314,9 @@ class ExplicitSteps {
 
   void look_for_stiffness() {
     constexpr std::size_t last = Tableau::stages - 1;
-    const Stage apart = combined<row<last>>() - combined<row<last - 1>>();
+    const Scalar apart = (combined<row<last>>() - combined<row<last - 1>>()).norm();
     const Scalar rate = (stage_[last] - stage_[last - 1]).norm();
-    const bool at_the_limit = rate > Scalar(0.6 * Tableau::stable) * apart.norm();
+    const bool at_the_limit = rate > Scalar(0.6 * Tableau::stable) * apart;
     short_steps_ = at_the_limit ? short_steps_ + 1 : 0;
   }
 
@@ -305,11 +336,11 @@ class ExplicitSteps {
   }
 
   /// The last step taken anew up to a time within it: of full order.
-  [[nodiscard]] Vector part_of_step(const Scalar& time) {
+  void part_of_step(const Scalar& time, Vector& result) {
     const Scalar h = (time - before_.time.value) - before_.time.rest;
-    for (int i = 0; i < components; ++i) stage_[0][i] = before_.rate[i];
+    stage_.keep(0, before_.rate);
     fill_stages(before_.time, before_.state, h, AllButFirst());
-    return moved(before_.state, h, combined<Tableau::b>());
+    move(before_.state, h, combined<Tableau::b>(), result);
   }
 
   [[nodiscard]] Scalar node_time(std::size_t i) const {
@@ -320,36 +351,42 @@ class ExplicitSteps {
   /// Newton's divided differences through five states of the last step and their derivatives, each
   /// point twice: degree 9. Kept relative to the state at the step's begin, lest rounding grow.
   void fit_polynomial() {
-    std::array<Vector, nodes> value;
-    std::array<Vector, nodes> rate;
     for (std::size_t i = 0; i < nodes; ++i) {
       const Scalar time = node_time(i);
-      const bool end = i == nodes - 1;
-      value[i] = i == 0 ? before_.state.value : end ? y() : part_of_step(time);
-      rate[i] = i == 0 ? before_.rate : evaluate(end ? last_stage_time_for(time) : time, value[i]);
-      value[i] -= before_.state.value;
+      Vector& value = difference_[2 * i];
+      Vector& rate = difference_[2 * i + 1];
+      if (i == 0) {
+        value = before_.state.value;
+        rate = before_.rate;
+      } else if (i == nodes - 1) {
+        value = y();
+        evaluate(last_stage_time_for(time), value, rate);
+      } else {
+        part_of_step(time, value);
+        evaluate(time, value, rate);
+      }
     }
-    for (std::size_t i = 0; i < 2 * nodes; ++i) difference_[i] = value[i / 2];
-    for (std::size_t order = 1; order < 2 * nodes; ++order) {
+    for (std::size_t i = 0; i < nodes; ++i) difference_[2 * i] -= before_.state.value;
+    // Between the two at one node there stands the rate already.
+    for (std::size_t i = nodes - 1; i >= 1; --i) divide(difference_[2 * i], 2 * i - 2, i - 1, i);
+    for (std::size_t order = 2; order < 2 * nodes; ++order) {
       for (std::size_t i = 2 * nodes - 1; i >= order; --i) {
-        const std::size_t left = (i - order) / 2;
-        const std::size_t right = i / 2;
-        if (left == right) {
-          difference_[i] = rate[left];
-        } else {
-          difference_[i] =
-              Vector((difference_[i] - difference_[i - 1]) / (node_time(right) - node_time(left)));
-        }
+        divide(difference_[i], i - 1, (i - order) / 2, i / 2);
       }
     }
   }
 
-  [[nodiscard]] Vector polynomial(const Scalar& time) const {
-    Vector sum = difference_[2 * nodes - 1];
+  /// Makes a difference of it and the one at `other`, which lie between two nodes.
+  void divide(Vector& difference, std::size_t other, std::size_t left, std::size_t right) {
+    difference = (difference - difference_[other]) / (node_time(right) - node_time(left));
+  }
+
+  void polynomial(const Scalar& time, Vector& result) const {
+    result = difference_[2 * nodes - 1];
     for (std::size_t i = 2 * nodes - 1; i-- > 0;) {
-      sum = difference_[i] + (time - node_time(i / 2)) * sum;
+      result = difference_[i] + (time - node_time(i / 2)) * result;
     }
-    return before_.state.value + sum;
+    result += before_.state.value;
   }
 
   /// At the end of a step that stops at a jump the field counts as the step saw it.
@@ -367,14 +404,14 @@ class ExplicitSteps {
   Scalar worst_before_ = Scalar(1);
   Rejected rejected_;
   Scalar allowed_;  ///< accuracy_.relative, or what rounding leaves of it
-  std::array<Stage, Tableau::stages> stage_ = zero_stages();
+  Memory stage_;
   detail::BlockSizes<Vector> sizes_;
   std::vector<Scalar> jumps_;
   Scalar last_stage_time_ = Scalar(0);  ///< none is later, on the way of the step
   Begin before_;
   int dense_points_ = 0;
   int short_steps_ = 0;
-  std::array<Vector, 2 * nodes> difference_ = {};
+  std::array<Vector, 2 * nodes> difference_;  ///< the polynomial's coefficients
   Effort effort_;
 };
 

@@ -46,6 +46,7 @@ class GslControl {
   template <std::size_t n>
   GslControl(const Accuracy& accuracy, const std::array<int, n>& blocks, int components)
       : accuracy_(accuracy) {
+    static_assert(n <= 8, "a state has eight blocks at most");
     require_blocks(blocks, components);
     for (const int size : blocks) blocks_[used_++] = {static_cast<std::size_t>(size), 0};
   }

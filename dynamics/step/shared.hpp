@@ -1,10 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -31,9 +30,7 @@ template <class S, class... Words>
   throw ComputationFailed(text.str());
 }
 
-template <std::size_t n>
-void require_blocks(const std::array<int, n>& blocks, int components) {
-  static_assert(n <= 8, "a state has eight blocks at most");
+inline void require_blocks(std::span<const int> blocks, int components) {
   int sum = 0;
   for (const int size : blocks) sum += size;
   if (sum != components) {

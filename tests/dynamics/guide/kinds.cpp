@@ -332,6 +332,27 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_motion) {
   BOOST_CHECK_THROW((void)frame(1.0001), InvalidInput);
   BOOST_CHECK_THROW((void)frame(-1e-9), InvalidInput);
   BOOST_CHECK_THROW((void)frame(nan), InvalidInput);
+  BOOST_CHECK_THROW((void)frame.turning(1.0001), InvalidInput);
+  BOOST_CHECK_THROW((void)frame.turning(nan), InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+// u and ou without the pose are those of the whole motion to the last bit.
+BOOST_DATA_TEST_CASE(a_frame_turns_as_it_moves, data::xrange(20u), seed) {
+  test::Sample sample(seed);
+  const double t = sample.uniform(0, 10);
+  const auto compare = [t](const auto& frame) {
+    const FrameTurning<> found = turning(frame, t);
+    BOOST_TEST(test::same(found.u, frame(t).V.value.resultant));
+    BOOST_TEST(test::same(found.du, frame(t).dV.value.resultant));
+  };
+  const Pose<double> X{sample.rotation(), sample.direction()};
+  const HarmonicSeries<> u{sample.direction(),
+                           {{sample.direction(), sample.uniform(0.2, 5), sample.uniform(-3, 3)},
+                            {sample.direction(), sample.uniform(0.2, 5), sample.uniform(-3, 3)}}};
+  compare(HarmonicFrame<>(u, {}, 0, 10, {X}));
+  compare(RotatingFrame<>{.angular_velocity = sample.direction(), .X = {X}});
+  compare(SteadyFrame<>{{X}, {{sample.direction(), sample.direction()}}});
+  compare(RestingFrame<>{{X}});  // and one that offers nothing more
+}

@@ -8,11 +8,14 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/body_system.hpp>
-#include <dynamics/step/explicit.hpp>
+#include <dynamics/step/advance.hpp>
 
 #include <support/cast.hpp>
 #include <support/kinematics.hpp>
@@ -414,7 +417,7 @@ BOOST_AUTO_TEST_CASE(belongs_to_states_and_workspaces_of_its_size) {
 
 BOOST_AUTO_TEST_SUITE_END()
 
-BOOST_AUTO_TEST_SUITE(balances)
+BOOST_AUTO_TEST_SUITE(systems_of_bodies_in_motion)
 
 namespace {
 
@@ -442,26 +445,26 @@ Eigen::VectorXd start(int size) {
   return y;
 }
 
-/// y at the time `end`, and the integrals of what `power` gives; n components in all.
-template <int n, class System, class Power>
+/// y at the time `end`, and the integrals of what `power` gives.
+template <class System, class Power>
 std::pair<Eigen::VectorXd, Eigen::VectorXd> run(const System& system, const Eigen::VectorXd& from,
                                                 double end, const Power& power) {
-  using Vector = Eigen::Matrix<double, n, 1>;
   BodyWorkspace w = system.workspace();
   const Eigen::Index states = from.size();
-  Vector y = Vector::Zero();
+  const Eigen::Index integrals = power(0, from, w).size();
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(states + integrals);
   y.head(states) = from;
-  const auto field = [&](double t, const Vector& z) {
-    Eigen::VectorXd rates;
-    const Eigen::VectorXd state = z.head(states);
+  Eigen::VectorXd state = from;
+  Eigen::VectorXd rates = from;
+  const auto field = [&](double t, const Eigen::VectorXd& z, Eigen::VectorXd& result) {
+    state = z.head(states);
     system.rates(t, state, rates, w);
-    Vector result;
-    result << rates, power(t, state, w);
-    return result;
+    result.head(states) = rates;
+    result.tail(integrals) = power(t, state, w);
   };
-  ExplicitSteps<Vector, decltype(field)> steps(field, 0, y, {.relative = 1e-14});
+  ExplicitSteps steps(field, 0.0, y, {.relative = 1e-14});
   steps.advance_to(end);
-  return {steps.y().head(states), steps.y().tail(n - states)};
+  return {steps.y().head(states), steps.y().tail(integrals)};
 }
 
 const auto nothing = [](double, const Eigen::VectorXd&, BodyWorkspace&) {
@@ -475,7 +478,7 @@ BOOST_AUTO_TEST_CASE(keep_energy_on_a_resting_guide) {
   const Eigen::VectorXd y = start(system.tree().coordinates() + system.tree().rates());
   const auto before = system.conserved(0, system.from_vector(y));
   BOOST_TEST_REQUIRE(before.size() == 1U);
-  const Eigen::VectorXd end = run<28>(system, y, 0.5, nothing).first;
+  const Eigen::VectorXd end = run(system, y, 0.5, nothing).first;
   const auto after = system.conserved(0.5, system.from_vector(end));
   BOOST_TEST_MESSAGE("energy " << before[0].second << ", drift "
                                << after[0].second - before[0].second);
@@ -487,7 +490,7 @@ BOOST_AUTO_TEST_CASE(keep_momentum_where_nothing_acts_from_outside) {
   const Eigen::VectorXd y = start(system.tree().coordinates() + system.tree().rates());
   const auto before = system.conserved(0, system.from_vector(y));
   BOOST_TEST_REQUIRE(before.size() == 6U);
-  const Eigen::VectorXd end = run<28>(system, y, 0.5, nothing).first;
+  const Eigen::VectorXd end = run(system, y, 0.5, nothing).first;
   const auto after = system.conserved(0.5, system.from_vector(end));
   for (std::size_t k = 0; k < 6; ++k) {
     BOOST_TEST(std::abs(after[k].second - before[k].second) <= 1e-12 * 50);
@@ -506,22 +509,17 @@ BOOST_AUTO_TEST_CASE(conserve_nothing_on_a_moving_guide_or_with_a_motor) {
                  .empty());
 }
 
-// On a guide that turns and brakes: the absolute energy grows by what the guide gives, that is its
-// reaction on what hangs on it times its own velocity, by gravity, dampers and drive; the momentum
-// by reaction and weight.
-BOOST_AUTO_TEST_CASE(close_on_a_moving_guide) {
-  auto bodies = mobile(0.3);
-  bodies[0].joint = {.kind = JointKind::universal, .axis = x_axis, .second_axis = y_axis};
-  bodies[0].forces = {{.stiffness = 5}, {.damping = 0.2}};
-  bodies[1].rule = JointRule::constant_rate;
-  const Vector3<double> g(1, -2, 5);
-  const RotatingFrame<> guide{.angular_velocity = {0.5, -0.75, 1},
-                              .origin_acceleration = {1, 2, -3},
-                              .origin_velocity = {3, 1, 2}};
-  const BodySystem<RotatingFrame<>> system(guide, bodies, UniformGravity<Inertial>{g});
+namespace {
+
+/// The absolute energy grows by what the guide gives, that is its reaction on body 0, which alone
+/// hangs on it, times its own velocity, by dampers and drive; the momentum by reaction and weight.
+template <class M>
+void check_balances(const M& guide, const std::vector<BodyDescription>& bodies,
+                    const Vector3<double>& g, double end) {
+  const BodySystem<M> system(guide, bodies, UniformGravity<Inertial>{g});
   const Eigen::VectorXd y = start(system.tree().coordinates() + system.tree().rates());
+  JointReactions r;
   const auto power = [&](double t, const Eigen::VectorXd& state, BodyWorkspace& w) {
-    JointReactions r;
     system.reactions(t, state, r, w);
     const Situation<> s = system.situation(t, state, 0, w);
     const FrameMotion<Guide, Inertial>& G = s.guide;
@@ -539,16 +537,16 @@ BOOST_AUTO_TEST_CASE(close_on_a_moving_guide) {
     for (int i = 0; i < system.body_count(); ++i) {
       const Situation<> b = system.situation(t, state, i, w);
       const double m = b.inertia.value.mass;
-      const Vector3<double> centre = b.place<Inertial>(b.centre());
+      const Vector3<double> centre = b.template place<Inertial>(b.centre());
       P += {m * g, centre.cross(m * g)};
     }
     result << sum, P.resultant, P.moment;
     return result;
   };
-  const auto [end, work] = run<26>(system, y, 0.5, power);
+  const auto [y_end, work] = run(system, y, end, power);
   BodyWorkspace w = system.workspace();
   const BodyBalance a = system.balance(0, y, w);
-  const BodyBalance b = system.balance(0.5, end, w);
+  const BodyBalance b = system.balance(end, y_end, w);
   const double energy =
       b.kinetic_energy + b.potential_energy - a.kinetic_energy - a.potential_energy;
   BOOST_TEST_MESSAGE("energy grows by " << energy << ", work " << work[0] << ", off by "
@@ -556,7 +554,7 @@ BOOST_AUTO_TEST_CASE(close_on_a_moving_guide) {
   BOOST_TEST(std::abs(energy - work[0]) <=
              1e-12 * (a.kinetic_energy + b.kinetic_energy + std::abs(work[0])));
   const Motor<> before = guide(0).X.value * a.momentum.value;
-  const Motor<> after = guide(0.5).X.value * b.momentum.value;
+  const Motor<> after = guide(end).X.value * b.momentum.value;
   const Motor<> gain = after - before;
   const Vector3<double> off_p = gain.resultant - Vector3<double>(work.segment(1, 3));
   const Vector3<double> off_L = gain.moment - Vector3<double>(work.segment(4, 3));
@@ -565,6 +563,72 @@ BOOST_AUTO_TEST_CASE(close_on_a_moving_guide) {
                                         << after.moment.norm());
   BOOST_TEST(off_p.norm() <= 1e-12 * (before.resultant.norm() + after.resultant.norm()));
   BOOST_TEST(off_L.norm() <= 1e-12 * (before.moment.norm() + after.moment.norm()));
+}
+
+/// Six bodies in a row, the third in a spherical joint.
+std::vector<BodyDescription> row() {
+  std::vector<BodyDescription> bodies;
+  for (int i = 0; i < 6; ++i) {
+    const std::string parent = i == 0 ? "guide" : bodies.back().name;
+    Joint joint = revolute(i % 2 ? x_axis : y_axis, {0, 0, i == 0 ? 0 : -0.5});
+    if (i == 2) joint.kind = JointKind::spherical;
+    bodies.push_back(described("body " + std::to_string(i), parent, joint,
+                               body(1, {0.01, 0.02, -0.25}, {0.05, 0.04, 0.03})));
+    bodies.back().forces.assign(i == 2 ? 3 : 1, {.damping = 0.02});
+  }
+  return bodies;
+}
+
+HarmonicFrame<> rolling() {
+  const HarmonicSeries<> u{{0, 0, 0.1}, {{{0.3, 0, 0}, 1.5, 0.2}, {{0, 0.2, 0}, 2.5, 1}}};
+  const HarmonicSeries<> a{{0, 0, 0}, {{{0, 0.5, 1}, 2, 0}}};
+  return {u, a, 0, 5};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(close_their_balances_on_a_moving_guide) {
+  auto bodies = mobile(0.3);
+  bodies[0].joint = {.kind = JointKind::universal, .axis = x_axis, .second_axis = y_axis};
+  bodies[0].forces = {{.stiffness = 5}, {.damping = 0.2}};
+  bodies[1].rule = JointRule::constant_rate;
+  const RotatingFrame<> turns_and_brakes{.angular_velocity = {0.5, -0.75, 1},
+                                         .origin_acceleration = {1, 2, -3},
+                                         .origin_velocity = {3, 1, 2}};
+  check_balances(turns_and_brakes, bodies, {1, -2, 5}, 0.5);
+  check_balances(rolling(), row(), {0, 0, -9.81}, 5);
+}
+
+// Advance knows neither the size nor the blocks of a system before it has one.
+BOOST_AUTO_TEST_CASE(move_as_states_of_fixed_size_do) {
+  const BodySystem system(rolling(), row(), UniformGravity<Inertial>{{0, 0, -9.81}});
+  using System = std::decay_t<decltype(system)>;
+  using Fixed = Eigen::Matrix<double, 17, 1>;
+  const Eigen::VectorXd y = start(17);
+  BodyWorkspace w = system.workspace();
+  const auto field = [&](double t, const Fixed& state) {
+    Eigen::VectorXd rates;
+    system.rates(t, state, rates, w);
+    return Fixed(rates);
+  };
+  ExplicitSteps fixed(field, 0.0, Fixed(y), {.relative = 1e-12}, system.blocks());
+  Advance run(system, 0, system.from_vector(y), {.relative = 1e-12});
+  const auto compare = [](const System::State& state, const Fixed& truth) {
+    const double off = (System::to_vector(state) - truth).norm() / truth.norm();
+    BOOST_TEST_MESSAGE("off by " << off);
+    BOOST_TEST(off < 1e-12);
+  };
+  compare(run.to(5), fixed.advance_to(5));
+  fixed.step_towards(0);
+  const double within = (5 + fixed.t()) / 2;
+  compare(run.on_the_way(within, 0), fixed.at(within));
+  BOOST_TEST(run.effort().evaluations == fixed.effort().evaluations);
+}
+
+BOOST_AUTO_TEST_CASE(may_have_nothing_that_moves) {
+  const auto system = resting({described("block", "guide", {}, some_body())});
+  Advance run(system, 0, system.rest());
+  BOOST_TEST(run.to(1).rates.size() == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

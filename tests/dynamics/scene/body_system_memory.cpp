@@ -10,6 +10,7 @@
 
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/body_system.hpp>
+#include <dynamics/step/advance.hpp>
 
 /// Once workspace and results are made, nothing that a system computes asks for memory, and the
 /// workspace grows linearly. Counted: every operator new, and every malloc and the like called from
@@ -137,6 +138,43 @@ BOOST_AUTO_TEST_CASE(needs_memory_in_proportion_to_its_bodies) {
   BOOST_TEST_MESSAGE("workspace: " << one << " bytes for each body");
   BOOST_TEST(std::abs(workspace_bytes(1206) - workspace_bytes(6) - 1200 * one) <=
              0.01 * 1200 * one);
+}
+
+// A step asks for nothing; what is given back is a State of two vectors.
+BOOST_AUTO_TEST_CASE(is_integrated_without_memory_for_the_steps) {
+  const auto system = chain(6);
+  Advance run(system, 0, system.rest(), {.relative = 1e-10});
+  const auto requests_to = [&run](double t) {
+    const std::size_t before = requests;
+    const auto state = run.to(t);
+    return requests - before;
+  };
+  (void)requests_to(1e-3);
+  const double steps = run.effort().steps;
+  double t = 1e-3;
+  while (run.effort().steps < steps + 100) BOOST_TEST(requests_to(t += 0.2) == 2U);
+  BOOST_TEST(run.effort().evaluations > 1600);
+}
+
+BOOST_AUTO_TEST_CASE(is_read_between_steps_without_memory) {
+  const auto system = chain(6);
+  BodyWorkspace w = system.workspace();
+  const auto field = [&](double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
+    system.rates(t, y, rate, w);
+  };
+  ExplicitSteps steps(field, 0.0, system.to_vector(system.rest()), {.relative = 1e-10},
+                      system.blocks());
+  steps.step_towards(1);
+  Eigen::VectorXd y = steps.y();
+  const std::size_t before = requests;
+  for (int i = 0; i < 10; ++i) {
+    const double from = steps.t();
+    steps.step_towards(1);
+    const double length = steps.t() - from;
+    for (int k = 0; k <= 4; ++k) steps.at(from + length * k / 4, y);
+    steps.back_to(from + 0.7 * length);
+  }
+  BOOST_TEST(requests == before);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

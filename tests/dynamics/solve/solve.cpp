@@ -11,8 +11,11 @@
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/gyrostat.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/body_system.hpp>
+#include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/scene/held_body.hpp>
 #include <dynamics/solve/solve.hpp>
@@ -78,7 +81,7 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly) {
     const Vector3<double> w = sample.uniform(0.5, 5) * sample.direction();
     const double k = sample.uniform(0.5, 10);
     for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-12, 1e-14}) {
-      const Task task{.times = every(1, 10), .tolerance = tolerance, .method = Method::steps};
+      const Task task{.times = every(1, 10), .tolerance = tolerance, .method = Method::verner98};
       const EulerTop free({A, B, C});
       const auto run = solve(free, {tilted, w}, task);
       honesty.note(run.report, true_error(run, exact::FreeTop({A, B, C}, w, tilted)));
@@ -99,8 +102,8 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly) {
 BOOST_AUTO_TEST_CASE(keeps_its_promise_where_errors_grow) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const EulerTop top({1, 2, 3});
-  const auto run =
-      solve(top, {tilted, w}, {.times = every(5, 100), .tolerance = 1e-8, .method = Method::steps});
+  const auto run = solve(top, {tilted, w},
+                         {.times = every(5, 100), .tolerance = 1e-8, .method = Method::verner98});
   const double error = true_error(run, exact::FreeTop({1, 2, 3}, w, tilted));
   BOOST_TEST_MESSAGE("estimate " << run.report.error_estimate << ", true " << error << ", "
                                  << run.report.effort.evaluations << " of "
@@ -138,7 +141,7 @@ BOOST_AUTO_TEST_CASE(says_when_a_tolerance_cannot_be_kept) {
   const Vector3<double> w(1e-5, 2, 1e-5);
   const EulerTop top({1, 2, 3});
   const auto run = solve(top, {tilted, w},
-                         {.times = every(5, 100), .tolerance = 1e-13, .method = Method::steps});
+                         {.times = every(5, 100), .tolerance = 1e-13, .method = Method::verner98});
   BOOST_TEST(!run.report.tolerance_kept);
   const double error = true_error(run, exact::FreeTop({1, 2, 3}, w, tilted));
   BOOST_TEST_MESSAGE("estimate " << run.report.error_estimate << ", true " << error);
@@ -182,10 +185,11 @@ BOOST_AUTO_TEST_CASE(solves_bodies_on_moving_guides) {
 
 BOOST_AUTO_TEST_CASE(runs_backwards_too) {
   const EulerTop top({1, 2, 2.5});
-  const auto there =
-      solve(top, {tilted, {1, 2, 3}}, {.times = {10}, .tolerance = 1e-12, .method = Method::steps});
-  const auto back = solve(top, there.states.back(),
-                          {.begin = 10, .times = {0}, .tolerance = 1e-12, .method = Method::steps});
+  const auto there = solve(top, {tilted, {1, 2, 3}},
+                           {.times = {10}, .tolerance = 1e-12, .method = Method::verner98});
+  const auto back =
+      solve(top, there.states.back(),
+            {.begin = 10, .times = {0}, .tolerance = 1e-12, .method = Method::verner98});
   BOOST_TEST((back.states.back().angular_velocity - Vector3<double>(1, 2, 3)).norm() < 1e-11);
 }
 
@@ -212,6 +216,106 @@ BOOST_AUTO_TEST_CASE(tells_where_it_failed_and_keeps_what_it_has) {
   BOOST_TEST((run.report.status == RunStatus::failed));
   BOOST_TEST(run.report.message.find("integration stopped at t = 3.2") == 0U, run.report.message);
   BOOST_TEST(run.states.size() == 3U);
+}
+
+// A fast top whose weight does not lie on its axis: no closed form.
+BOOST_AUTO_TEST_CASE(splits_fast_tops) {
+  const EulerTop top({3e-4, 3e-4, 1e-4}, {0.02, 0, 0.045});
+  const EulerTop::State start{tilted, {0, 0, 3000}};
+  const std::vector<double> times = every(0.25, 1);
+  const auto by_steps =
+      solve(top, start, {.times = times, .tolerance = 1e-12, .method = Method::verner98});
+  for (const double tolerance : {1e-4, 1e-7, 1e-9}) {
+    const auto found = solve(top, start, {.times = times, .tolerance = tolerance});
+    BOOST_TEST(found.report.method == "splitting");
+    BOOST_TEST(found.report.tolerance_kept);
+    double off = 0;
+    detail::ErrorMeasure<EulerTop> distance(1e-3);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      off = std::max(off, distance(EulerTop::to_vector(found.states[i]),
+                                   EulerTop::to_vector(by_steps.states[i])));
+    }
+    BOOST_TEST_MESSAGE(tolerance << ": off by " << off << ", estimate "
+                                 << found.report.error_estimate << ", "
+                                 << found.report.all_evaluations << " evaluations against "
+                                 << by_steps.report.all_evaluations);
+    BOOST_TEST(off <= found.report.error_estimate);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(gives_way_where_a_field_proves_stiff) {
+  const CardanMoments moments{
+      .rotor = {5e-4, 5e-4, 8e-4}, .inner_ring = {2e-4, 3e-4, 2.5e-4}, .outer_ring = {4e-4, 1, 1}};
+  double mild = 0;
+  for (const double stiffness : {1e4, 1e6, 1e9, 1e12}) {
+    const CardanGyro gyro(moments,
+                          {.outer = {0.5, 1e-3, 0}, .inner = {stiffness, 2e-3 * stiffness, 0.3}},
+                          RestingFrame<>{});
+    const auto found = solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500},
+                             {.times = every(0.5, 2), .tolerance = 1e-9});
+    const RunReport& report = found.report;
+    BOOST_TEST_MESSAGE(stiffness << " N m/rad: " << report.method << ", estimate "
+                                 << report.error_estimate << ", " << report.all_evaluations
+                                 << " evaluations");
+    BOOST_TEST(report.tolerance_kept);
+    BOOST_TEST(report.method == "radau13");
+    if (mild == 0) mild = report.all_evaluations;
+    BOOST_TEST(report.all_evaluations <= 1.5 * mild);
+  }
+}
+
+// Undamped, the same bearing is an oscillation: it is resolved, not damped.
+BOOST_AUTO_TEST_CASE(resolves_what_is_fast_but_not_damped) {
+  const CardanMoments moments{
+      .rotor = {5e-4, 5e-4, 8e-4}, .inner_ring = {2e-4, 3e-4, 2.5e-4}, .outer_ring = {4e-4, 1, 1}};
+  const CardanGyro gyro(moments, {.inner = {1e4, 0, 0.3}}, RestingFrame<>{});
+  const auto found = solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500},
+                           {.times = every(0.1, 0.3), .tolerance = 1e-3});
+  BOOST_TEST(found.report.method == "verner98");
+  BOOST_TEST(found.report.tolerance_kept);
+}
+
+// A plane pendulum as a tree, whose state has a size known at run time only.
+BOOST_AUTO_TEST_CASE(solves_trees_of_bodies) {
+  const InertiaTensor<Body> bob{{2, {0, 0, -1}, {0.6, 0.6, 0.1}}};
+  const BodyDescription rod{
+      .name = "rod", .joint = {.kind = JointKind::revolute, .axis = {1, 0, 0}}, .inertia = bob};
+  const BodySystem system(RestingFrame<>{}, {rod}, UniformGravity<Guide>{{0, 0, -9.81}});
+  auto start = system.rest();
+  start.coordinates[0] = 0.7;
+  const exact::PendulumMotion truth(9.81 / 0.6, 0.7, 0);
+  const auto found = solve(system, start, {.times = every(5, 20), .tolerance = 1e-10});
+  BOOST_TEST(found.report.tolerance_kept);
+  BOOST_TEST(found.report.invariants.size() > 0);
+  for (std::size_t i = 0; i < found.times.size(); ++i) {
+    BOOST_TEST(std::abs(found.states[i].coordinates[0] - truth.at(found.times[i]).angle) <= 1e-10);
+  }
+  BOOST_CHECK_THROW((void)solve(system, start, {.times = {1}, .method = Method::radau13}),
+                    InvalidInput);
+}
+
+BOOST_AUTO_TEST_CASE(takes_fixed_steps_when_asked) {
+  const EulerTop top({1, 2, 3});
+  const EulerTop::State start{tilted, {1, 2, 3}};
+  const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
+  const auto found =
+      solve(top, start, {.times = every(5, 100), .tolerance = 1e-11, .method = Method::gauss16});
+  BOOST_TEST(found.report.method == "gauss16");
+  BOOST_TEST(found.report.tolerance_kept);
+  BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
+}
+
+BOOST_AUTO_TEST_CASE(refuses_methods_that_do_not_fit) {
+  const EulerTop free({1, 2, 3});
+  const EulerTop::State start{tilted, {1, 2, 3}};
+  BOOST_CHECK_THROW((void)solve(free, start, {.times = {1}, .method = Method::splitting}),
+                    InvalidInput);
+  BOOST_CHECK_THROW(
+      (void)solve(free, start, {.times = {1}, .jumps = {0.5}, .method = Method::gauss16}),
+      InvalidInput);
+  const EulerTop heavy({1, 2, 3}, {0, 1, 1});
+  BOOST_CHECK_THROW((void)solve(heavy, start, {.times = {1}, .method = Method::closed_form}),
+                    InvalidInput);
 }
 
 BOOST_AUTO_TEST_CASE(refuses_a_task_that_is_none) {

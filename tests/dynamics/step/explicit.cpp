@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include <dynamics/step/events.hpp>
 #include <dynamics/step/explicit.hpp>
 
 #include <support/near.hpp>
@@ -205,6 +208,147 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(steps.advance_to(nan), InvalidInput);
   ExplicitSteps few(circle, 0.0, State<2>(1, 0), {.most_evaluations = 100});
   BOOST_CHECK_THROW(few.advance_to(1e6), ComputationFailed);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+// States whose size is known at run time only.
+BOOST_AUTO_TEST_SUITE(explicit_steps_of_any_size)
+
+namespace {
+
+using Eigen::VectorXd;
+
+/// Five pendulums in a row with springs between them, the first one driven: 10 components.
+template <class Vector>
+void chain(double t, const Vector& y, Vector& rate) {
+  const Eigen::Index n = y.size() / 2;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double before = i == 0 ? std::cos(1.5 * t) : y[i - 1];
+    const double after = i == n - 1 ? 0 : y[i + 1];
+    rate[i] = y[n + i];
+    rate[n + i] = -std::sin(y[i]) + 3 * (before - 2 * y[i] + after);
+  }
+}
+
+const std::vector<int> ones(10, 1);
+
+State<10> start() {
+  State<10> y;
+  for (int i = 0; i < 10; ++i) y[i] = std::sin(3.0 * i + 1);
+  return y;
+}
+
+auto fixed_steps(const Accuracy& accuracy = {.relative = 1e-12}) {
+  const auto field = [](double t, const State<10>& y) {
+    State<10> rate;
+    chain(t, y, rate);
+    return rate;
+  };
+  return ExplicitSteps(field, 0.0, start(), accuracy, ones);
+}
+
+auto steps_in_place(const Accuracy& accuracy = {.relative = 1e-12}) {
+  const auto field = [](double t, const VectorXd& y, VectorXd& rate) { chain(t, y, rate); };
+  return ExplicitSteps(field, 0.0, VectorXd(start()), accuracy, ones);
+}
+
+auto steps_by_value() {
+  const auto field = [](double t, const VectorXd& y) {
+    VectorXd rate(y.size());
+    chain(t, y, rate);
+    return rate;
+  };
+  return ExplicitSteps(field, 0.0, VectorXd(start()), {.relative = 1e-12}, ones);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(give_what_those_of_fixed_size_give) {
+  auto fixed = fixed_steps();
+  auto in_place = steps_in_place();
+  auto by_value = steps_by_value();
+  double worst = 0;
+  const auto compare = [&](const VectorXd& truth) {
+    BOOST_TEST((in_place.y() == by_value.y()));
+    worst = std::max(worst, (in_place.y() - truth).norm() / truth.norm());
+  };
+  for (const double t : {5.0, 20.0, -3.0}) {
+    fixed.advance_to(t);
+    in_place.advance_to(t);
+    by_value.advance_to(t);
+    compare(fixed.y());
+    BOOST_TEST(in_place.effort().evaluations == fixed.effort().evaluations);
+  }
+  // Within a step: taken anew twice, then by the polynomial; and on from there.
+  fixed.step_towards(10);
+  in_place.step_towards(10);
+  const double length = fixed.t() + 3;
+  for (const double share : {0.0, 0.3, 0.8, 0.1, 0.5, 0.99, 1.0}) {
+    const double t = -3 + share * length;
+    const VectorXd truth = fixed.at(t);
+    worst = std::max(worst, (in_place.at(t) - truth).norm() / truth.norm());
+  }
+  fixed.back_to(-3 + 0.4 * length);
+  in_place.back_to(-3 + 0.4 * length);
+  fixed.advance_to(0);
+  in_place.advance_to(0);
+  by_value.advance_to(0);
+  worst = std::max(worst, (in_place.y() - fixed.y()).norm() / fixed.y().norm());
+  BOOST_TEST_MESSAGE("fixed and run-time size differ by " << worst);
+  BOOST_TEST(worst < 1e-13);
+  // and back where they began, by steps of 1e-12
+  BOOST_TEST((in_place.y() - start()).norm() < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(write_a_fixed_state_in_place_too) {
+  const auto field = [](double t, const State<10>& y, State<10>& rate) { chain(t, y, rate); };
+  ExplicitSteps in_place(field, 0.0, start(), {.relative = 1e-12}, ones);
+  auto by_value = fixed_steps();
+  BOOST_TEST((in_place.advance_to(5) == by_value.advance_to(5)));
+}
+
+BOOST_AUTO_TEST_CASE(find_events_and_stop_at_jumps) {
+  auto fixed = fixed_steps();
+  auto in_place = steps_in_place();
+  const auto first = [](double, const auto& y) { return y[0]; };
+  for (int i = 0; i < 5; ++i) {
+    const auto truth = advance_to_event(fixed, first, 30.0);
+    const auto found = advance_to_event(in_place, first, 30.0);
+    BOOST_REQUIRE((truth.has_value() && found.has_value()));
+    BOOST_TEST(std::abs(*found - *truth) < 1e-12);
+  }
+  const auto thrust = [](double t, const VectorXd& y, VectorXd& rate) {
+    rate[0] = y[1];
+    rate[1] = t < 1 ? 0 : 2;
+  };
+  ExplicitSteps steps(thrust, 0.0, VectorXd(VectorXd::Zero(2)));
+  steps.stop_at({1.0});
+  steps.advance_to(3);
+  BOOST_TEST(near(steps.y()[0], 4.0, 4.0, 8));
+  BOOST_TEST(steps.effort().rejected == 0);
+}
+
+BOOST_AUTO_TEST_CASE(tell_a_stiff_field) {
+  for (const double damping : {0.0, 1e4}) {
+    const auto field = [=](double, const VectorXd& y, VectorXd& rate) {
+      rate[0] = y[1];
+      rate[1] = -1e4 * y[0] - damping * y[1];
+    };
+    ExplicitSteps steps(field, 0.0, VectorXd(VectorXd::Unit(2, 0)), {.relative = 1e-6});
+    steps.advance_to(10);
+    BOOST_TEST(steps.stiff() == (damping > 0));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(refuse_blocks_and_rates_that_do_not_fit) {
+  const auto field = [](double, const VectorXd& y) { return VectorXd(y.head(2)); };
+  const VectorXd y = VectorXd::Ones(3);
+  BOOST_CHECK_THROW(ExplicitSteps(field, 0.0, y, {}, std::vector<int>{2, 2}), InvalidInput);
+  ExplicitSteps steps(field, 0.0, y);
+  BOOST_CHECK_EXCEPTION(steps.advance_to(1), InvalidInput, [](const InvalidInput& e) {
+    return e.what() == std::string("the field gives 2 rates of 3 components");
+  });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

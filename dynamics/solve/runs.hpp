@@ -1,0 +1,306 @@
+#pragma once
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/solve/task.hpp>
+#include <dynamics/step/advance.hpp>
+#include <dynamics/step/gauss.hpp>
+#include <dynamics/step/jacobian.hpp>
+#include <dynamics/step/radau.hpp>
+#include <dynamics/step/splitting.hpp>
+
+/// The integrators as solve() sees them: each a kind of run that has one setting, an accuracy or a
+/// step, which can be made finer by thirty times in the error.
+///
+/// A kind is made from (scene, task, start) and has
+///   first()               the setting to begin with
+///   finer(x)              of the run beside, whose error is a thirtieth
+///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
+///   last(x)               whether rounding leaves nothing to gain beyond
+///   run(x)                with on_the_way(t, end) -> State and effort()
+namespace kreisel::detail {
+
+template <class Scene>
+inline constexpr bool has_fixed_size = int(Scene::Vector::RowsAtCompileTime) > 0;
+
+/// The Jacobian of a scene's field: exact, where the field takes dual numbers.
+template <class Scene>
+[[nodiscard]] auto jacobian_of(const Scene& scene) {
+  constexpr int n = int(Scene::Vector::RowsAtCompileTime);
+  using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, n + 1, 1>>;
+  using DualVector = Eigen::Matrix<Dual, n, 1>;
+  if constexpr (requires(const Dual& t, const DualVector& y) { scene.rates(t, y); }) {
+    return forward_jacobian<n>(SceneField<Scene>{&scene});
+  } else {
+    return difference_jacobian<n>(SceneField<Scene>{&scene});
+  }
+}
+
+/// Whether what is fastest in a field is damped: then an implicit method need not resolve it.
+template <class Scene>
+[[nodiscard]] bool damps_what_is_fastest(const Scene& scene, double t,
+                                         const typename Scene::State& state) {
+  const auto J = jacobian_of(scene)(t, Scene::to_vector(state)).of_state;
+  const auto rates = J.eigenvalues().eval();
+  int fastest = 0;
+  for (int i = 1; i < int(rates.size()); ++i) {
+    if (std::abs(rates[i]) > std::abs(rates[fastest])) fastest = i;
+  }
+  return rates[fastest].real() < -0.05 * std::abs(rates[fastest]);
+}
+
+/// The settings of steps that adapt themselves: an accuracy.
+class AdaptiveRuns {
+ public:
+  explicit AdaptiveRuns(const Task& task) : task_(task) {}
+
+  [[nodiscard]] double first() const { return std::max(task_.tolerance / 10, 4 * least); }
+  [[nodiscard]] static double finer(double accuracy) { return std::max(accuracy / 30, least); }
+  [[nodiscard]] static bool last(double accuracy) { return accuracy <= 4 * least; }
+  [[nodiscard]] static double tightened(double accuracy, double ratio) {
+    return std::max(accuracy * std::clamp(ratio, 1e-4, 0.2), 4 * least);
+  }
+
+ protected:
+  static constexpr double least = 1e-16;
+
+  [[nodiscard]] Accuracy accuracy(double relative) const {
+    return {relative, task_.smallest, task_.most_evaluations};
+  }
+
+  const Task& task_;
+};
+
+template <class Scene>
+class VernerRuns : public AdaptiveRuns {
+ public:
+  VernerRuns(const Scene& scene, const Task& task, const typename Scene::State& start)
+      : AdaptiveRuns(task), scene_(scene), start_(start) {}
+
+  static constexpr Method method = Method::verner98;
+
+  class Run {
+   public:
+    Run(const Scene& scene, const Task& task, const typename Scene::State& start,
+        const Accuracy& accuracy)
+        : scene_(scene),
+          // Where radau13 may not take over there is no need to look.
+          looks_(has_fixed_size<Scene> && task.method == Method::automatic),
+          steps_(scene, task.begin, start, accuracy) {
+      steps_.stop_at(task.jumps);
+    }
+
+    /// The state at t; or that at an earlier time, where the field proved stiff.
+    [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
+      while (!steps_.covers(t)) {
+        steps_.step_towards(end);
+        if (looks_ && steps_.stiff() && proves_stiff()) return steps_.state();
+      }
+      return steps_.at(t);
+    }
+
+    [[nodiscard]] bool stiff() const { return stiff_; }
+    [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+
+   private:
+    [[nodiscard]] bool proves_stiff() {
+      looks_ = false;
+      if constexpr (has_fixed_size<Scene>) {
+        stiff_ = damps_what_is_fastest(scene_, steps_.t(), steps_.state());
+      }
+      return stiff_;
+    }
+
+    const Scene& scene_;
+    bool looks_;
+    bool stiff_ = false;
+    Advance<Scene> steps_;
+  };
+
+  [[nodiscard]] Run run(double setting) const { return {scene_, task_, start_, accuracy(setting)}; }
+
+ private:
+  const Scene& scene_;
+  const typename Scene::State& start_;
+};
+
+template <class Scene>
+class RadauRuns : public AdaptiveRuns {
+  using Field = SceneField<Scene>;
+  using J = decltype(jacobian_of(std::declval<const Scene&>()));
+  using Steps = RadauSteps<typename Scene::Vector, Field, J>;
+
+ public:
+  RadauRuns(const Scene& scene, const Task& task, const typename Scene::State& start)
+      : AdaptiveRuns(task), scene_(scene), start_(start) {}
+
+  static constexpr Method method = Method::radau13;
+
+  struct Run {
+    Steps steps;
+
+    [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
+      while (!steps.covers(t)) steps.step_towards(end);
+      return Scene::from_vector(steps.at(t));
+    }
+    [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+  };
+
+  [[nodiscard]] Run run(double setting) const {
+    Run r{Steps(Field{&scene_}, jacobian_of(scene_), task_.begin, Scene::to_vector(start_),
+                accuracy(setting), Scene::blocks)};
+    r.steps.stop_at(task_.jumps);
+    return r;
+  }
+
+ private:
+  const Scene& scene_;
+  const typename Scene::State& start_;
+};
+
+/// The settings of fixed steps of a method of the order given: their length.
+class FixedRuns {
+ public:
+  FixedRuns(int order, double first, double shortest)
+      : root_(1.0 / order), first_(first), shortest_(shortest) {}
+
+  [[nodiscard]] double first() const { return first_; }
+  [[nodiscard]] double finer(double step) const { return step * std::pow(30.0, -root_); }
+  [[nodiscard]] bool last(double step) const { return step <= shortest_; }
+  [[nodiscard]] double tightened(double step, double ratio) const {
+    return std::max(step * std::clamp(std::pow(ratio, root_), 0.2, 0.9), shortest_);
+  }
+
+ private:
+  double root_;
+  double first_;
+  double shortest_;
+};
+
+/// The mean of the first steps of Verner98 at accuracy 1e-14.
+template <class Scene>
+[[nodiscard]] double pace(const Scene& scene, const Task& task,
+                          const typename Scene::State& start) {
+  ExplicitSteps<typename Scene::Vector, SceneField<Scene>> steps(
+      {&scene}, task.begin, Scene::to_vector(start), {1e-14, task.smallest}, Scene::blocks);
+  const double end = task.times.back();
+  for (int i = 0; i < 30 && steps.t() != end; ++i) steps.step_towards(end);
+  const double mean = std::abs(steps.t() - task.begin) / std::max(steps.effort().steps, 1.0);
+  return mean > 0 ? mean : 1.0;
+}
+
+template <class Scene>
+class GaussRuns : public FixedRuns {
+  using Field = SceneField<Scene>;
+
+ public:
+  GaussRuns(const Scene& scene, const Task& task, const typename Scene::State& start)
+      : GaussRuns(scene, task, start, pace(scene, task, start)) {}
+
+  static constexpr Method method = Method::gauss16;
+
+  struct Run {
+    GaussSteps<typename Scene::Vector, Field> steps;
+
+    [[nodiscard]] typename Scene::State on_the_way(double t, double /*end*/) {
+      return Scene::from_vector(steps.advance_to(t));
+    }
+    [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+  };
+
+  [[nodiscard]] Run run(double step) const {
+    return {{Field{&scene_}, task_.begin, Scene::to_vector(start_), step, Scene::blocks}};
+  }
+
+ private:
+  // 16 Gauss points carry about twice as far as Verner98's stages do at 1e-14.
+  GaussRuns(const Scene& scene, const Task& task, const typename Scene::State& start, double pace)
+      : FixedRuns(16, 2 * pace, pace / 2), scene_(scene), task_(task), start_(start) {}
+
+  const Scene& scene_;
+  const Task& task_;
+  const typename Scene::State& start_;
+};
+
+/// Whether splitting applies to a scene: a symmetric top under weight.
+[[nodiscard]] inline bool splits(const EulerTop& top) {
+  return top.moments().x() == top.moments().y() && !top.weight_moment().isZero(0) &&
+         top.rotor_momentum().isZero(0);
+}
+
+/// Whether it pays: the spin commands the weight.
+///
+/// The weight's part of the nutation is  A k / L^2.
+[[nodiscard]] inline bool is_fast(const EulerTop& top, const EulerTop::State& start) {
+  const double L = top.moments().cwiseProduct(start.angular_velocity).norm();
+  return L * L > 1000 * top.moments().x() * top.weight_moment().norm();
+}
+
+class SplittingRuns : public FixedRuns {
+  struct Weight {
+    Vector3<double> moment;
+
+    [[nodiscard]] Vector3<double> operator()(double /*t*/, const Eigen::Quaterniond& q) const {
+      const double x = q.x(), y = q.y(), z = q.z(), w = q.w();
+      const double scale = 1 / (x * x + y * y + z * z + w * w);
+      const Vector3<double> up(2 * scale * (x * z - w * y), 2 * scale * (y * z + w * x),
+                               scale * (w * w + z * z - x * x - y * y));
+      return up.cross(moment);
+    }
+  };
+
+ public:
+  SplittingRuns(const EulerTop& top, const Task& task, const EulerTop::State& start)
+      : SplittingRuns(top, task, start, fastest_rate(top, start)) {}
+
+  static constexpr Method method = Method::splitting;
+
+  struct Run {
+    SplittingSteps<SymmetricFreeFlow, Weight> steps;
+
+    [[nodiscard]] EulerTop::State on_the_way(double t, double /*end*/) {
+      steps.advance_to(t);
+      return {steps.attitude(), steps.angular_velocity()};
+    }
+    [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+  };
+
+  [[nodiscard]] Run run(double step) const {
+    const Vector3<double>& I = top_.moments();
+    return {{SymmetricFreeFlow(I.x(), I.z()),
+             {top_.weight_moment()},
+             task_.begin,
+             start_.attitude,
+             start_.angular_velocity,
+             step}};
+  }
+
+ private:
+  /// What the torque turns with on body axes.
+  [[nodiscard]] static double fastest_rate(const EulerTop& top, const EulerTop::State& start) {
+    const Vector3<double>& I = top.moments();
+    const bool axial = top.weight_moment().x() == 0 && top.weight_moment().y() == 0;
+    const double nutation = I.cwiseProduct(start.angular_velocity).norm() / I.x();
+    const double spin = axial ? 0 : start.angular_velocity.norm();
+    return std::max(nutation, spin) + std::sqrt(top.weight_moment().norm() / I.x());
+  }
+
+  SplittingRuns(const EulerTop& top, const Task& task, const EulerTop::State& start, double rate)
+      // Steps of 2/rate err by some 1e-9.
+      : FixedRuns(8, 2 / rate * std::clamp(std::pow(task.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
+                  0.02 / rate),
+        top_(top),
+        task_(task),
+        start_(start) {}
+
+  const EulerTop& top_;
+  const Task& task_;
+  const EulerTop::State& start_;
+};
+
+}  // namespace kreisel::detail

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <sstream>
+#include <vector>
+
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+/// How a run is computed.
+enum class Method {
+  /// The closed form where the scene has one; splitting for a fast top; else verner98, which gives
+  /// way to radau13 where the field proves stiff and to gauss16 where a long run asks for it.
+  automatic,
+  closed_form,  ///< of the scene; see closed_form.hpp
+  verner98,     ///< ExplicitSteps, adaptive
+  gauss16,      ///< GaussSteps, fixed: the last digits of 1e4 periods and more
+  radau13,      ///< RadauSteps, adaptive: for stiff fields
+  splitting     ///< SplittingSteps, fixed: for a symmetric top whose spin commands its weight
+};
+
+[[nodiscard]] constexpr const char* name(Method method) {
+  switch (method) {
+    case Method::automatic: return "automatic";
+    case Method::closed_form: return "closed form";
+    case Method::verner98: return "verner98";
+    case Method::gauss16: return "gauss16";
+    case Method::radau13: return "radau13";
+    case Method::splitting: return "splitting";
+  }
+  return "none";
+}
+
+/// What is asked of a run.
+struct Task {
+  double begin = 0;
+  std::vector<double> times;  ///< of output, in order, forwards or backwards; the last is the end
+  std::vector<double> jumps = {};  ///< when guide or loads jump: steps end there
+  double tolerance = 1e-10;        ///< of the global error; see RunReport::error_estimate
+
+  Method method = Method::automatic;
+
+  /// A part of the state smaller than this (SI) counts as being so large.
+  double smallest = 1e-3;
+
+  /// Evaluations of the field after which each of the runs gives up.
+  double most_evaluations = 1e8;
+
+  /// Called at every output with the time; false cancels the run. What was computed is kept.
+  std::function<bool(double t)> progress = nullptr;
+};
+
+namespace detail {
+
+template <class... Words>
+[[noreturn]] void refuse_task(const Words&... words) {
+  std::ostringstream text;
+  text.precision(17);
+  (text << ... << words);
+  throw InvalidInput(text.str());
+}
+
+inline void check(const Task& task) {
+  if (!(task.tolerance >= 1e-15 && task.tolerance <= 1e-2)) {
+    refuse_task("tolerance = ", task.tolerance,
+                " lies outside [1e-15, 1e-2], what double precision can promise");
+  }
+  if (!(task.smallest >= 0)) refuse_task("smallest = ", task.smallest, " must be 0 or above");
+  if (task.times.empty()) refuse_task("no output times are given");
+  const double direction = task.times.back() < task.begin ? -1 : 1;
+  double before = task.begin;
+  if (!std::isfinite(before)) refuse_task("the time of the beginning is not finite");
+  for (const double t : task.times) {
+    if (!std::isfinite(t)) refuse_task("an output time is not finite");
+    if (direction * (t - before) < 0) {
+      refuse_task("output times turn round: t = ", t, " s comes after ", before, " s");
+    }
+    before = t;
+  }
+}
+
+}  // namespace detail
+
+}  // namespace kreisel
