@@ -1,0 +1,111 @@
+// Pendulums: plane, at rest and on the earth, and in a ball joint on the earth.
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <type_traits>
+
+#include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/held_body.hpp>
+
+#include "methods.hpp"
+#include "references.hpp"
+#include "scenes.hpp"
+
+namespace work_precision {
+
+namespace {
+
+using kreisel::Vector3;
+
+constexpr double earth_rate = 7.292115e-5;
+constexpr double weight = 19.62;  // m g a/Theta, 1/s^2
+
+/// A plane physical pendulum; on the earth it swings in the meridian of 45 degrees.
+///
+///   phi'' = -19.62 sin phi + wE^2 sin(phi - 45 deg) cos(phi - 45 deg)
+template <bool on_earth>
+struct PlanePendulum {
+  using Vector = Eigen::Vector2d;
+  struct State {
+    double angle;
+    double rate;
+  };
+
+  static constexpr std::array<int, 2> blocks = {1, 1};
+  static Vector to_vector(const State& s) { return {s.angle, s.rate}; }
+  static State from_vector(const Vector& y) { return {y[0], y[1]}; }
+
+  template <class S>
+  [[nodiscard]] Eigen::Matrix<S, 2, 1> rates(const std::type_identity_t<S>& /*t*/,
+                                             const Eigen::Matrix<S, 2, 1>& y) const {
+    using std::sin;
+    const S s = sin(y[0]);
+    S acceleration = -weight * s;
+    if constexpr (on_earth) acceleration += earth_rate * earth_rate * (s * s - 0.5);
+    return {y[1], acceleration};
+  }
+};
+
+template <bool on_earth>
+Problem<PlanePendulum<on_earth>> plane_problem(const std::string& name) {
+  return {name, {}, {0.1, 0}, {}, {}, {Unit::angle, Unit::relative}, 1.4185};
+}
+
+template <class P>
+void add_all(std::vector<Run>& runs, const P& problem, const Thoroughness& thoroughness) {
+  Methods methods(runs, problem, thoroughness);
+  methods.automatic();
+  methods.not_stiff();
+}
+
+}  // namespace
+
+void pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
+  auto problem = plane_problem<false>("pendulum");
+  const kreisel::exact::PendulumMotion truth(weight, 0.1, 0);
+  const double end = 1000 * truth.period();
+  // Quarters but for a bit: at rest and upright an error of time would not show.
+  for (const double part : {0.2501, 0.5002, 0.7503, 1.0004}) {
+    problem.times.push_back(part * end);
+    const auto m = truth.at(part * end);
+    problem.truth.push_back({m.angle, m.rate});
+  }
+  add_all(runs, problem, thoroughness);
+}
+
+void earth_pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
+  auto problem = plane_problem<true>("earth_pendulum");
+  const Reference all = reference("S3_earthpend");
+  problem.times = all.times;
+  for (const auto& s : all.states) problem.truth.push_back({s[0], s[1]});
+  add_all(runs, problem, thoroughness);
+}
+
+/// The reference counts the rate absolute, HeldBody against the earth.
+void earth_ball(std::vector<Run>& runs, const Thoroughness& thoroughness) {
+  using kreisel::Body, kreisel::Guide;
+  const double up = std::sqrt(0.5);
+  const Vector3<double> earth(-earth_rate * up, 0, earth_rate * up);  // x south, z up, 45 degrees
+  const kreisel::HeldBody body(
+      kreisel::InertiaTensor<Body>::about_origin(
+          1, {0, 0, -0.45}, Vector3<double>(0.25, 0.25, 0.01).asDiagonal().toDenseMatrix()),
+      Vector3<double>::Zero(), kreisel::RotatingFrame<>{earth},
+      kreisel::UniformGravity<Guide>{{0, 0, -9.81}});
+  using Scene = std::remove_const_t<decltype(body)>;
+  const Eigen::Quaterniond q(std::cos(0.05), std::sin(0.05), 0, 0);
+  Problem<Scene> problem{"earth_ball", body, Scene::to_vector({q, Vector3<double>::Zero()}),
+                         {},           {},   {Unit::attitude, Unit::relative},
+                         1.4185,       1e-3};
+  const Reference all = reference("S3q_earthpend_ball");
+  problem.times = all.times;
+  for (const auto& s : all.states) {
+    const Eigen::Quaterniond attitude(s[0], s[1], s[2], s[3]);
+    const Vector3<double> rate = Vector3<double>(s[4], s[5], s[6]) - attitude.conjugate() * earth;
+    problem.truth.push_back(Scene::to_vector({attitude, rate}));
+  }
+  add_all(runs, problem, thoroughness);
+}
+
+}  // namespace work_precision

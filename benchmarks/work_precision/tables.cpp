@@ -1,0 +1,248 @@
+// The measured points as CSV, and what they say.
+
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+#include "output.hpp"
+
+namespace work_precision {
+
+namespace {
+
+/// In the order of their first point.
+template <class Get>
+std::vector<std::string> names(const std::vector<Point>& points, const Get& get) {
+  std::vector<std::string> all;
+  for (const Point& p : points) {
+    const std::string name = get(p);
+    if (!name.empty() && std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+  }
+  return all;
+}
+
+std::vector<std::string> scenes(const std::vector<Point>& points) {
+  return names(points, [](const Point& p) { return p.scene; });
+}
+
+std::vector<std::string> methods(const std::vector<Point>& points, const std::string& scene) {
+  return names(points, [&](const Point& p) { return p.scene == scene ? p.method : ""; });
+}
+
+/// The point of least time with that error or a smaller one; null where there is none.
+template <class Fits>
+const Point* fastest(const std::vector<Point>& points, double error, const Fits& fits) {
+  const Point* best = nullptr;
+  for (const Point& p : points) {
+    if (p.status != ok || !(p.error <= error) || !fits(p)) continue;
+    if (!best || p.seconds < best->seconds) best = &p;
+  }
+  return best;
+}
+
+std::string ms(const Point* p) { return p ? fmt::format("{:.3g}", 1e3 * p->seconds) : "-"; }
+
+std::string ratio(const Point* p, const Point* q) {
+  return p && q ? fmt::format("{:.2g}", p->seconds / q->seconds) : "-";
+}
+
+/// The greatest of some ratios, and where.
+struct Worst {
+  double ratio = 0;
+  std::string where = "-";
+
+  void note(double r, const std::string& place) {
+    if (r > ratio) ratio = r, where = place;
+  }
+};
+
+void winners(fmt::ostream& out, const std::vector<Point>& points) {
+  out.print(
+      "### Who wins\n\n"
+      "The least time to an error, in ms; \"-\" where nobody gets there. \"auto\" is solve() with "
+      "its error\nestimate, beside the best fixed choice, ours or a library's, that has none.\n\n"
+      "| scene | error | best stepper of ours | ms | best library | ms | library / ours | closed "
+      "form, ms | auto | ms | auto / best |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+  Worst behind_library;
+  Worst behind_best;
+  int compared = 0;
+  int lost = 0;
+  for (const std::string& scene : scenes(points)) {
+    for (const double error : {1e-4, 1e-8, 1e-10, 1e-12}) {
+      const auto of = [&](const auto& fits) {
+        return fastest(points, error,
+                       [&](const Point& p) { return p.scene == scene && fits(p.method); });
+      };
+      const Point* own = of([](const std::string& m) {
+        return m != automatic && m != closed_form && !of_a_library(m);
+      });
+      const Point* library = of([](const std::string& m) { return of_a_library(m); });
+      const Point* closed = of([](const std::string& m) { return m == closed_form; });
+      const Point* by_auto = of([](const std::string& m) { return m == automatic; });
+      const Point* best = !own || (library && library->seconds < own->seconds) ? library : own;
+      out.print("| {} | {:.0e} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", scene, error,
+                own ? own->method : "none", ms(own), library ? library->method : "none",
+                ms(library), ratio(library, own), ms(closed),
+                by_auto ? by_auto->promise->method : "none", ms(by_auto), ratio(by_auto, best));
+      const std::string place = fmt::format("{} at {:.0e}", scene, error);
+      if (own && library) {
+        compared += 1;
+        if (own->seconds > library->seconds) lost += 1;
+        behind_library.note(own->seconds / library->seconds, place);
+      }
+      if (by_auto && best) behind_best.note(by_auto->seconds / best->seconds, place);
+    }
+  }
+  out.print(
+      "\nA library is faster in {} of the {} places where both get there, at most {:.2g} times "
+      "({}).\nauto takes at most {:.2g} times what the best fixed choice takes ({}).\n\n",
+      lost, compared, behind_library.ratio, behind_library.where, behind_best.ratio,
+      behind_best.where);
+}
+
+void least_errors(fmt::ostream& out, const std::vector<Point>& points) {
+  out.print(
+      "### The least error\n\n"
+      "| scene | of ours | | of a library | | closed form | auto |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const std::string& scene : scenes(points)) {
+    const auto least = [&](const auto& fits) {
+      const Point* best = nullptr;
+      for (const Point& p : points) {
+        if (p.scene != scene || p.status != ok || !fits(p.method)) continue;
+        if (!best || p.error < best->error) best = &p;
+      }
+      return std::pair<std::string, std::string>(best ? fmt::format("{:.1e}", best->error) : "-",
+                                                 best ? best->method : "none");
+    };
+    const auto own = least([](const std::string& m) {
+      return m != automatic && m != closed_form && !of_a_library(m);
+    });
+    const auto library = least([](const std::string& m) { return of_a_library(m); });
+    const auto closed = least([](const std::string& m) { return m == closed_form; });
+    const auto by_auto = least([](const std::string& m) { return m == automatic; });
+    out.print("| {} | {} | {} | {} | {} | {} | {} |\n", scene, own.first, own.second, library.first,
+              library.second, closed.first, by_auto.first);
+  }
+  out.print("\n");
+}
+
+void honesty(fmt::ostream& out, const std::vector<Point>& points) {
+  out.print(
+      "### Whether solve() knows how wrong it is\n\n"
+      "True error over error estimate, both by the measure of RunReport. \"kept\": the true error "
+      "is within the\ntolerance; \"no, said so\": it is not, and the report says that it may "
+      "not be.\n\n"
+      "| scene | tolerance | method | true error | estimate | true / estimate | kept |\n"
+      "|---|---|---|---|---|---|---|\n");
+  struct Count {
+    int all = 0;
+    int within = 0;
+    int broken = 0;
+    Worst worst;
+  };
+  Count by_steps;
+  Count closed;
+  int failed = 0;
+  int left_out = 0;
+  for (const Point& p : points) {
+    if (p.method != automatic) continue;
+    if (!p.promise) {
+      const bool tried = p.status != not_tried;
+      (tried ? failed : left_out) += 1;
+      out.print("| {} | {:.0e} | {} | - | - | - | {} |\n", p.scene, p.setting,
+                tried ? "failed" : "none", p.status);
+      continue;
+    }
+    const auto& [method, error, estimate, kept] = *p.promise;
+    const double share = error / estimate;
+    const bool broken = error > p.setting && kept;
+    out.print("| {} | {:.0e} | {} | {:.2e} | {:.2e} | {:.2g} | {} |\n", p.scene, p.setting, method,
+              error, estimate, share,
+              error <= p.setting ? "yes"
+              : broken           ? "**no**"
+                                 : "no, said so");
+    Count& count = p.evaluations > 0 ? by_steps : closed;
+    count.all += 1;
+    count.within += share >= 0.1 && share <= 1 ? 1 : 0;
+    count.broken += broken ? 1 : 0;
+    count.worst.note(share, fmt::format("{} at {:.0e}", p.scene, p.setting));
+  }
+  out.print(
+      "\n| | runs | true / estimate in [0.1, 1] | greatest | where | promises broken |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const auto& [name, c] : {std::pair("by steps", by_steps), {"closed form", closed}}) {
+    if (c.all == 0) continue;
+    out.print("| {} | {} | {:.0f} % | {:.2g} | {} | {} |\n", name, c.all, 100.0 * c.within / c.all,
+              c.worst.ratio, c.worst.where, c.broken);
+  }
+  out.print("\n{} runs of auto failed, {} were not tried.\n\n", failed, left_out);
+}
+
+void failures(fmt::ostream& out, const std::vector<Point>& points) {
+  out.print(
+      "### Who failed\n\n"
+      "| scene | method | runs | failed | not tried after a slow one | the first to fail |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const std::string& scene : scenes(points)) {
+    for (const std::string& method : methods(points, scene)) {
+      int all = 0;
+      int failed = 0;
+      int left_out = 0;
+      std::string first = "-";
+      for (const Point& p : points) {
+        if (p.scene != scene || p.method != method) continue;
+        all += 1;
+        if (p.status == ok) continue;
+        if (p.status == not_tried) {
+          left_out += 1;
+          continue;
+        }
+        if (failed == 0) first = fmt::format("{:.1e}: {}", p.setting, p.status);
+        failed += 1;
+      }
+      if (failed + left_out == 0) continue;
+      out.print("| {} | {} | {} | {} | {} | {} |\n", scene, method, all, failed, left_out, first);
+    }
+  }
+}
+
+}  // namespace
+
+bool of_a_library(const std::string& method) {
+  return method.find("GSL") == 0 || method.find("Odeint") == 0 || method.find("CVODE") == 0;
+}
+
+void write_csv(const std::string& path, const std::vector<Point>& points) {
+  fmt::ostream out = fmt::output_file(path);
+  out.print(
+      "scene,method,setting,error,cpu_s,evaluations,status,chosen,reported_error,"
+      "error_estimate,tolerance_kept\n");
+  for (const Point& p : points) {
+    out.print("{},{},{:.3e},{:.3e},{:.4e},{:.0f},{},", p.scene, p.method, p.setting, p.error,
+              p.seconds, p.evaluations, p.status);
+    if (p.promise) {
+      out.print("\"{}\",{:.3e},{:.3e},{:d}\n", p.promise->method, p.promise->error,
+                p.promise->estimate, p.promise->kept);
+    } else {
+      out.print(",,,\n");
+    }
+  }
+}
+
+void write_tables(const std::string& path, const std::vector<Point>& points) {
+  fmt::ostream out = fmt::output_file(path);
+  if (interrupted()) out.print("Stopped before the end: what is missing was not measured.\n\n");
+  winners(out, points);
+  least_errors(out, points);
+  honesty(out, points);
+  failures(out, points);
+}
+
+}  // namespace work_precision
