@@ -69,10 +69,12 @@ class AdaptiveRuns {
  protected:
   static constexpr double least = 1e-16;
 
+  [[nodiscard]] const Task& task() const { return task_; }
   [[nodiscard]] Accuracy accuracy(double relative) const {
     return {relative, task_.smallest, task_.most_evaluations};
   }
 
+ private:
   const Task& task_;
 };
 
@@ -122,7 +124,9 @@ class VernerRuns : public AdaptiveRuns {
     Advance<Scene> steps_;
   };
 
-  [[nodiscard]] Run run(double setting) const { return {scene_, task_, start_, accuracy(setting)}; }
+  [[nodiscard]] Run run(double setting) const {
+    return {scene_, task(), start_, accuracy(setting)};
+  }
 
  private:
   const Scene& scene_;
@@ -152,9 +156,9 @@ class RadauRuns : public AdaptiveRuns {
   };
 
   [[nodiscard]] Run run(double setting) const {
-    Run r{Steps(Field{&scene_}, jacobian_of(scene_), task_.begin, Scene::to_vector(start_),
+    Run r{Steps(Field{&scene_}, jacobian_of(scene_), task().begin, Scene::to_vector(start_),
                 accuracy(setting), Scene::blocks)};
-    r.steps.stop_at(task_.jumps);
+    r.steps.stop_at(task().jumps);
     return r;
   }
 

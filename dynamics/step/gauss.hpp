@@ -149,11 +149,13 @@ class GaussSteps {
     const detail::EqualSteps steps(time_, end, step_);
     if (end == t()) return y();
     take_length(steps.length);
-    for (double k = 1; k <= steps.count; ++k) {
+    double done = 0;
+    while (done < steps.count) {
       solve_stages();
       state_.add(stage_.rowwise().sum());
       time_.add(h_);
       effort_.steps += 1;
+      done += 1;
     }
     time_ = {end, Scalar(0)};
     return y();

@@ -284,15 +284,15 @@ class RadauSteps {
 
   void note_jacobian() {
     effort_.jacobians += 1;
-    J_ = jacobian_(start_time_, y()).of_state;
-    if (!finite(J_)) detail::stop_integration(t(), "the Jacobian of the field is not finite");
+    tangent_ = jacobian_(start_time_, y()).of_state;
+    if (!finite(tangent_)) detail::stop_integration(t(), "the Jacobian of the field is not finite");
   }
 
   void factorise(double h) {
     const Eigen::Matrix<double, n, n> unit = Eigen::Matrix<double, n, n>::Identity();
-    real_.compute(radau().real_eigenvalue / h * unit - J_);
+    real_.compute(radau().real_eigenvalue / h * unit - tangent_);
     for (std::size_t k = 0; k < pairs; ++k) {
-      complex_[k].compute(radau().eigenvalue[k] / h * unit - J_);
+      complex_[k].compute(radau().eigenvalue[k] / h * unit - tangent_);
     }
   }
 
@@ -435,7 +435,7 @@ class RadauSteps {
   double worst_before_ = 1;
   Vector rate_ = Vector::Zero();
   Stages stage_ = Stages::Zero();  ///< Z
-  Eigen::Matrix<double, n, n> J_ = Eigen::Matrix<double, n, n>::Zero();
+  Eigen::Matrix<double, n, n> tangent_ = Eigen::Matrix<double, n, n>::Zero();
   Eigen::PartialPivLU<Eigen::Matrix<double, n, n>> real_;
   std::array<Eigen::PartialPivLU<ComplexMatrix>, pairs> complex_;
   Effort effort_;

@@ -131,9 +131,10 @@ class SplittingSteps {
     if (end == t()) return;
     const long double h = steps.length;
     const long double outer = Scheme::drift[0] * h;
-    for (double k = 1; k <= steps.count; ++k) {
+    double done = 0;
+    while (done < steps.count) {
       const auto before = state_;
-      const bool first = k == 1;
+      const bool first = done == 0;
       if (!step(h, first ? outer : 2 * outer)) {
         state_ = before;
         if (!first) flow_.drift(state_, outer);
@@ -141,6 +142,7 @@ class SplittingSteps {
       }
       time_.add(static_cast<double>(h));
       effort_.steps += 1;
+      done += 1;
     }
     flow_.drift(state_, outer);
     time_ = {end, 0};
