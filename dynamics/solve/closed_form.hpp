@@ -50,7 +50,7 @@ struct ClosedForm {
         },
         [rate, begin](double t) {
           constexpr double u = std::numeric_limits<double>::epsilon() / 2;
-          return 4 * u + 8 * double(std::numeric_limits<exact::Real>::epsilon()) * rate *
+          return 4 * u + 2 * double(std::numeric_limits<exact::Real>::epsilon()) * rate *
                              std::abs(t - begin);
         }};
   };

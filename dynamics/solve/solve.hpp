@@ -91,7 +91,7 @@ template <class Scene>
 
 /// Two integrations run side by side, one whose steps are held 30 times more exact than the
 /// other's. Their distance is, to a thirtieth, the error of the coarser one, which is returned; the
-/// estimate is 1.3 times that and a random walk of rounding, 2.5 u a step. Where it exceeds the
+/// estimate is 1.3 times that and a random walk of rounding. Where it exceeds the
 /// tolerance the run begins again with shorter steps, until rounding stops it.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
@@ -132,7 +132,7 @@ template <class Scene, class Runs>
         const typename Scene::State better =
             fine.on_the_way(t, (t < middle) == (end > task.begin) ? middle : end);
         const double off = distance(scene.to_vector(state), scene.to_vector(better));
-        const double rounding = 2.5 * unit_roundoff * std::sqrt(coarse.effort().steps);
+        const double rounding = Runs::rounding * unit_roundoff * std::sqrt(coarse.effort().steps);
         report.error_estimate = std::max(report.error_estimate, caution * off + rounding);
         too_coarse = report.error_estimate > task.tolerance && !last_try;
         if (too_coarse) break;

@@ -239,7 +239,7 @@ class RadauSteps {
     factorise(h);
     guess(-1, h / h_before_);
     const bool done = solve_stages(before_.time, before_.state, h);
-    const Vector there = before_.state.value + (stage_.col(stages - 1) + before_.state.rest);
+    Vector there = before_.state.value + (stage_.col(stages - 1) + before_.state.rest);
     stage_ = kept;
     if (!done) detail::stop_integration(time, "the stages of a part of a step do not converge");
     return there;
