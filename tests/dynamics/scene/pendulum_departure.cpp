@@ -1,9 +1,10 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <vector>
 
 #include <dynamics/scene/pendulum_departure.hpp>
 #include <dynamics/solve/solve.hpp>
@@ -25,6 +26,12 @@ const auto earth = [](const auto& /*t*/, const auto& angle, const auto& /*rate*/
   return earth_rate * earth_rate * sin(angle - latitude) * cos(angle - latitude);
 };
 
+struct Series {
+  std::array<Real, 42> terms = {};
+
+  Real& operator[](int i) { return terms[static_cast<std::size_t>(i)]; }
+};
+
 /// angle'' = -k sin(angle) + w^2/2 sin(2 (angle - latitude)) by Taylor series in 50 digits.
 Real swing(Real angle, Real w2, double end) {
   constexpr int order = 40;
@@ -32,7 +39,7 @@ Real swing(Real angle, Real w2, double end) {
   const Real h = Real(end) / steps;
   Real rate = 0;
   for (int step = 0; step < steps; ++step) {
-    std::vector<Real> y(order + 2), s(order + 1), c(order + 1), s2(order + 1), c2(order + 1);
+    Series y, s, c, s2, c2;
     y[0] = angle;
     y[1] = rate;
     s[0] = sin(angle);
