@@ -19,7 +19,8 @@ namespace kreisel {
 /// runs would have six digits of that, this has twelve. Each component is measured by its own
 /// size: ask for Accuracy::smallest or Task::smallest = 0.
 ///
-/// D      : callable (S t, S angle, S rate) -> S, an angular acceleration
+/// D      : callable (S t, S angle, S rate) -> S, an angular acceleration; name S as its result, for
+///          what dual numbers give to auto refers to what is gone by then
 /// Source : J. F. Encke, Berliner Astronomisches Jahrbuch fuer 1857; the disturbance of the rotating
 ///          earth: paper 002 (23) with one angle
 /// Units  : 1/s^2 (k = m g l/Theta), radian, s

@@ -20,10 +20,12 @@ const double earth_rate = 7.292115e-5;
 const double latitude = std::acos(-1.0) / 4;
 
 /// The centrifugal torque on a plane pendulum that hangs from the turning earth.
-const auto earth = [](const auto& /*t*/, const auto& angle, const auto& /*rate*/) {
+const auto earth = []<class S>(const S& /*t*/, const S& angle, const S& /*rate*/) -> S {
   using std::cos;
   using std::sin;
-  return earth_rate * earth_rate * sin(angle - latitude) * cos(angle - latitude);
+  const S place = angle - latitude;
+  const S s = sin(place);
+  return earth_rate * earth_rate * s * cos(place);
 };
 
 struct Series {
@@ -87,7 +89,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
 
 BOOST_AUTO_TEST_CASE(does_not_depart_undisturbed) {
   const PendulumDeparture pendulum(
-      k, [](const auto& t, const auto& /*angle*/, const auto& /*rate*/) { return 0 * t; });
+      k, []<class S>(const S& /*t*/, const S& /*angle*/, const S& /*rate*/) -> S { return S(0); });
   const auto run = solve(pendulum, {0.3}, {.times = {10}, .tolerance = 1e-10});
   BOOST_TEST(run.states[0].departure == 0);
 }
