@@ -1,0 +1,148 @@
+#pragma once
+
+#include <type_traits>
+
+#include <motor/displacement.hpp>
+#include <motor/motor.hpp>
+
+/// Zeros that are known when the program is compiled. Formulas are written once, for all that may
+/// be there; what a scene does not have is Absent by its type, and takes with it all that it
+/// multiplies.
+
+namespace kreisel::detail {
+
+/// A zero known when the program is compiled.
+struct Absent {
+  template <class T>
+  friend Absent operator*(const T&, Absent) {
+    return {};
+  }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend Absent operator*(Absent, const T&) { return {}; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend Absent operator/(Absent, const T&) { return {}; }
+
+  friend Absent operator+(Absent, Absent) { return {}; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend T operator+(const T& x, Absent) { return x; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend T operator+(Absent, const T& x) { return x; }
+
+  friend Absent operator-(Absent) { return {}; }
+  friend Absent operator-(Absent, Absent) { return {}; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend T operator-(const T& x, Absent) { return x; }
+  template <class T>
+  requires(!std::is_same_v<T, Absent>) friend auto operator-(Absent, const T& x) { return -x; }
+};
+
+template <class T>
+inline constexpr bool is_absent = std::is_same_v<T, Absent>;
+
+/// The number that A and B make: doubles yield to dual numbers.
+template <class A, class B>
+using Joint = std::conditional_t<std::is_arithmetic_v<A>, B, A>;
+
+template <class A, class B>
+using Product = std::conditional_t<is_absent<A> || is_absent<B>, Absent, Joint<A, B>>;
+
+template <class A, class B>
+using Total = std::conditional_t<is_absent<A>, B, std::conditional_t<is_absent<B>, A, Joint<A, B>>>;
+
+/// A vector each of whose components is a number or Absent.
+template <class X, class Y = X, class Z = X>
+struct Components {
+  X x = {};
+  Y y = {};
+  Z z = {};
+
+  static constexpr bool absent = is_absent<X> && is_absent<Y> && is_absent<Z>;
+};
+
+using NoVector = Components<Absent>;
+
+template <class S>
+[[nodiscard]] Components<S> components(const Vector3<S>& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// Absent components come out as 0.
+template <class S, class X, class Y, class Z>
+[[nodiscard]] Vector3<S> vector(const Components<X, Y, Z>& a) {
+  return {S(S(0) + a.x), S(S(0) + a.y), S(S(0) + a.z)};
+}
+
+template <class X, class Y, class Z, class P, class Q, class R>
+[[nodiscard]] auto operator+(const Components<X, Y, Z>& a, const Components<P, Q, R>& b) {
+  using Sum = Components<Total<X, P>, Total<Y, Q>, Total<Z, R>>;
+  return Sum{a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+template <class X, class Y, class Z, class P, class Q, class R>
+[[nodiscard]] auto operator-(const Components<X, Y, Z>& a, const Components<P, Q, R>& b) {
+  using Difference = Components<Total<X, P>, Total<Y, Q>, Total<Z, R>>;
+  return Difference{a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+template <class X, class Y, class Z, class S>
+[[nodiscard]] auto operator*(const S& s, const Components<X, Y, Z>& a) {
+  return Components<Product<S, X>, Product<S, Y>, Product<S, Z>>{s * a.x, s * a.y, s * a.z};
+}
+
+template <class X, class Y, class Z, class S>
+[[nodiscard]] auto operator/(const Components<X, Y, Z>& a, const S& s) {
+  return Components<Product<S, X>, Product<S, Y>, Product<S, Z>>{a.x / s, a.y / s, a.z / s};
+}
+
+template <class X, class Y, class Z, class P, class Q, class R>
+[[nodiscard]] auto cross(const Components<X, Y, Z>& a, const Components<P, Q, R>& b) {
+  using First = Total<Product<Y, R>, Product<Z, Q>>;
+  using Second = Total<Product<Z, P>, Product<X, R>>;
+  using Third = Total<Product<X, Q>, Product<Y, P>>;
+  return Components<First, Second, Third>{
+      First(a.y * b.z - a.z * b.y), Second(a.z * b.x - a.x * b.z), Third(a.x * b.y - a.y * b.x)};
+}
+
+/// A rotation as nine numbers; the compiler leaves out those that nobody reads.
+template <class S>
+struct Turn {
+  S xx, xy, xz, yx, yy, yz, zx, zy, zz;
+
+  /// Of a quaternion of any norm, as Pose::from.
+  [[nodiscard]] static Turn from(const Eigen::Quaternion<S>& q) {
+    const S x = q.x(), y = q.y(), z = q.z(), w = q.w();
+    const S scale = S(2) / S(x * x + y * y + z * z + w * w);
+    const S sx = scale * x, sy = scale * y, sz = scale * z;
+    return {S(S(1) - (sy * y + sz * z)), S(sx * y - sz * w),          S(sx * z + sy * w),
+            S(sx * y + sz * w),          S(S(1) - (sx * x + sz * z)), S(sy * z - sx * w),
+            S(sx * z - sy * w),          S(sy * z + sx * w),          S(S(1) - (sx * x + sy * y))};
+  }
+
+  [[nodiscard]] static Turn from(const Matrix3<S>& R) {
+    return {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
+  }
+
+  [[nodiscard]] Matrix3<S> matrix() const {
+    return (Matrix3<S>() << xx, xy, xz, yx, yy, yz, zx, zy, zz).finished();
+  }
+};
+
+/// R v
+template <class S, class X, class Y, class Z>
+[[nodiscard]] auto turned(const Turn<S>& R, const Components<X, Y, Z>& v) {
+  using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
+  return Components<N>{N(R.xx * v.x + R.xy * v.y + R.xz * v.z),
+                       N(R.yx * v.x + R.yy * v.y + R.yz * v.z),
+                       N(R.zx * v.x + R.zy * v.y + R.zz * v.z)};
+}
+
+/// R^t v
+template <class S, class X, class Y, class Z>
+[[nodiscard]] auto turned_back(const Turn<S>& R, const Components<X, Y, Z>& v) {
+  using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
+  return Components<N>{N(R.xx * v.x + R.yx * v.y + R.zx * v.z),
+                       N(R.xy * v.x + R.yy * v.y + R.zy * v.z),
+                       N(R.xz * v.x + R.yz * v.y + R.zz * v.z)};
+}
+
+}  // namespace kreisel::detail
