@@ -172,11 +172,14 @@ template <class S>
   return (digits > S(1e-12) ? digits : S(1e-12)) * tensor.cwiseAbs().maxCoeff();
 }
 
-/// The number in a dual number (Eigen's AutoDiffScalar), which is all that a check looks at.
+/// The number in a dual number (Eigen's AutoDiffScalar), which is all that a check looks at; of a
+/// pack the first lane's.
 template <class S>
 [[nodiscard]] auto number_in(const S& x) {
   if constexpr (requires { x.derivatives(); }) {
     return number_in(x.value());
+  } else if constexpr (requires { x.lane(0); }) {
+    return x.lane(0);
   } else {
     return x;
   }

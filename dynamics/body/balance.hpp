@@ -13,9 +13,14 @@ namespace kreisel {
 /// Frame  : momenta on guide axes about the guide's origin; value.reduced_at() takes them elsewhere
 /// Units  : J; kg m/s, kg m^2/s
 struct BodyBalance {
-  double kinetic_energy = 0;               ///< sum of V.(T V)/2, absolute
-  double relative_kinetic_energy = 0;      ///< sum of V'.(T V')/2
-  double potential_energy = 0;             ///< of springs, gravity and the loads that have one
+  double kinetic_energy = 0;           ///< sum of V.(T V)/2, absolute
+  double relative_kinetic_energy = 0;  ///< sum of V'.(T V')/2
+  double potential_energy = 0;         ///< of springs, gravity and the loads that have one
+
+  /// Of all that moves without the rotors' spin: with A* + B^t A_R B of the regulated and A of the
+  /// other ones, the paper's T2 and R2. Without rotors it is the kinetic energy.
+  double carrier_energy = 0;
+
   Momentum<Guide> momentum = {};           ///< sum of T V
   Momentum<Guide> relative_momentum = {};  ///< sum of T V'
 };
@@ -31,33 +36,81 @@ namespace detail {
     const double stretch = q[link.q] - f.rest;
     sum += f.stiffness * stretch * stretch / 2 - f.constant * q[link.q];
   }
+  for (const RotorLink& rotor : tree.rotors()) {
+    if (rotor.mode != RotorMode::torque) continue;
+    sum -= tree.forces()[static_cast<std::size_t>(rotor.link.v)].constant * q[rotor.link.q];
+  }
   return sum;
 }
 
+/// The weight l of a rotor, from its rate and the absolute angular velocity of its carrier. Needs
+/// poses and places in w.
+[[nodiscard]] inline double momentum_weight(const BodyTree& tree, std::size_t rotor,
+                                            const GuideNow<>& guide, const double* v,
+                                            const BodyWorkspace& w) {
+  const RotorLink& r = tree.rotors()[rotor];
+  const Vector3<double> turn = w.place[carrier(r)].V.resultant + guide.V.value.resultant;
+  return momentum_weight(r, v[r.link.v], w.pose[tree.rotor_slot(rotor)].axis.dot(turn));
+}
+
+/// What rotors add by their spin to what moves with their carriers.
+inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const double* v,
+                      const BodyWorkspace& w, BodyBalance& sum) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const auto c = static_cast<std::size_t>(rotor.link.parent);
+    const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
+    const double rate = v[rotor.link.v];
+    const double relative = e.dot(w.place[c].V.resultant);
+    const double absolute = relative + e.dot(guide.V.value.resultant);
+    const auto energy = [&](double turn) {
+      return rotor.regulated() ? rotor.about * rate * (turn + rate / 2)
+                               : rotor.about * (rate + turn) * (rate + turn) / 2;
+    };
+    sum.kinetic_energy += energy(absolute);
+    sum.relative_kinetic_energy += energy(relative);
+    sum.momentum.value.moment += momentum_weight(rotor, rate, absolute) * e;
+    sum.relative_momentum.value.moment += momentum_weight(rotor, rate, relative) * e;
+  }
+}
+
 /// Needs poses and places in w.
-[[nodiscard]] inline BodyBalance balance(const BodyTree& tree, double t, const GuideNow& guide,
-                                         const Gravity& gravity, const double* q,
+[[nodiscard]] inline BodyBalance balance(const BodyTree& tree, double t, const GuideNow<>& guide,
+                                         const Gravity& gravity, const double* q, const double* v,
                                          const BodyWorkspace& w) {
   BodyBalance sum;
   sum.potential_energy = joint_energy(tree, q);
-  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
-    const std::size_t link = tree.link(i);
+  for (std::size_t link = 0; link < tree.links().size(); ++link) {
+    const Inertia<>& T = link == 0 ? tree.links()[0].inertia : w.inertia[link];
     const auto& [x, V_rel] = w.place[link];
     const Motor<> V = V_rel + guide.V.value.reduced_at(x);
-    const Motor<> p = w.inertia[link] * V;
-    const Motor<> p_rel = w.inertia[link] * V_rel;
+    const Motor<> p = T * V;
+    const Motor<> p_rel = T * V_rel;
     sum.kinetic_energy += reciprocal(p, V) / 2;
     sum.relative_kinetic_energy += reciprocal(p_rel, V_rel) / 2;
     sum.momentum.value += carried(x, p);
     sum.relative_momentum.value += carried(x, p_rel);
+  }
+  sum.carrier_energy = sum.kinetic_energy;
+  add_spins(tree, guide, v, w, sum);
+  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
     sum.potential_energy += potential(situation(tree, t, guide, i, w), gravity, tree.body(i));
   }
   return sum;
 }
 
-/// Whether all forces of a tree have a potential, on a guide at rest.
-[[nodiscard]] inline bool keeps_energy(const BodyTree& tree) {
+/// Which energy does not change on a guide at rest.
+enum class EnergyLaw {
+  none,
+  all,
+  without_spin  ///< BodyBalance::carrier_energy and the potential one: T2 + V
+};
+
+/// Whether all forces of a tree have a potential, on a guide at rest, but for motors of regulated
+/// rotors.
+[[nodiscard]] inline bool have_potential(const BodyTree& tree) {
   return std::none_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
+    if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
     const auto takes = [&b](const JointForce& f) {
       return f.damping != 0 || (b.forces.size() > 2 && f.constant != 0);
     };
@@ -66,6 +119,21 @@ namespace detail {
            !std::all_of(b.loads.begin(), b.loads.end(),
                         [](const BodyLoad& load) { return load.has_potential(); });
   });
+}
+
+/// Source : paper 000 (9)-(13) for L = const: d(u^t A* u)/dt = 2 u^t Q; no such law where a motor's
+///          rate changes as time goes or where another has a torque of its own besides
+[[nodiscard]] inline EnergyLaw energy_law(const BodyTree& tree) {
+  if (!have_potential(tree)) return EnergyLaw::none;
+  const auto any = [&tree](const auto& is) {
+    return std::any_of(tree.bodies().begin(), tree.bodies().end(),
+                       [&is](const BodyDescription& b) { return b.rotor && is(*b.rotor); });
+  };
+  const bool regulated = any([](const Rotor& r) { return r.mode == RotorMode::regulated; });
+  const bool driven = any([](const Rotor& r) { return r.mode == RotorMode::torque; });
+  const bool changed = any([](const Rotor& r) { return static_cast<bool>(r.acceleration); });
+  if (!regulated) return EnergyLaw::all;
+  return driven || changed ? EnergyLaw::none : EnergyLaw::without_spin;
 }
 
 /// Whether nothing acts on a tree from outside, on a guide at rest.

@@ -4,12 +4,14 @@
 
 #include <concepts>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/load.hpp>
 
 namespace kreisel {
@@ -61,7 +63,42 @@ enum class JointRule {
   constant_rate  ///< revolute only: a motor keeps the rate whatever torque that takes
 };
 
-/// Any Load, kept by value.
+/// What rules the spin of a rotor.
+enum class RotorMode {
+  free,       ///< nothing turns it about its axis: its cyclic momentum p = C (spin) stays
+  regulated,  ///< a motor on the carrier keeps the relative rate phi' what it is asked to be
+  torque      ///< a motor gives a torque, its reaction acts on the carrier; dampers may brake it
+};
+
+/// Makes the body of a revolute joint a rotor, whose angle no equation of motion depends on: it is
+/// balanced, symmetric about the joint's axis e and carries nothing. For the motion of the others
+/// it is welded to its carrier, with the gyroscopic torque  -w x l e  as all that is left of it:
+/// the costs and the steps of a computation do not know how fast it turns. Coordinate (whole turns
+/// counted) and rate, relative to the carrier, remain those of the joint.
+///
+/// Tensor about the origin: C e e^t + A (1 - e e^t), up to 64u of its trace; centre of mass on the
+/// axis, up to 64u of a radius of gyration. A damper may be there in the modes regulated, where the
+/// motor overcomes it, and torque.
+///
+/// Source : paper 000 (2), (4), (8): l = C phi' if regulated, p = C (phi' + e.w) else
+/// Units  : N m; rad/s^2
+struct Rotor {
+  RotorMode mode = RotorMode::free;
+
+  /// Mode torque: on the rotor about the axis, besides the joint force, which may have no spring.
+  double torque = 0;
+
+  /// Mode regulated: phi'' of the rate asked for, which begins at that of the state; null: 0.
+  std::function<double(double t)> acceleration = nullptr;
+};
+
+/// Any Load, kept by value. In dual numbers, as linear equations ask for, a load works that is a
+/// template on the number of the situation; others give numbers of type double alone.
+///
+/// A load for which it is all the same how a symmetric body is turned
+/// about its axis and how fast it spins, as gravitation, may act on a rotor; it says so by
+///
+///   static constexpr bool ignores_spin = true;
 class BodyLoad {
  public:
   template <Load L>
@@ -70,18 +107,42 @@ class BodyLoad {
     if constexpr (requires(const Situation<>& s) { load.potential(s); }) {
       potential_ = [load](const Situation<>& s) { return load.potential(s); };
     }
+    if constexpr (Load<L, detail::AlongOne>) along_ = load;
+    if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
   }
 
   [[nodiscard]] Force<Body> operator()(const Situation<>& s) const { return force_(s); }
+
+  /// Of dual numbers: a derivative at a time. Asks for takes_dual_numbers().
+  template <class Dual>
+  [[nodiscard]] Force<Body, Dual> operator()(const Situation<Dual>& s) const {
+    Force<Body, Dual> result;
+    for (Eigen::Index k = 0; k < s.t.derivatives().size(); ++k) {
+      const Motor<detail::AlongOne> P = along_(detail::along_one(s, k)).value;
+      for (int i = 0; i < 3; ++i) {
+        const auto set = [k](Dual& to, const detail::AlongOne& from) {
+          to.value() = from.value();
+          to.derivatives()[k] = from.derivatives()[0];
+        };
+        set(result.value.resultant[i], P.resultant[i]);
+        set(result.value.moment[i], P.moment[i]);
+      }
+    }
+    return result;
+  }
+  [[nodiscard]] bool takes_dual_numbers() const { return static_cast<bool>(along_); }
 
   [[nodiscard]] bool has_potential() const { return static_cast<bool>(potential_); }
   [[nodiscard]] double potential(const Situation<>& s) const {
     return potential_ ? potential_(s) : 0;
   }
+  [[nodiscard]] bool ignores_spin() const { return ignores_spin_; }
 
  private:
   std::function<Force<Body>(const Situation<>&)> force_;
   std::function<double(const Situation<>&)> potential_;
+  std::function<Force<Body, detail::AlongOne>(const Situation<detail::AlongOne>&)> along_;
+  bool ignores_spin_ = false;
 };
 
 /// One body of a system and the joint that holds it to its parent.
@@ -93,6 +154,7 @@ struct BodyDescription {
   std::vector<JointForce> forces = {};  ///< one for each rate of the joint, or none
   JointRule rule = JointRule::forces;
   std::vector<BodyLoad> loads = {};
+  std::optional<Rotor> rotor = std::nullopt;
 };
 
 /// The field of gravity that all bodies of a system are in; a field that is not uniform is a load.

@@ -94,7 +94,7 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
 ///          direction
 inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
   const Link& link = tree.links()[i];
-  const LinkPose& pose = w.pose[i];
+  const LinkPose<>& pose = w.pose[i];
   ArticulatedInertia& A = w.articulated[i];
   Size size = w.size[i];
   if (link.moved_by_forces()) {
@@ -116,8 +116,8 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
 }
 
 /// The force that a spherical or free joint hands on of P.
-[[gnu::noinline]] inline Motor<> reduce_ball(const Link& link, const LinkPose& pose,
-                                             const LinkPose& parent, const double* joint_force,
+[[gnu::noinline]] inline Motor<> reduce_ball(const Link& link, const LinkPose<>& pose,
+                                             const LinkPose<>& parent, const double* joint_force,
                                              const Motor<>& P, BallElimination& e) {
   const Vector3<double> torque = pose.R * three(joint_force + link.v);
   if (link.kind == LinkKind::spherical) {
@@ -136,7 +136,7 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
 /// Hands what is left of the force of link i, with the joint force taken off, on to the parent.
 inline void reduce(const Link& link, std::size_t i, const double* joint_force, BodyWorkspace& w) {
   const auto parent = static_cast<std::size_t>(link.parent);
-  const LinkPose& pose = w.pose[i];
+  const LinkPose<>& pose = w.pose[i];
   Vector3<double> f = w.force[i].resultant;
   Vector3<double> n = w.force[i].moment;
   if (link.moved_by_forces()) {
@@ -158,8 +158,8 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
 }
 
 /// The acceleration of a spherical or free joint.
-[[gnu::noinline]] inline void accelerate_ball(const Link& link, const LinkPose& pose,
-                                              const LinkPose& parent, const BallElimination& e,
+[[gnu::noinline]] inline void accelerate_ball(const Link& link, const LinkPose<>& pose,
+                                              const LinkPose<>& parent, const BallElimination& e,
                                               Motor<>& delta, double* acceleration) {
   const Motor<> given = delta;
   delta.resultant = e.x.resultant;
@@ -177,7 +177,7 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
 /// The acceleration of the joint of link i, once its parent's is known.
 inline void accelerate(const Link& link, std::size_t i, double* acceleration, BodyWorkspace& w) {
   const auto parent = static_cast<std::size_t>(link.parent);
-  const LinkPose& pose = w.pose[i];
+  const LinkPose<>& pose = w.pose[i];
   Motor<>& delta = w.delta[i];
   delta.resultant = w.delta[parent].resultant;
   delta.moment = w.delta[parent].moment + delta.resultant.cross(pose.r);

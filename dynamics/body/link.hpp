@@ -27,12 +27,31 @@ struct Link {
   Matrix3<double> still = Matrix3<double>::Identity();
   Matrix3<double> cosine = Matrix3<double>::Zero();
   Matrix3<double> sine = Matrix3<double>::Zero();
-  Inertia<double> inertia = {};
+  Inertia<double> inertia = {};  ///< with the rotors that are welded to it
 
   [[nodiscard]] bool moved_by_forces() const {
     return rule == JointRule::forces && kind != LinkKind::fixed;
   }
   [[nodiscard]] bool moves() const { return rule != JointRule::held && kind != LinkKind::fixed; }
+};
+
+/// A rotor beside the links: no pass over the tree comes across it.
+struct RotorLink {
+  Link link = {};  ///< as of any revolute joint, for what is read out; link.parent is the carrier
+  RotorMode mode = RotorMode::free;
+  double mass = 0;
+  double first_moment = 0;  ///< along the axis
+  double about = 0;         ///< C, the moment of inertia about the axis
+  double across = 0;        ///< A, about any other through the origin
+
+  [[nodiscard]] bool regulated() const { return mode == RotorMode::regulated; }
+
+  /// On axes on which the rotor's is e: with the moment of inertia C about it, or with another.
+  [[nodiscard]] Inertia<> inertia(const Vector3<double>& e, double moment) const {
+    const Matrix3<double> along = (moment - across) * e * e.transpose();
+    return {mass, first_moment * e,
+            Symmetric3<>::from(Matrix3<double>(across * Matrix3<double>::Identity() + along))};
+  }
 };
 
 [[nodiscard]] inline int coordinate_count(LinkKind kind) {

@@ -2,25 +2,31 @@
 
 #include <variant>
 
-#include <dynamics/body/workspace.hpp>
+#include <dynamics/body/rotors.hpp>
+#include <dynamics/scene/dual_numbers.hpp>
 
 /// Where the bodies of a tree are, and what acts on them from outside.
 
 namespace kreisel::detail {
 
-using GuideNow = FrameMotion<Guide, Inertial>;
+template <class S = double>
+using GuideNow = FrameMotion<Guide, Inertial, S>;
 
 /// The uniform field of gravity on guide axes.
-[[nodiscard]] inline Vector3<double> field(const Gravity& gravity, const GuideNow& guide) {
-  if (const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity)) return on_guide->g;
-  if (const auto* inertial = std::get_if<UniformGravity<Inertial>>(&gravity)) {
-    return guide.X.value.rotation.transpose() * inertial->g;
+template <class S>
+[[nodiscard]] Vector3<S> field(const Gravity& gravity, const GuideNow<S>& guide) {
+  if (const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity)) {
+    return on_guide->g.template cast<S>();
   }
-  return Vector3<double>::Zero();
+  if (const auto* inertial = std::get_if<UniformGravity<Inertial>>(&gravity)) {
+    return guide.X.value.rotation.transpose() * inertial->g.template cast<S>();
+  }
+  return Vector3<S>::Zero();
 }
 
 /// Places in the guide and velocity motors V' against it.
-inline void set_places(const BodyTree& tree, const double* v, BodyWorkspace& w) {
+template <class S>
+void set_places(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
     const Link& link = tree.links()[i];
     const auto parent = static_cast<std::size_t>(link.parent);
@@ -29,29 +35,35 @@ inline void set_places(const BodyTree& tree, const double* v, BodyWorkspace& w) 
 }
 
 /// Needs poses and places in w.
-[[nodiscard]] inline Situation<> situation(const BodyTree& tree, double t, const GuideNow& guide,
-                                           int body, const BodyWorkspace& w) {
+template <class S>
+[[nodiscard]] Situation<S> situation(const BodyTree& tree, const S& t, const GuideNow<S>& guide,
+                                     int body, const MotionSpace<S>& w) {
   const std::size_t link = tree.link(body);
   const auto& [x, V] = w.place[link];
-  const Matrix3<double>& R = w.pose[link].R;
+  const Matrix3<S>& R = w.pose[link].R;
   return {t,
           {{R, x}},
           {{R.transpose() * V.resultant, R.transpose() * V.moment}},
           guide,
-          tree.body(body).inertia};
+          {lifted<S>(tree.body(body).inertia.value)}};
 }
 
 /// Takes the loads off the forces in w, which the joints have to bring up.
-inline void take_off_loads(const BodyTree& tree, double t, const GuideNow& guide, const double* v,
-                           BodyWorkspace& w) {
+template <class S>
+void take_off_loads(const BodyTree& tree, const S& t, const GuideNow<S>& guide, const S* v,
+                    MotionSpace<S>& w) {
   if (tree.loaded().empty()) return;
   set_places(tree, v, w);
   for (const int body : tree.loaded()) {
     const std::size_t link = tree.link(body);
-    const Situation<> s = situation(tree, t, guide, body, w);
+    if (is_rotor(tree, link)) set_place_without_angle(tree, link, v, w);
+    const Situation<S> s = situation(tree, t, guide, body, w);
     for (const BodyLoad& load : tree.body(body).loads) {
-      const Motor<> P = load(s).value;
-      w.force[link] -= {w.pose[link].R * P.resultant, w.pose[link].R * P.moment};
+      const Motor<S> P = load(s).value;
+      w.force[link] -= Motor<S>{w.pose[link].R * P.resultant, w.pose[link].R * P.moment};
+    }
+    if (is_rotor(tree, link)) {
+      w.force[carrier(rotor(tree, link))] += carried(w.pose[link].r, w.force[link]);
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include <dynamics/body/tree.hpp>
 
@@ -9,10 +10,11 @@
 
 namespace kreisel::detail {
 
+template <class S = double>
 struct LinkPose {
-  Matrix3<double> R = Matrix3<double>::Identity();  ///< body to guide axes
-  Vector3<double> r = Vector3<double>::Zero();      ///< from the parent's origin to its own
-  Vector3<double> axis = Vector3<double>::Zero();   ///< of a revolute or prismatic joint
+  Matrix3<S> R = Matrix3<S>::Identity();  ///< body to guide axes
+  Vector3<S> r = Vector3<S>::Zero();      ///< from the parent's origin to its own
+  Vector3<S> axis = Vector3<S>::Zero();   ///< of a revolute or prismatic joint
 };
 
 /// The absolute angular velocity w = u' + u, its inertial rate, and the inertial acceleration of
@@ -21,56 +23,68 @@ struct LinkPose {
 /// Accelerations of points, not motors: where the guide runs at 465 m/s, as on the earth, the
 /// motors' u x v comes and goes again and leaves its rounding. The DIFFERENCE of two such pairs
 /// (dw; a) at the same velocities is a motor.
+template <class S = double>
 struct LinkMotion {
-  Vector3<double> w = Vector3<double>::Zero();
-  Vector3<double> dw = Vector3<double>::Zero();
-  Vector3<double> a = Vector3<double>::Zero();
+  Vector3<S> w = Vector3<S>::Zero();
+  Vector3<S> dw = Vector3<S>::Zero();
+  Vector3<S> a = Vector3<S>::Zero();
 };
 
-[[nodiscard]] inline Vector3<double> three(const double* x) { return {x[0], x[1], x[2]}; }
+template <class S>
+[[nodiscard]] Vector3<S> three(const S* x) {
+  return {x[0], x[1], x[2]};
+}
 
-[[nodiscard]] inline Matrix3<double> rotation(const double* q) {
-  return Pose<>::from(Eigen::Quaterniond(q[3], q[0], q[1], q[2])).rotation;
+template <class S>
+[[nodiscard]] Matrix3<S> rotation(const S* q) {
+  return Pose<S>::from(Eigen::Quaternion<S>(q[3], q[0], q[1], q[2])).rotation;
 }
 
 /// C = A B. Spelt out, because g++ 12 calls Eigen's instead of inlining it.
-inline void multiply(const Matrix3<double>& A, const Matrix3<double>& B, Matrix3<double>& C) {
+template <class S>
+void multiply(const Matrix3<S>& A, const Matrix3<S>& B, Matrix3<S>& C) {
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) C(i, k) = A(i, 0) * B(0, k) + A(i, 1) * B(1, k) + A(i, 2) * B(2, k);
   }
 }
 
-[[nodiscard]] inline Vector3<double> multiply(const Matrix3<double>& A, const Vector3<double>& b) {
+template <class S>
+[[nodiscard]] Vector3<S> multiply(const Matrix3<S>& A, const Vector3<double>& b) {
   return {A(0, 0) * b[0] + A(0, 1) * b[1] + A(0, 2) * b[2],
           A(1, 0) * b[0] + A(1, 1) * b[1] + A(1, 2) * b[2],
           A(2, 0) * b[0] + A(2, 1) * b[1] + A(2, 2) * b[2]};
 }
 
 /// The pose of a link that does not turn by a single angle.
-[[gnu::noinline]] inline void set_other_pose(const Link& link, const LinkPose& parent,
-                                             const double* q, LinkPose& p) {
-  Vector3<double> offset = link.position;
-  Matrix3<double> turned = link.still;
+template <class S>
+[[gnu::noinline]] void set_other_pose(const Link& link, const LinkPose<S>& parent, const S* q,
+                                      LinkPose<S>& p) {
+  Vector3<S> offset = link.position.template cast<S>();
+  Matrix3<S> turned = link.still.template cast<S>();
   if (link.kind == LinkKind::prismatic) {
-    p.axis = parent.R * link.axis;
-    offset += q[link.q] * link.axis;
+    p.axis = multiply(parent.R, link.axis);
+    offset += q[link.q] * link.axis.template cast<S>();
   }
   if (link.kind == LinkKind::free) offset += three(q + link.q + 4);
-  if (coordinate_count(link.kind) >= 4) turned = link.still * rotation(q + link.q);
+  if (coordinate_count(link.kind) >= 4)
+    turned = link.still.template cast<S>() * rotation(q + link.q);
   p.R = parent.R * turned;
   p.r = parent.R * offset;
 }
 
 /// The pose of a link from its parent's and its coordinates. Written in place, here and below:
 /// results copied right after they were made would wait for each other.
-inline void set_pose(const Link& link, const LinkPose& parent, const double* q, LinkPose& p) {
+template <class S>
+void set_pose(const Link& link, const LinkPose<S>& parent, const S* q, LinkPose<S>& p) {
   if (link.kind != LinkKind::revolute) {
     set_other_pose(link, parent, q, p);
     return;
   }
-  const double c = std::cos(q[link.q]);
-  const double s = std::sin(q[link.q]);
-  Matrix3<double> turned;
+  using std::cos;
+  using std::sin;
+  const S c = cos(q[link.q]);
+  const S s = sin(q[link.q]);
+  Matrix3<S> turned;
   for (int k = 0; k < 9; ++k) {
     turned(k) = link.still(k) + c * link.cosine(k) + s * link.sine(k);
   }
@@ -80,21 +94,24 @@ inline void set_pose(const Link& link, const LinkPose& parent, const double* q, 
 }
 
 /// What another joint than a revolute one adds to the motion of its parent.
-[[gnu::noinline]] inline void add_other_motion(const Link& link, const LinkPose& pose,
-                                               const LinkPose& parent, const LinkMotion& above,
-                                               const double* v, const double* dv, LinkMotion& m) {
+template <class S>
+[[gnu::noinline]] void add_other_motion(const Link& link, const LinkPose<S>& pose,
+                                        const LinkPose<S>& parent, const LinkMotion<S>& above,
+                                        const S* v, const std::type_identity_t<S>* dv,
+                                        LinkMotion<S>& m) {
   if (link.kind == LinkKind::prismatic) {
-    m.a += (2 * v[link.v]) * above.w.cross(pose.axis);
+    const S twice = 2.0 * v[link.v];
+    m.a += twice * above.w.cross(pose.axis);
     if (dv) m.a += dv[link.v] * pose.axis;
     return;
   }
-  const Vector3<double> turn = pose.R * three(v + link.v);
+  const Vector3<S> turn = pose.R * three(v + link.v);
   m.w += turn;
   m.dw += above.w.cross(turn);
   if (dv) m.dw += pose.R * three(dv + link.v);
   if (link.kind != LinkKind::free) return;
-  const Vector3<double> slide = parent.R * three(v + link.v + 3);
-  m.a += 2 * above.w.cross(slide);
+  const Vector3<S> slide = parent.R * three(v + link.v + 3);
+  m.a += S(2) * above.w.cross(slide);
   if (dv) m.a += parent.R * three(dv + link.v + 3);
 }
 
@@ -103,12 +120,14 @@ inline void set_pose(const Link& link, const LinkPose& parent, const double* q, 
 ///   w = w_P + S v,   dw = dw_P + S dv + bias,   a = a_P + dw_P x r + w_P x (w_P x r) + ...
 ///
 /// Source : paper 002 (18)-(19) from link to link; the guide is only the link that all begin with
-inline void set_motion(const Link& link, const LinkPose& pose, const LinkPose& parent,
-                       const LinkMotion& above, const double* v, const double* dv, LinkMotion& m) {
+template <class S>
+void set_motion(const Link& link, const LinkPose<S>& pose, const LinkPose<S>& parent,
+                const LinkMotion<S>& above, const S* v, const std::type_identity_t<S>* dv,
+                LinkMotion<S>& m) {
   m.a = above.a + above.dw.cross(pose.r) + above.w.cross(above.w.cross(pose.r));
   if (link.kind == LinkKind::revolute && link.moves()) {
-    const Vector3<double> turn = v[link.v] * pose.axis;
-    const double rate = dv ? dv[link.v] : 0;
+    const Vector3<S> turn = v[link.v] * pose.axis;
+    const S rate = dv ? dv[link.v] : S(0);
     m.w = above.w + turn;
     m.dw = above.dw + above.w.cross(turn) + rate * pose.axis;
     return;
@@ -120,14 +139,16 @@ inline void set_motion(const Link& link, const LinkPose& pose, const LinkPose& p
 
 /// The velocity motor V' against the guide of a link at its own origin, and that origin's place in
 /// the guide.
+template <class S = double>
 struct LinkPlace {
-  Vector3<double> x = Vector3<double>::Zero();
-  Motor<> V = {};
+  Vector3<S> x = Vector3<S>::Zero();
+  Motor<S> V = {};
 };
 
-inline LinkPlace place(const Link& link, const LinkPose& pose, const LinkPose& parent,
-                       const LinkPlace& above, const double* v) {
-  LinkPlace p{above.x + pose.r, above.V.reduced_at(pose.r)};
+template <class S>
+LinkPlace<S> place(const Link& link, const LinkPose<S>& pose, const LinkPose<S>& parent,
+                   const LinkPlace<S>& above, const S* v) {
+  LinkPlace<S> p{above.x + pose.r, above.V.reduced_at(pose.r)};
   if (!link.moves()) return p;
   if (link.kind == LinkKind::revolute) p.V.resultant += v[link.v] * pose.axis;
   if (link.kind == LinkKind::prismatic) p.V.moment += v[link.v] * pose.axis;
@@ -139,24 +160,26 @@ inline LinkPlace place(const Link& link, const LinkPose& pose, const LinkPose& p
 }
 
 /// The velocity motor that the k-th rate of a joint, at 1, gives the link at its origin.
-[[nodiscard]] inline Motor<> direction(const Link& link, const LinkPose& pose,
-                                       const LinkPose& parent, int k) {
-  const Vector3<double> zero = Vector3<double>::Zero();
+template <class S>
+[[nodiscard]] Motor<S> direction(const Link& link, const LinkPose<S>& pose,
+                                 const LinkPose<S>& parent, int k) {
+  const Vector3<S> zero = Vector3<S>::Zero();
   if (link.kind == LinkKind::revolute) return {pose.axis, zero};
   if (link.kind == LinkKind::prismatic) return {zero, pose.axis};
-  return k < 3 ? Motor<>{pose.R.col(k), zero} : Motor<>{zero, parent.R.col(k - 3)};
+  return k < 3 ? Motor<S>{pose.R.col(k), zero} : Motor<S>{zero, parent.R.col(k - 3)};
 }
 
 /// Ten numbers on the axes that R turns to:  (m; R s; R Theta R^t).
-inline void turn(const Matrix3<double>& R, const Inertia<>& T, Inertia<>& result) {
+template <class S>
+void turn(const Matrix3<S>& R, const Inertia<>& T, Inertia<S>& result) {
   const Symmetric3<>& t = T.tensor;
-  Matrix3<double> half;  // R Theta
+  Matrix3<S> half;  // R Theta
   for (int i = 0; i < 3; ++i) {
     half(i, 0) = R(i, 0) * t.xx + R(i, 1) * t.xy + R(i, 2) * t.xz;
     half(i, 1) = R(i, 0) * t.xy + R(i, 1) * t.yy + R(i, 2) * t.yz;
     half(i, 2) = R(i, 0) * t.xz + R(i, 1) * t.yz + R(i, 2) * t.zz;
   }
-  const auto entry = [&](int i, int k) {
+  const auto entry = [&](int i, int k) -> S {
     return half(i, 0) * R(k, 0) + half(i, 1) * R(k, 1) + half(i, 2) * R(k, 2);
   };
   result.mass = T.mass;
@@ -171,15 +194,17 @@ inline void turn(const Matrix3<double>& R, const Inertia<>& T, Inertia<>& result
 }
 
 /// A force motor at the end of r, reduced at its beginning.
-[[nodiscard]] inline Motor<> carried(const Vector3<double>& r, const Motor<>& P) {
+template <class S>
+[[nodiscard]] Motor<S> carried(const Vector3<S>& r, const Motor<S>& P) {
   return {P.resultant, P.moment + r.cross(P.resultant)};
 }
 
 /// The force motor of the inertia T in that motion: the left side of the law, by the vectors of
 /// (19),  {m a + dw x s + w x (w x s);  s x a + Theta dw + w x Theta w}.
-[[nodiscard]] inline Motor<> inertia_force(const Inertia<>& T, const LinkMotion& m) {
+template <class S>
+[[nodiscard]] Motor<S> inertia_force(const Inertia<S>& T, const LinkMotion<S>& m) {
   const auto& [w, dw, a] = m;
-  const Vector3<double>& s = T.first_moment;
+  const Vector3<S>& s = T.first_moment;
   return {T.mass * a + dw.cross(s) + w.cross(w.cross(s)),
           s.cross(a) + T.tensor * dw + w.cross(T.tensor * w)};
 }

@@ -2,48 +2,58 @@
 
 #include <Eigen/Core>
 
+#include <type_traits>
+
 #include <dynamics/body/elimination.hpp>
+#include <dynamics/body/rotors.hpp>
 
 /// The passes over a whole tree: outwards for what moves, inwards for what pushes. A parent has a
 /// lower number than what hangs on it, so they are plain loops.
 
 namespace kreisel::detail {
 
-inline void set_pose(const Link& link, std::size_t i, const double* q, BodyWorkspace& w) {
+template <class S>
+void set_pose(const Link& link, std::size_t i, const S* q, MotionSpace<S>& w) {
   set_pose(link, w.pose[static_cast<std::size_t>(link.parent)], q, w.pose[i]);
   turn(w.pose[i].R, link.inertia, w.inertia[i]);
 }
 
-inline void set_motion(const Link& link, std::size_t i, const double* v, const double* dv,
-                       BodyWorkspace& w) {
+template <class S>
+void set_motion(const Link& link, std::size_t i, const S* v, const std::type_identity_t<S>* dv,
+                MotionSpace<S>& w) {
   const auto parent = static_cast<std::size_t>(link.parent);
   set_motion(link, w.pose[i], w.pose[parent], w.motion[parent], v, dv, w.motion[i]);
   w.force[i] = inertia_force(w.inertia[i], w.motion[i]);
 }
 
 /// Poses and inertias on guide axes, for the coordinates q.
-inline void set_poses(const BodyTree& tree, const double* q, BodyWorkspace& w) {
+template <class S>
+void set_poses(const BodyTree& tree, const S* q, MotionSpace<S>& w) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) set_pose(tree.links()[i], i, q, w);
 }
 
 /// Motions, and the force motor that each link alone takes for its own: the left side of the law.
 /// The guide's motion is root; dv may be null, for 0.
-inline void set_motions(const BodyTree& tree, const LinkMotion& root, const double* v,
-                        const double* dv, BodyWorkspace& w) {
+template <class S>
+void set_motions(const BodyTree& tree, const LinkMotion<S>& root, const S* v,
+                 const std::type_identity_t<S>* dv, MotionSpace<S>& w) {
   w.motion[0] = root;
   w.force[0] = {};
   for (std::size_t i = 1; i < tree.links().size(); ++i) set_motion(tree.links()[i], i, v, dv, w);
+  begin_rotors(tree, w);
 }
 
 /// Both in one pass.
-inline void set_poses_and_motions(const BodyTree& tree, const LinkMotion& root, const double* q,
-                                  const double* v, const double* dv, BodyWorkspace& w) {
+template <class S>
+void set_poses_and_motions(const BodyTree& tree, const LinkMotion<S>& root, const S* q, const S* v,
+                           const std::type_identity_t<S>* dv, MotionSpace<S>& w) {
   w.motion[0] = root;
   w.force[0] = {};
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
     set_pose(tree.links()[i], i, q, w);
     set_motion(tree.links()[i], i, v, dv, w);
   }
+  begin_rotors(tree, w);
 }
 
 inline void clear_articulated(const BodyTree& tree, BodyWorkspace& w) {
@@ -63,10 +73,12 @@ inline void eliminate_all(const BodyTree& tree, BodyWorkspace& w) {
 }
 
 /// The joints' accelerations, once all are eliminated and all forces reduced.
-inline void accelerate_all(const BodyTree& tree, double* acceleration, BodyWorkspace& w) {
+inline void accelerate_all(const BodyTree& tree, const double* joint_force, double* acceleration,
+                           BodyWorkspace& w) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
     accelerate(tree.links()[i], i, acceleration, w);
   }
+  accelerate_rotors(tree, joint_force, acceleration, w);
 }
 
 /// Solves for the joints' accelerations with the forces that stand in w.force at dv = 0.
@@ -75,7 +87,7 @@ inline void solve(const BodyTree& tree, const double* joint_force, double* accel
   for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
     reduce(tree.links()[i], i, joint_force, w);
   }
-  accelerate_all(tree, acceleration, w);
+  accelerate_all(tree, joint_force, acceleration, w);
 }
 
 /// Eliminates and solves in one pass inwards and one outwards.
@@ -87,29 +99,31 @@ inline void eliminate_and_solve(const BodyTree& tree, const double* joint_force,
     eliminate(tree, i, w);
     reduce(tree.links()[i], i, joint_force, w);
   }
-  accelerate_all(tree, acceleration, w);
+  accelerate_all(tree, joint_force, acceleration, w);
 }
 
 /// Sums the forces inwards: w.force[i] becomes what the parent exerts on link i through the joint,
 /// w.force[0] what the guide has to give.
-inline void sum_inwards(const BodyTree& tree, BodyWorkspace& w) {
+template <class S>
+void sum_inwards(const BodyTree& tree, MotionSpace<S>& w) {
   for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
-    const Motor<>& P = w.force[i];
-    Motor<>& above = w.force[static_cast<std::size_t>(tree.links()[i].parent)];
+    const Motor<S>& P = w.force[i];
+    Motor<S>& above = w.force[static_cast<std::size_t>(tree.links()[i].parent)];
     above.resultant += P.resultant;
     above.moment += P.moment + w.pose[i].r.cross(P.resultant);
   }
 }
 
-/// The components of those forces along the joints' directions, one for each rate.
-inline void project(const BodyTree& tree, const BodyWorkspace& w, double* result) {
+/// The components of those forces along the joints' directions, one for each rate of a link.
+template <class S>
+void project(const BodyTree& tree, const MotionSpace<S>& w, S* result) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
     const Link& link = tree.links()[i];
     if (link.kind == LinkKind::revolute) {
       result[link.v] = w.pose[i].axis.dot(w.force[i].moment);
       continue;
     }
-    const LinkPose& parent = w.pose[static_cast<std::size_t>(link.parent)];
+    const LinkPose<S>& parent = w.pose[static_cast<std::size_t>(link.parent)];
     for (int k = 0; k < rate_count(link.kind); ++k) {
       result[link.v + k] = reciprocal(w.force[i], direction(link, w.pose[i], parent, k));
     }
@@ -117,28 +131,29 @@ inline void project(const BodyTree& tree, const BodyWorkspace& w, double* result
 }
 
 /// q' = N(q) v.
-inline void set_coordinate_rates(const BodyTree& tree, const double* q, const double* v,
-                                 double* result) {
+template <class S>
+void set_coordinate_rates(const BodyTree& tree, const S* q, const S* v, S* result) {
   for (const Link& link : tree.links()) {
-    double* dq = result + link.q;
-    const double* u = v + link.v;
+    S* dq = result + link.q;
+    const S* u = v + link.v;
     int set = 0;
     if (link.moves() && rate_count(link.kind) == 1) {
       dq[set++] = u[0];
     } else if (link.moves() && rate_count(link.kind) >= 3) {
-      const double* p = q + link.q;
-      const Eigen::Quaterniond rate = Eigen::Quaterniond(p[3], p[0], p[1], p[2]) *
-                                      Eigen::Quaterniond(0, u[0] / 2, u[1] / 2, u[2] / 2);
+      const S* p = q + link.q;
+      const Eigen::Quaternion<S> half(S(0), u[0] / 2, u[1] / 2, u[2] / 2);
+      const Eigen::Quaternion<S> rate = Eigen::Quaternion<S>(p[3], p[0], p[1], p[2]) * half;
       for (; set < 4; ++set) dq[set] = rate.coeffs()[set];
       for (; set < coordinate_count(link.kind); ++set) dq[set] = u[set - 1];
     }
-    for (; set < coordinate_count(link.kind); ++set) dq[set] = 0;
+    for (; set < coordinate_count(link.kind); ++set) dq[set] = S(0);
   }
+  for (const RotorLink& rotor : tree.rotors()) result[rotor.link.q] = v[rotor.link.v];
 }
 
 /// The forces of springs, dampers and constant joint forces.
-inline void set_joint_forces(const BodyTree& tree, const double* q, const double* v,
-                             BodyWorkspace& w) {
+template <class S>
+void set_joint_forces(const BodyTree& tree, const S* q, const S* v, MotionSpace<S>& w) {
   for (std::size_t k = 0; k < tree.forces().size(); ++k) {
     const JointForce& f = tree.forces()[k];
     w.joint_force[static_cast<Eigen::Index>(k)] =
@@ -150,10 +165,28 @@ inline void set_joint_forces(const BodyTree& tree, const double* q, const double
 /// Needs the inertias in w and leaves sums in their place.
 inline void mass_matrix(const BodyTree& tree, BodyWorkspace& w, Eigen::MatrixXd& result) {
   const std::vector<Link>& links = tree.links();
-  const auto parent_pose = [&](const Link& link) -> const LinkPose& {
+  const auto parent_pose = [&](const Link& link) -> const LinkPose<>& {
     return w.pose[static_cast<std::size_t>(link.parent)];
   };
   result.setZero(tree.rates(), tree.rates());
+  for (const RotorLink& rotor : tree.rotors()) {
+    auto j = static_cast<std::size_t>(rotor.link.parent);
+    const Vector3<double> e = w.pose[j].R * rotor.link.axis;
+    if (!rotor.regulated()) {
+      Symmetric3<>& tensor = w.inertia[j].tensor;
+      tensor = tensor + Symmetric3<>::from(rotor.about * e * e.transpose());
+    }
+    result(rotor.link.v, rotor.link.v) = rotor.about;
+    const Motor<> P{Vector3<double>::Zero(), rotor.about * e};
+    for (; j > 0; j = static_cast<std::size_t>(links[j].parent)) {
+      for (int l = 0; l < rate_count(links[j].kind); ++l) {
+        const double entry =
+            reciprocal(P, direction(links[j], w.pose[j], parent_pose(links[j]), l));
+        result(rotor.link.v, links[j].v + l) = entry;
+        result(links[j].v + l, rotor.link.v) = entry;
+      }
+    }
+  }
   for (std::size_t i = links.size() - 1; i > 0; --i) {
     const Link& link = links[i];
     const Inertia<>& composite = w.inertia[i];

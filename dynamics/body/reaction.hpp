@@ -52,7 +52,7 @@ namespace detail {
 [[nodiscard]] inline ForceParts<Body> terms(const BodyTree& tree, const Situation<>& s, int body,
                                             const Vector3<double>& g, const BodyWorkspace& w) {
   const std::size_t link = tree.link(body);
-  const LinkMotion& absolute = w.motion[link];
+  const LinkMotion<>& absolute = w.motion[link];
   const auto& [x, V] = w.place[link];
   const Vector3<double>& u = s.guide.V.value.resultant;
   const Vector3<double>& du = s.guide.dV.value.resultant;

@@ -33,6 +33,25 @@ struct Size {
   double angular = 0;
 };
 
+/// How the links move and what that takes. For dual numbers it is all that is needed.
+template <class S = double>
+struct MotionSpace {
+  explicit MotionSpace(const BodyTree& tree)
+      : pose(tree.slots()),
+        motion(tree.slots()),
+        place(tree.slots()),
+        inertia(tree.links().size()),
+        force(tree.slots()),
+        joint_force(Eigen::Matrix<S, Eigen::Dynamic, 1>::Zero(tree.rates())) {}
+
+  std::vector<LinkPose<S>> pose;  ///< of links, then of rotors, as motion, place and force
+  std::vector<LinkMotion<S>> motion;
+  std::vector<LinkPlace<S>> place;
+  std::vector<Inertia<S>> inertia;  ///< on guide axes
+  std::vector<Motor<S>> force;      ///< of each link alone, then of it and all that hangs on it
+  Eigen::Matrix<S, Eigen::Dynamic, 1> joint_force;
+};
+
 }  // namespace detail
 
 /// Scratch memory for one evaluation of a BodySystem at a time: one of it for each thread. All that
@@ -40,35 +59,26 @@ struct Size {
 /// made.
 ///
 /// Cost : 1 kB for each body
-struct BodyWorkspace {
+struct BodyWorkspace : detail::MotionSpace<> {
   explicit BodyWorkspace(const BodyTree& tree)
-      : pose(tree.links().size()),
-        motion(tree.links().size()),
-        place(tree.links().size()),
-        inertia(tree.links().size()),
-        force(tree.links().size()),
+      : MotionSpace(tree),
         articulated(tree.links().size()),
         single(tree.links().size()),
         size(tree.links().size()),
         delta(tree.links().size()),
         ball(static_cast<std::size_t>(tree.balls())),
-        joint_force(Eigen::VectorXd::Zero(tree.rates())),
         still(Eigen::VectorXd::Zero(tree.rates())),
-        acceleration(Eigen::VectorXd::Zero(tree.rates())) {}
+        acceleration(Eigen::VectorXd::Zero(tree.rates())),
+        spin_up(tree.rotors().size()) {}
 
-  std::vector<detail::LinkPose> pose;
-  std::vector<detail::LinkMotion> motion;
-  std::vector<detail::LinkPlace> place;
-  std::vector<Inertia<>> inertia;  ///< on guide axes
-  std::vector<Motor<>> force;      ///< of each link alone, then of it and all that hangs on it
   std::vector<detail::ArticulatedInertia> articulated;
   std::vector<detail::SingleElimination> single;
   std::vector<detail::Size> size;
   std::vector<Motor<>> delta;  ///< acceleration less that with no joint accelerating
   std::vector<detail::BallElimination> ball;
-  Eigen::VectorXd joint_force;
   Eigen::VectorXd still;  ///< rates that are all 0
   Eigen::VectorXd acceleration;
+  std::vector<double> spin_up;  ///< of each rotor: the relative acceleration that is asked for
 };
 
 }  // namespace kreisel

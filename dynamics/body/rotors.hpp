@@ -1,0 +1,184 @@
+#pragma once
+
+#include <algorithm>
+
+#include <dynamics/body/workspace.hpp>
+
+/// Rotors on their carriers. The carrier's link has the rotor's inertia from the beginning; what is
+/// left of an evaluation are, for each rotor,
+///
+///   on the carrier   -w x l e  and the motor's reaction -N e,
+///   of the rotor     phi'' = N/C - e.dw,
+///
+/// with N from the motor, or N = C phi'' where phi'' is asked for. No angle is looked at.
+///
+/// Source : paper 000 (14): G_R u = sum_i J^t (w x l_i e_i), l = L if regulated, p else
+
+namespace kreisel::detail {
+
+[[nodiscard]] inline bool is_rotor(const BodyTree& tree, std::size_t slot) {
+  return slot >= tree.links().size();
+}
+
+[[nodiscard]] inline const RotorLink& rotor(const BodyTree& tree, std::size_t slot) {
+  return tree.rotors()[slot - tree.links().size()];
+}
+
+[[nodiscard]] inline std::size_t carrier(const RotorLink& rotor) {
+  return static_cast<std::size_t>(rotor.link.parent);
+}
+
+/// l: C phi' of a regulated rotor, the cyclic momentum C (phi' + e.w) of another.
+template <class S>
+[[nodiscard]] S momentum_weight(const RotorLink& rotor, const S& rate, const S& turn) {
+  if (rotor.regulated()) return rotor.about * rate;
+  return rotor.about * (rate + turn);
+}
+
+/// Axes on guide axes, and no force as yet.
+template <class S>
+void begin_rotors(const BodyTree& tree, MotionSpace<S>& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t slot = tree.rotor_slot(k);
+    w.pose[slot].axis = multiply(w.pose[carrier(rotor)].R, rotor.link.axis);
+    w.force[slot] = {};
+  }
+}
+
+/// The accelerations that regulated rotors are asked for.
+inline void ask_spin_up(const BodyTree& tree, double t, BodyWorkspace& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const auto& asked = tree.body(tree.rotors()[k].link.body).rotor->acceleration;
+    w.spin_up[k] = asked ? asked(t) : 0;
+  }
+}
+
+inline void ask_no_spin_up(BodyWorkspace& w) { std::fill(w.spin_up.begin(), w.spin_up.end(), 0.0); }
+
+/// Adds what the rotors ask of their carriers to the forces of motion in w. Their motors' torques
+/// are the joint forces, or those that spin_up takes.
+inline void add_rotor_forces(const BodyTree& tree, const double* v, const double* joint_force,
+                             BodyWorkspace& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t c = carrier(rotor);
+    const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
+    const Vector3<double>& turn = w.motion[c].w;
+    const double l = momentum_weight(rotor, v[rotor.link.v], e.dot(turn));
+    const double N = rotor.regulated() ? rotor.about * w.spin_up[k] : joint_force[rotor.link.v];
+    w.force[c].moment += l * turn.cross(e) + N * e;
+  }
+}
+
+/// The torque about the axis that brings a rotor to the relative acceleration ddphi, once its
+/// carrier's motion is known.
+template <class S>
+[[nodiscard]] S spin_torque(const RotorLink& rotor, const Vector3<S>& e, const S& ddphi,
+                            const MotionSpace<S>& w) {
+  return rotor.about * (ddphi + e.dot(w.motion[carrier(rotor)].dw));
+}
+
+/// The same where all accelerations dv are given, and with them the motors' torques.
+template <class S>
+void add_rotor_forces_at(const BodyTree& tree, const S* v, const S* dv, MotionSpace<S>& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t c = carrier(rotor);
+    const Vector3<S>& e = w.pose[tree.rotor_slot(k)].axis;
+    const Vector3<S>& turn = w.motion[c].w;
+    const S l = momentum_weight(rotor, v[rotor.link.v], S(e.dot(turn)));
+    const S& ddphi = dv[rotor.link.v];
+    const S N = rotor.regulated() ? S(rotor.about * ddphi) : spin_torque(rotor, e, ddphi, w);
+    w.force[c].moment += l * turn.cross(e) + N * e;
+  }
+}
+
+/// The rotors' components of the forces on joints.
+template <class S>
+void project_rotors(const BodyTree& tree, const S* dv, const MotionSpace<S>& w, S* result) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const Vector3<S>& e = w.pose[tree.rotor_slot(k)].axis;
+    result[rotor.link.v] = spin_torque(rotor, e, dv[rotor.link.v], w);
+  }
+}
+
+/// The rotors' own accelerations, once their carriers' are known: those at dv = 0 and the
+/// differences from them.
+inline void accelerate_rotors(const BodyTree& tree, const double* joint_force, double* acceleration,
+                              const BodyWorkspace& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t c = carrier(rotor);
+    const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
+    const Vector3<double> turn = w.motion[c].dw + w.delta[c].resultant;
+    acceleration[rotor.link.v] =
+        rotor.regulated() ? w.spin_up[k] : joint_force[rotor.link.v] / rotor.about - e.dot(turn);
+  }
+}
+
+/// Pose and place of a rotor as if its angle were 0: enough for what ignores the angle.
+template <class S>
+void set_place_without_angle(const BodyTree& tree, std::size_t slot, const S* v,
+                             MotionSpace<S>& w) {
+  const Link& link = rotor(tree, slot).link;
+  const auto c = static_cast<std::size_t>(link.parent);
+  LinkPose<S>& pose = w.pose[slot];
+  multiply(w.pose[c].R, Matrix3<S>((link.still + link.cosine).template cast<S>()), pose.R);
+  pose.r = multiply(w.pose[c].R, link.position);
+  w.place[slot] = place(link, pose, w.pose[c], w.place[c], v);
+}
+
+/// Poses of the rotors, for what is read out: here the angles count.
+inline void set_rotor_poses(const BodyTree& tree, const double* q, BodyWorkspace& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    set_pose(rotor.link, w.pose[carrier(rotor)], q, w.pose[tree.rotor_slot(k)]);
+  }
+}
+
+/// Poses of the rotors, and what of their places follows from them.
+inline void set_rotor_places(const BodyTree& tree, const double* q, const double* v,
+                             BodyWorkspace& w) {
+  set_rotor_poses(tree, q, w);
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t slot = tree.rotor_slot(k);
+    const std::size_t c = carrier(rotor);
+    w.place[slot] = place(rotor.link, w.pose[slot], w.pose[c], w.place[c], v);
+  }
+}
+
+/// Motions of the rotors from those of their carriers. Needs poses of rotors.
+inline void set_rotor_motions(const BodyTree& tree, const double* v, const double* dv,
+                              BodyWorkspace& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t slot = tree.rotor_slot(k);
+    const std::size_t c = carrier(rotor);
+    set_motion(rotor.link, w.pose[slot], w.pose[c], w.motion[c], v, dv, w.motion[slot]);
+  }
+}
+
+/// Makes the forces that stand at the rotors, their loads taken off, into what their carriers exert
+/// on them: of the whole rotor as if at rest on its carrier, and of its spin
+///
+///   C phi'' e + w x C phi' e,
+///
+/// in which nothing of the size phi'^2 comes and goes. Needs poses of rotors.
+inline void complete_rotor_forces(const BodyTree& tree, const double* v, const double* dv,
+                                  BodyWorkspace& w) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const std::size_t slot = tree.rotor_slot(k);
+    const auto& [R, r, e] = w.pose[slot];
+    const auto& [turn, dw, a] = w.motion[carrier(rotor)];
+    const LinkMotion<> along{turn, dw, a + dw.cross(r) + turn.cross(turn.cross(r))};
+    w.force[slot] += inertia_force(rotor.inertia(e, rotor.about), along);
+    const double spin = rotor.about * v[rotor.link.v];
+    w.force[slot].moment += rotor.about * dv[rotor.link.v] * e + spin * turn.cross(e);
+  }
+}
+
+}  // namespace kreisel::detail
