@@ -4,6 +4,7 @@
 
 #include <concepts>
 
+#include <motor/absent.hpp>
 #include <motor/frame.hpp>
 #include <motor/rate.hpp>
 
@@ -64,6 +65,22 @@ template <class M, class S>
     return FrameTurning<Number>{now.V.value.resultant, now.dV.value.resultant};
   }
 }
+
+/// What never changes about a frame in steady motion, on its own axes: u (ou = 0) and the inertial
+/// acceleration of its origin. A guide whose motion is steady offers it as steady(); what it does
+/// not have is Absent by type.
+///
+/// Units  : rad/s, m/s^2
+template <class U, class A>
+struct SteadyMotion {
+  U u;
+  A origin_acceleration;
+};
+
+template <class M>
+concept SteadyGuide = requires(const M& motion) {
+  motion.steady();
+};
 
 /// The motion of C against A from those of C against B and of B against A. Exact: poses multiply,
 /// velocities add, and the rate of V_BA is handed to the observer C by its transport term.

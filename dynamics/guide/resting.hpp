@@ -11,6 +11,8 @@ struct RestingFrame {
   Displacement<I, G, S> X = {};  ///< where it rests
 
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& /*t*/) const { return {X, {}, {}}; }
+
+  [[nodiscard]] SteadyMotion<detail::NoVector, detail::NoVector> steady() const { return {}; }
 };
 
 }  // namespace kreisel

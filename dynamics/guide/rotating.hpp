@@ -45,6 +45,10 @@ struct RotatingFrame {
     return {angular_velocity, Vector3<S>::Zero()};
   }
 
+  [[nodiscard]] SteadyMotion<detail::Components<S>, detail::Components<S>> steady() const {
+    return {detail::components(angular_velocity), detail::components(origin_acceleration)};
+  }
+
  private:
   /// J(w) a, the integral of (1 - s) exp(s skew(w)) a over s from 0 to 1.
   [[nodiscard]] static Vector3<S> twice_integrated(const Vector3<S>& w, const Vector3<S>& a) {

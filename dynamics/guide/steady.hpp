@@ -24,6 +24,12 @@ struct SteadyFrame {
   [[nodiscard]] FrameTurning<S> turning(const S& /*t*/) const {
     return {(X.inverse() * V).value.resultant, Vector3<S>::Zero()};
   }
+
+  [[nodiscard]] SteadyMotion<detail::Components<S>, detail::Components<S>> steady() const {
+    const Motor<S> F = (X.inverse() * V).value;
+    return {detail::components(F.resultant),
+            detail::components(Vector3<S>(F.resultant.cross(F.moment)))};
+  }
 };
 
 }  // namespace kreisel
