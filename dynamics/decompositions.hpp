@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <optional>
+
+#include <motor/error.hpp>
+
+// Decompositions of matrices whose size is known at run time, by Eigen. They are the slowest of
+// Eigen to compile, and are the same for every scene: whoever defines
+// KREISEL_DECOMPOSITIONS_COMPILED links dynamics/decompositions.cpp, compiled once. Without it they
+// come with this header.
+
+namespace kreisel::detail {
+
+/// A x = value x; the columns of `vectors` have norm 1.
+struct Eigenpairs {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+};
+
+/// Throws : ComputationFailed if the QR iteration does not converge; as all below for eigenvalues
+[[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
+
+/// As eigenpairs(), without vectors.
+[[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+
+/// Of a symmetric or Hermitian matrix, whose values are real and whose vectors are orthonormal.
+template <class Matrix>
+struct RealEigenpairs {
+  Eigen::VectorXd values;  ///< rising
+  Matrix vectors;
+};
+
+/// Only the lower triangle is read.
+[[nodiscard]] RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A);
+[[nodiscard]] RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(const Eigen::MatrixXcd& A);
+
+/// A = U diag(values) V^*, with square U and V.
+template <class Matrix>
+struct SingularValues {
+  Eigen::VectorXd values;  ///< falling
+  Matrix U;
+  Matrix V;
+};
+
+[[nodiscard]] SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A);
+[[nodiscard]] SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::MatrixXcd& A);
+
+/// By full pivoting; nothing where A has not its full rank, to rounding.
+[[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A);
+
+/// A^-1 b, by full pivoting.
+[[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b);
+
+}  // namespace kreisel::detail
+
+#ifndef KREISEL_DECOMPOSITIONS_COMPILED
+#include <dynamics/decompositions_by_eigen.hpp>
+#endif
