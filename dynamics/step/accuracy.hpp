@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include <dynamics/step/lanes.hpp>
 #include <dynamics/step/shared.hpp>
 
 namespace kreisel {
@@ -42,11 +44,48 @@ inline void check(const Accuracy& accuracy) {
   if (!(accuracy.smallest >= 0)) {
     refuse_steps("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
   }
+  if (!(accuracy.most_evaluations > 0)) {
+    refuse_steps("accuracy.most_evaluations = ", accuracy.most_evaluations, " must be above 0");
+  }
+}
+
+/// |v| of the components from `begin` on, also where their squares would leave the range; of each
+/// lane, if v holds those of packs.
+template <class Number, class Vector>
+[[nodiscard]] Number norm(const Vector& v, int begin, int components) {
+  using std::abs;
+  using std::sqrt;
+  using Limits = std::numeric_limits<typename Vector::Scalar>;
+  const auto at = [&v](int i) { return component<Number>(v, i); };
+  if (components == 1) return abs(at(begin));
+  Number sum(0);  // a loop, because g++ 12 sees v.segment().norm() read past the end of v
+  for (int i = begin; i < begin + components; ++i) sum += at(i) * at(i);
+  const Number smallest(Limits::min() / Limits::epsilon());
+  const Number most(Limits::max());
+  if (all(sum > smallest && sum < most)) return sqrt(sum);
+  Number largest(0);
+  for (int i = begin; i < begin + components; ++i) {
+    const Number size = abs(at(i));
+    largest = select(size <= largest, largest, size);  // a NaN stays
+  }
+  sum = Number(0);
+  for (int i = begin; i < begin + components; ++i) {
+    sum += (at(i) / largest) * (at(i) / largest);
+  }
+  return select(largest > Number(0) && largest <= most, Number(largest * sqrt(sum)), largest);
+}
+
+template <class Vector>
+[[nodiscard]] typename Vector::Scalar norm(const Vector& v, int begin, int components) {
+  return norm<typename Vector::Scalar>(v, begin, components);
 }
 
 /// The parts of a state that share unit and size, and how large each has been so far: what an error
 /// in it is measured by.
-template <class Vector>
+///
+/// Number : the vector's scalar, or a pack: then each component stands there as often as the pack
+///          has lanes, and each lane is measured by its own sizes
+template <class Vector, class Number = typename Vector::Scalar>
 class BlockSizes {
  public:
   using Scalar = typename Vector::Scalar;
@@ -54,12 +93,12 @@ class BlockSizes {
   /// Without any blocks all of y is one.
   BlockSizes(std::span<const int> blocks, const Scalar& smallest, const Vector& y)
       : smallest_(smallest) {
-    const int all = static_cast<int>(y.size());
+    const int all = static_cast<int>(y.size()) / lanes_of<Number>;
     if (blocks.empty()) blocks = {&all, 1};
     require_blocks(blocks, all);
     int begin = 0;
     for (const int size : blocks) {
-      blocks_.push_back({begin, size, Scalar(0)});
+      blocks_.push_back({begin, size, Number(0), Number(0)});
       begin += size;
     }
     note(y);
@@ -67,46 +106,76 @@ class BlockSizes {
 
   /// To be called with every state that stands.
   void note(const Vector& y) {
-    for (Block& block : blocks_) block.size = std::max(block.size, norm(y, block));
+    for (Block& block : blocks_) block.size = larger(block.size, norm(y, block));
+  }
+
+  /// What rounding of the state leaves uncertain of its rate.
+  void note_noise(const Vector& rate) {
+    for (Block& block : blocks_) block.noise = norm(rate, block);
   }
 
   /// The largest of the blocks' |error|, each in proportion to its size, which is |change| where
-  /// the step has made that. A NaN stays.
-  [[nodiscard]] Scalar relative(const Vector& error, const Vector& change) const {
-    Scalar worst(0);
+  /// the step has made that. What `span` of noise in the rate makes is no error of the step. The
+  /// worst lane decides. A NaN stays.
+  [[nodiscard]] Scalar relative(const Vector& error, const Vector& change,
+                                const Scalar& span = Scalar(0)) const {
+    Number worst(0);
     for (const Block& block : blocks_) {
-      const Scalar off = norm(error, block);
-      if (off == Scalar(0)) continue;
-      const Scalar ratio = off / std::max(scale(block), norm(change, block));
-      worst = ratio <= worst || worst != worst ? worst : ratio;
+      const Number off = norm(error, block) - span * block.noise;
+      const auto none = off <= Number(0);
+      if (all(none)) continue;
+      const Number ratio = off / larger(scale(block), norm(change, block));
+      worst = select(none || ratio <= worst || worst != worst, worst, ratio);
     }
-    return worst;
+    return greatest_lane(worst);
   }
 
   /// A hundredth of the time in which a block changes by its own size, if it has one already.
   [[nodiscard]] Scalar first_step(const Vector& rate) const {
-    Scalar fastest(0);
+    Number all_rates(0);
     for (const Block& block : blocks_) {
-      if (scale(block) == Scalar(0)) continue;
-      fastest = std::max(fastest, Scalar(norm(rate, block) / scale(block)));
+      const Number size = scale(block);
+      const Number speed = select(size == Number(0), Number(0), Number(norm(rate, block) / size));
+      all_rates = larger(all_rates, speed);
     }
+    const Scalar fastest = greatest_lane(all_rates);
     return fastest > Scalar(0) ? Scalar(Scalar(0.01) / fastest) : Scalar(1);
+  }
+
+  /// The time in which a rate that changes by `bend` within h leads a block off its way by as much
+  /// as the block or its way are long. Infinite where no rate changes.
+  [[nodiscard]] Scalar bending_time(const Vector& rate, const Vector& bend, const Scalar& h) const {
+    using std::sqrt;
+    Number shortest(std::numeric_limits<Scalar>::infinity());
+    for (const Block& block : blocks_) {
+      const Number bends = norm(bend, block) / Number(h);
+      const Number bent = sqrt(Number(scale(block) / bends));
+      const Number time = larger(bent, Number(norm(rate, block) / bends));
+      shortest = select(time > Number(0) && time < shortest, time, shortest);
+    }
+    return -greatest_lane(Number(-shortest));
   }
 
  private:
   struct Block {
     int begin;
     int components;
-    Scalar size;
+    Number size;
+    Number noise;
   };
 
-  [[nodiscard]] static Scalar norm(const Vector& v, const Block& block) {
-    Scalar sum(0);  // a loop, because g++ 12 sees v.segment().norm() read past the end of v
-    for (int i = block.begin; i < block.begin + block.components; ++i) sum += v[i] * v[i];
-    return std::sqrt(sum);
+  [[nodiscard]] static Number norm(const Vector& v, const Block& block) {
+    return detail::norm<Number>(v, block.begin, block.components);
   }
 
-  [[nodiscard]] Scalar scale(const Block& block) const { return std::max(block.size, smallest_); }
+  /// As std::max: of a NaN behind nothing stays.
+  [[nodiscard]] static Number larger(const Number& a, const Number& b) {
+    return select(a < b, b, a);
+  }
+
+  [[nodiscard]] Number scale(const Block& block) const {
+    return larger(block.size, Number(smallest_));
+  }
 
   Scalar smallest_;
   std::vector<Block> blocks_;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include <dynamics/step/shared.hpp>
+
 namespace kreisel {
 
 /// Which way through zero counts.
@@ -21,6 +23,7 @@ enum class Crossing { any, rising, falling };
 /// Error  : of the time 4 units in its last place beside that of the trajectory
 ///          (tests/dynamics/step/events.cpp)
 /// Cost   : 16 evaluations of g a step; 51 more of the field in steps that are sampled
+/// Throws : ComputationFailed naming the time where g is not finite, and as the steps do
 template <class Steps, class Function>
 [[nodiscard]] std::optional<typename Steps::Scalar> advance_to_event(
     Steps& steps, const Function& g, const typename Steps::Scalar& end,
@@ -32,10 +35,18 @@ template <class Steps, class Function>
     const bool falling = before > Scalar(0) && after < Scalar(0);
     return (rising && wanted != Crossing::falling) || (falling && wanted != Crossing::rising);
   };
-  const auto value = [&](const Scalar& time) { return Scalar(g(time, steps.at(time))); };
+  const auto checked = [](const Scalar& time, const Scalar& g_now) {
+    if (!(g_now - g_now == Scalar(0))) {
+      detail::stop_integration(time, "the event's function is not finite");
+    }
+    return g_now;
+  };
+  const auto value = [&](const Scalar& time) {
+    return checked(time, Scalar(g(time, steps.at(time))));
+  };
 
   Scalar left = steps.t();
-  Scalar g_left = g(left, steps.y());
+  Scalar g_left = checked(left, Scalar(g(left, steps.y())));
   while (steps.t() != end) {
     const Scalar from = steps.t();
     steps.step_towards(end);

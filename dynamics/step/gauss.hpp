@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/shared.hpp>
@@ -101,7 +103,8 @@ struct GaussCoefficients {
 /// Source : Hairer, McLachlan, Razakarivony, Achieving Brouwer's law with implicit Runge-Kutta
 ///          methods, BIT 48 (2008) 231; the ratios: Antonana, Makazaga, Murua, Numerical Algorithms
 ///          76 (2017) 861
-/// Field  : callable (S t, Vector y) -> Vector, Vector = Eigen::Matrix<S, n, 1>; smooth, not stiff
+/// Field  : as ExplicitSteps takes it; smooth, not stiff
+/// Vector : as ExplicitSteps; of a size known at run time only, steps ask for memory
 /// Blocks : as ExplicitSteps; their sizes say what of the stages' last change may be rounding
 /// Error  : pendulum of 0.1 rad, 6 to 12 steps a period, RMS of 6: after 1e4 periods energy 2e-14
 ///          relative, phase 1.5e-12 rad; after 1e5, 7e-14 and 2e-11: as sqrt(t) and t
@@ -116,16 +119,20 @@ class GaussSteps {
 
   static constexpr int order = 2 * stages;
 
-  template <std::size_t n = 1>
   GaussSteps(Field field, const Scalar& t, const Vector& y, double step,
-             const std::array<int, n>& blocks = {int(Vector::RowsAtCompileTime)})
-      : field_(std::move(field)), step_(step), time_{t, Scalar(0)}, state_{y, Vector::Zero()} {
+             std::span<const int> blocks = {})
+      : field_(std::move(field)),
+        step_(step),
+        time_{t, Scalar(0)},
+        state_{y, Vector::Zero(y.size())},
+        stage_(Stages::Zero(y.size(), stages)),
+        block_sizes_(blocks.begin(), blocks.end()) {
     detail::require_step(step);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
     if (!finite(y)) detail::refuse_steps("the state at the start is not finite");
-    detail::require_blocks(blocks, int(Vector::RowsAtCompileTime));
-    for (const int size : blocks) block_sizes_[blocks_used_++] = size;
+    if (blocks.empty()) block_sizes_ = {int(y.size())};
+    detail::require_blocks(block_sizes_, int(y.size()));
     const GaussCoefficients<stages>& exact = coefficients();
     for (int i = 0; i < stages; ++i) {
       ratio_(i, i) = Scalar(0.5);
@@ -143,6 +150,9 @@ class GaussSteps {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
+  /// Evaluations after which the integration gives up.
+  void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
+
   /// Integrates to `end`, which is hit exactly, in equal steps no longer than the one asked for;
   /// forwards or backwards.
   const Vector& advance_to(const Scalar& end) {
@@ -151,6 +161,9 @@ class GaussSteps {
     take_length(steps.length);
     double done = 0;
     while (done < steps.count) {
+      if (effort_.evaluations > most_evaluations_) {
+        detail::stop_integration(t(), most_evaluations_, " evaluations are spent");
+      }
       solve_stages();
       state_.add(stage_.rowwise().sum());
       time_.add(h_);
@@ -180,7 +193,9 @@ class GaussSteps {
 
   [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
     effort_.evaluations += 1;
-    return field_(t, y);
+    Vector rate(y.size());
+    detail::call(field_, t, y, rate);
+    return rate;
   }
 
   void take_length(long double length) {
@@ -199,9 +214,9 @@ class GaussSteps {
   /// Z of the step from here.
   void solve_stages() {
     guess_stages();
-    Vector least = Vector::Constant(std::numeric_limits<Scalar>::max());
+    Vector least = Vector::Constant(y().size(), std::numeric_limits<Scalar>::max());
     for (int iteration = 1; iteration <= most_iterations; ++iteration) {
-      Vector change = Vector::Zero();
+      Vector change = Vector::Zero(y().size());
       for (int i = 0; i < stages; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Vector sum = stage_.lazyProduct(ratio_.col(i));
@@ -237,15 +252,15 @@ class GaussSteps {
   /// Whether no block changes any more by what could not be rounding.
   [[nodiscard]] bool at_rest(const Vector& change) const {
     int begin = 0;
-    for (std::size_t b = 0; b < blocks_used_; ++b) {
+    for (const int components : block_sizes_) {
       Scalar changed(0);
       Scalar size(0);
-      for (int i = begin; i < begin + block_sizes_[b]; ++i) {
+      for (int i = begin; i < begin + components; ++i) {
         changed = std::max(changed, change[i]);
         size = std::max(size, Scalar(std::abs(y()[i]) + stage_.row(i).cwiseAbs().sum()));
       }
       if (!(changed <= Scalar(1e-10) * size)) return false;
-      begin += block_sizes_[b];
+      begin += components;
     }
     return true;
   }
@@ -260,10 +275,10 @@ class GaussSteps {
   std::array<Scalar, stages> weight_ = {};  ///< h b
   std::array<Scalar, stages> weight_rest_ = {};
   std::array<Scalar, stages> node_ = {};  ///< h c
-  Stages stage_ = Stages::Zero();         ///< Z
+  Stages stage_;                          ///< Z
   bool continues_ = false;                ///< whether Z is that of the step before
-  std::array<int, 8> block_sizes_ = {};
-  std::size_t blocks_used_ = 0;
+  std::vector<int> block_sizes_;
+  double most_evaluations_ = std::numeric_limits<double>::infinity();
   Effort effort_;
 };
 

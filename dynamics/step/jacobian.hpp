@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include <dynamics/step/shared.hpp>
+
 namespace kreisel {
 
 /// The derivatives of a vector field of n components.
@@ -44,22 +46,27 @@ template <int n, class Field>
 
 /// (t, y) -> Jacobian of any field, by differences: for fields that know no dual numbers.
 ///
+/// Field  : as ExplicitSteps takes it; n may be Eigen::Dynamic
 /// Error  : of of_state some 1e-8 of each column: good enough for the iterations of RadauSteps.
 ///          of_time stays 0
-/// Cost   : n + 1 evaluations
+/// Cost   : one evaluation and one for each component
 template <int n, class Field>
 [[nodiscard]] auto difference_jacobian(Field field) {
-  return [field = std::move(field)](double t, const Eigen::Matrix<double, n, 1>& y) {
+  using Vector = Eigen::Matrix<double, n, 1>;
+  return [field = std::move(field)](double t, const Vector& y) {
+    Field own = field;  // which may write into a workspace
     const double little = std::sqrt(std::numeric_limits<double>::epsilon());
     const double size = std::max(y.cwiseAbs().maxCoeff(), 1e-3);
-    const Eigen::Matrix<double, n, 1> f = field(t, y);
-    Jacobian<n> jacobian;
-    for (int j = 0; j < n; ++j) {
-      Eigen::Matrix<double, n, 1> moved = y;
+    Vector f(y.size());
+    detail::call(own, t, y, f);
+    Vector f_moved(y.size());
+    Jacobian<n> jacobian{{y.size(), y.size()}, Vector::Zero(y.size())};
+    for (int j = 0; j < int(y.size()); ++j) {
+      Vector moved = y;
       moved[j] += little * std::max(std::abs(y[j]), 1e-3 * size);
-      jacobian.of_state.col(j) = (field(t, moved) - f) / (moved[j] - y[j]);
+      detail::call(own, t, moved, f_moved);
+      jacobian.of_state.col(j) = (f_moved - f) / (moved[j] - y[j]);
     }
-    jacobian.of_time.setZero();
     return jacobian;
   };
 }

@@ -1,137 +1,113 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <limits>
-#include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/compensated.hpp>
+#include <dynamics/step/factors.hpp>
 #include <dynamics/step/jacobian.hpp>
+#include <dynamics/step/radau_coefficients.hpp>
 #include <dynamics/step/shared.hpp>
 
 namespace kreisel {
 
-/// Radau IIA collocation in s stages, s odd, of order 2 s - 1; the last node is the step's end.
-///
-///   sum_j A_ij c_j^k = c_i^(k+1)/(k+1),  k < s
-///
-/// The inverse of its matrix has one real eigenvalue and pairs of complex ones, by which Newton's
-/// method for all stages at once falls into systems of the field's own size:
-///
-///   A^-1 = V diag(eigenvalue) V^-1
-///
-/// Source : E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, IV.5 and IV.8; the
-///          same, Stiff differential equations solved by Radau methods, J. Comput. Appl. Math. 111
-///          (1999) 93
-/// Error  : <= 2e-14 of the greatest                      (tests/dynamics/step/radau.cpp)
-template <int s>
-struct RadauCoefficients {
-  static_assert(s % 2 == 1, "an odd number of stages leaves one real eigenvalue");
+namespace detail {
 
-  static constexpr int pairs = (s - 1) / 2;
+/// The stages Z of a Radau step and Newton's method for them. It knows no field and sizes only at
+/// run time, so that a program compiles its linear algebra once for all its scenes.
+class RadauStages {
+ public:
+  /// The coefficients have to outlive it.
+  RadauStages(const RadauCoefficients& coefficients, int components)
+      : value(Eigen::MatrixXd::Zero(components, coefficients.node.size())),
+        coefficients_(&coefficients),
+        complex_(coefficients.pairs.size()) {}
 
-  using Square = Eigen::Matrix<double, s, s>;
-  using Column = Eigen::Matrix<double, s, 1>;
-  using ComplexColumn = Eigen::Matrix<std::complex<double>, s, 1>;
+  Eigen::MatrixXd value;  ///< Z, a column each
 
-  Column node;
-  Square inverse;  ///< A^-1
+  /// For the Jacobian of the field and a step of length h.
+  void factorise(const Eigen::MatrixXd& J, double h) {
+    real_.matrix = -J;
+    real_.matrix.diagonal().array() += coefficients_->real.eigenvalue / h;
+    real_.compute();
+    for (std::size_t k = 0; k < complex_.size(); ++k) {
+      complex_[k].matrix = -J.cast<std::complex<double>>();
+      complex_[k].matrix.diagonal().array() += coefficients_->pairs[k].eigenvalue / h;
+      complex_[k].compute();
+    }
+  }
 
-  double real_eigenvalue = 0;
-  Column real_vector;    ///< of V
-  Column real_covector;  ///< row of V^-1
-  std::array<std::complex<double>, pairs> eigenvalue;
-  std::array<ComplexColumn, pairs> vector;
-  std::array<ComplexColumn, pairs> covector;
-
-  /// Of the stages, in the error estimate  f(y) + sum_i error_i Z_i / h.
-  Column error;
-
-  RadauCoefficients() {
-    using Real = long double;
-    using RealSquare = Eigen::Matrix<Real, s, s>;
-    using RealColumn = Eigen::Matrix<Real, s, 1>;
-    RealColumn c;
-    for (int i = 0; i < s; ++i) c[i] = (1 + zero(i)) / 2;
-    RealSquare powers;    // of the nodes, a row each
-    RealSquare integral;  // of those powers from 0 to the nodes
-    for (int i = 0; i < s; ++i) {
-      Real power = 1;
-      for (int k = 0; k < s; ++k) {
-        powers(i, k) = power;
-        power *= c[i];
-        integral(i, k) = power / static_cast<Real>(k + 1);
+  /// The first guess for a step from the collocation polynomial of the one before: in the latter's
+  /// own time, 0 to 1, the new step begins at 1 + begin and is `length` long.
+  void guess(double begin, double length) {
+    // Newton's divided differences through (0, 0) and the old stages.
+    const Eigen::VectorXd& c = coefficients_->node;
+    const int stages = static_cast<int>(c.size());
+    Eigen::MatrixXd difference = value;
+    for (int i = stages - 1; i > 0; --i) {
+      difference.col(i) = (difference.col(i) - difference.col(i - 1)) / (c[i] - c[i - 1]);
+    }
+    difference.col(0) /= c[0];
+    for (int degree = 2; degree <= stages; ++degree) {
+      for (int i = stages - 1; i >= degree - 1; --i) {
+        const double left = i == degree - 1 ? 0 : c[i - degree];
+        difference.col(i) = (difference.col(i) - difference.col(i - 1)) / (c[i] - left);
       }
     }
-    const RealSquare A_inverse = powers * integral.inverse();
-    node = c.template cast<double>();
-    inverse = A_inverse.template cast<double>();
+    const auto at = [&](double x) {
+      Eigen::VectorXd sum = difference.col(stages - 1);
+      for (int i = stages - 2; i >= 0; --i) sum = difference.col(i) + (x - c[i]) * sum;
+      sum *= x;
+      return sum;
+    };
+    const Eigen::VectorXd start = at(1 + begin);
+    for (int i = 0; i < stages; ++i) value.col(i) = at(1 + begin + length * c[i]) - start;
+  }
 
-    const Eigen::EigenSolver<RealSquare> eigen(A_inverse);
-    const auto V = eigen.eigenvectors();
-    const auto V_inverse = V.inverse().eval();
-    std::size_t next = 0;
-    Real real_value = 0;
-    for (int i = 0; i < s; ++i) {
-      const std::complex<Real> value = eigen.eigenvalues()[i];
-      if (value.imag() == 0) {
-        real_value = value.real();
-        real_vector = V.col(i).real().template cast<double>();
-        real_covector = V_inverse.row(i).real().transpose().template cast<double>();
-      } else if (value.imag() > 0) {
-        eigenvalue[next] = std::complex<double>(value);
-        vector[next] = V.col(i).template cast<std::complex<double>>();
-        covector[next] = V_inverse.row(i).transpose().template cast<std::complex<double>>();
-        ++next;
-      }
+  /// One iteration for  Z = h (A (x) 1) f,  f the field's rates at the stages; returns its change.
+  const Eigen::MatrixXd& correct(const Eigen::MatrixXd& f, double h) {
+    // Lazy products: for a few components Eigen's blocked ones cost three times as much.
+    residual_ = f - value.lazyProduct(coefficients_->inverse.transpose()) / h;
+    const auto& real = coefficients_->real;
+    mode_ = residual_.lazyProduct(real.covector);
+    real_.solve(mode_);
+    change_ = mode_.lazyProduct(real.vector.transpose());
+    for (std::size_t k = 0; k < complex_.size(); ++k) {
+      const auto& pair = coefficients_->pairs[k];
+      pair_ = residual_.lazyProduct(pair.covector);
+      complex_[k].solve(pair_);
+      change_ += 2 * pair_.lazyProduct(pair.vector.transpose()).real();
     }
-    real_eigenvalue = static_cast<double>(real_value);
+    value += change_;
+    return change_;
+  }
 
-    // A second formula of order s that takes f(y) with the weight 1/real_eigenvalue.
-    RealColumn moments;
-    for (int k = 0; k < s; ++k) moments[k] = 1 / static_cast<Real>(k + 1);
-    moments[0] -= 1 / real_value;
-    const RealColumn weights = powers.transpose().inverse() * moments;
-    RealColumn e = A_inverse.transpose() * weights;
-    e[s - 1] -= 1;
-    error = (real_value * e).template cast<double>();
+  /// By the real factor: what the error estimate takes.
+  [[nodiscard]] Eigen::VectorXd solve(Eigen::VectorXd rate) const {
+    real_.solve(rate);
+    return rate;
   }
 
  private:
-  /// Of Legendre's P_s - P_s-1 in [-1, 1], ascending; the last is 1.
-  [[nodiscard]] static long double zero(int i) {
-    if (i == s - 1) return 1;
-    long double x =
-        -std::cos(std::numbers::pi_v<long double> * (static_cast<long double>(i) + 0.75L) / s);
-    for (int iteration = 0; iteration < 12; ++iteration) {
-      long double before = 1, P = x;
-      for (int k = 1; k < s - 1; ++k) {
-        const long double next =
-            (static_cast<long double>(2 * k + 1) * x * P - static_cast<long double>(k) * before) /
-            static_cast<long double>(k + 1);
-        before = std::exchange(P, next);
-      }
-      const long double top =
-          (static_cast<long double>(2 * s - 1) * x * P - static_cast<long double>(s - 1) * before) /
-          static_cast<long double>(s);
-      const auto slope = [&x](int n, long double P_n, long double P_before) {
-        return static_cast<long double>(n) * (x * P_n - P_before) / (x * x - 1);
-      };
-      x -= (top - P) / (slope(s, top, P) - slope(s - 1, P, before));
-    }
-    return x;
-  }
+  const RadauCoefficients* coefficients_;
+  Eigen::MatrixXd residual_;
+  Eigen::MatrixXd change_;
+  Eigen::VectorXd mode_;
+  Eigen::VectorXcd pair_;
+  Factors<double> real_;
+  std::vector<Factors<std::complex<double>>> complex_;
 };
+
+}  // namespace detail
 
 /// Implicit integration of a stiff  y' = field(t, y)  with adaptive steps, by Radau IIA.
 ///
@@ -140,7 +116,7 @@ struct RadauCoefficients {
 /// has to be resolved by it as by any other method, and ExplicitSteps does that at less cost.
 ///
 /// Interface and meaning of the arguments as ExplicitSteps; output within a step is of full order
-/// and takes a part of the step anew.
+/// and takes a part of the step anew. Steps ask for memory.
 ///
 /// J      : callable (t, y) -> Jacobian<n>; forward_jacobian() or difference_jacobian() makes one.
 ///          It serves the iteration only: an error in it costs time, not digits
@@ -158,16 +134,17 @@ class RadauSteps {
 
   static constexpr int order = 2 * stages - 1;
 
-  template <std::size_t n = 1>
   RadauSteps(Field field, J jacobian, double t, const Vector& y, const Accuracy& accuracy = {},
-             const std::array<int, n>& blocks = {int(Vector::RowsAtCompileTime)})
+             std::span<const int> blocks = {})
       : field_(std::move(field)),
         jacobian_(std::move(jacobian)),
         accuracy_(accuracy),
         sizes_(blocks, accuracy.smallest, y),
         time_{t, 0},
-        state_{y, Vector::Zero()},
-        before_{time_, state_} {
+        state_{y, Vector::Zero(y.size())},
+        before_{time_, state_},
+        rate_(Vector::Zero(y.size())),
+        stages_(radau(), static_cast<int>(y.size())) {
     detail::check(accuracy);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
     if (!finite(y)) detail::refuse_steps("the state at the start is not finite");
@@ -234,13 +211,13 @@ class RadauSteps {
     }
     if (time == t()) return y();
     if (time == before_.time.value) return before_.state.value;
-    const Stages kept = stage_;
+    const Eigen::MatrixXd kept = stages_.value;
     const double h = (time - before_.time.value) - before_.time.rest;
-    factorise(h);
-    guess(-1, h / h_before_);
+    stages_.factorise(tangent_, h);
+    stages_.guess(-1, h / h_before_);
     const bool done = solve_stages(before_.time, before_.state, h);
-    Vector there = before_.state.value + (stage_.col(stages - 1) + before_.state.rest);
-    stage_ = kept;
+    Vector there = before_.state.value + (last_stage() + before_.state.rest);
+    stages_.value = kept;
     if (!done) detail::stop_integration(time, "the stages of a part of a step do not converge");
     return there;
   }
@@ -249,28 +226,23 @@ class RadauSteps {
   void back_to(double time) {
     const Vector there = at(time);
     time_ = {time, 0};
-    state_ = {there, Vector::Zero()};
+    state_ = {there, Vector::Zero(there.size())};
     before_ = {time_, state_};
     h_before_ = 0;
   }
 
  private:
-  static constexpr int n = int(Vector::RowsAtCompileTime);
-  static constexpr int pairs = RadauCoefficients<stages>::pairs;
-
-  using Stages = Eigen::Matrix<double, n, stages>;
-  using ComplexMatrix = Eigen::Matrix<std::complex<double>, n, n>;
-  using ComplexVector = Eigen::Matrix<std::complex<double>, n, 1>;
-
   struct Begin {
     detail::Compensated<double> time;
     detail::Compensated<Vector> state;
   };
 
-  [[nodiscard]] static const RadauCoefficients<stages>& radau() {
-    static const RadauCoefficients<stages> coefficients;
+  [[nodiscard]] static const RadauCoefficients& radau() {
+    static const RadauCoefficients coefficients(stages);
     return coefficients;
   }
+
+  [[nodiscard]] Vector last_stage() const { return stages_.value.col(stages - 1); }
 
   template <class M>
   [[nodiscard]] static bool finite(const M& m) {
@@ -279,7 +251,9 @@ class RadauSteps {
 
   [[nodiscard]] Vector evaluate(double t, const Vector& y) {
     effort_.evaluations += 1;
-    return field_(t, y);
+    Vector rate(y.size());
+    detail::call(field_, t, y, rate);
+    return rate;
   }
 
   void note_jacobian() {
@@ -288,86 +262,40 @@ class RadauSteps {
     if (!finite(tangent_)) detail::stop_integration(t(), "the Jacobian of the field is not finite");
   }
 
-  void factorise(double h) {
-    const Eigen::Matrix<double, n, n> unit = Eigen::Matrix<double, n, n>::Identity();
-    real_.compute(radau().real_eigenvalue / h * unit - tangent_);
-    for (std::size_t k = 0; k < pairs; ++k) {
-      complex_[k].compute(radau().eigenvalue[k] / h * unit - tangent_);
-    }
-  }
-
-  /// The stages of a step, from the collocation polynomial of the one before: in the latter's own
-  /// time, 0 to 1, the new step begins at 1 + begin and is `length` long.
-  void guess(double begin, double length) {
-    if (h_before_ == 0) {
-      stage_.setZero();
-      return;
-    }
-    // Newton's divided differences through (0, 0) and the old stages.
-    const auto& c = radau().node;
-    Stages difference = stage_;
-    for (int i = stages - 1; i > 0; --i) {
-      difference.col(i) = (difference.col(i) - difference.col(i - 1)) / (c[i] - c[i - 1]);
-    }
-    difference.col(0) /= c[0];
-    for (int degree = 2; degree <= stages; ++degree) {
-      for (int i = stages - 1; i >= degree - 1; --i) {
-        const double left = i == degree - 1 ? 0 : c[i - degree];
-        difference.col(i) = (difference.col(i) - difference.col(i - 1)) / (c[i] - left);
-      }
-    }
-    const auto value = [&](double x) {
-      Vector sum = difference.col(stages - 1);
-      for (int i = stages - 2; i >= 0; --i) sum = difference.col(i) + (x - c[i]) * sum;
-      return Vector(x * sum);
-    };
-    const Vector start = value(1 + begin);
-    Stages result;
-    for (int i = 0; i < stages; ++i) result.col(i) = value(1 + begin + length * c[i]) - start;
-    stage_ = result;
-  }
-
   /// Newton's method for  Z = h (A (x) 1) field(y + Z).
   [[nodiscard]] bool solve_stages(const detail::Compensated<double>& time,
                                   const detail::Compensated<Vector>& state, double h) {
     constexpr int most_iterations = 12;
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
     const double enough = std::max(accuracy_.relative / 20, rounding);
+    // Rounding in a stiff field ends the descent before rounding of the state would.
+    const double stalled = 1e3 * enough;
     double change_before = 0;
     for (int iteration = 1; iteration <= most_iterations; ++iteration) {
-      Stages f;
       for (int i = 0; i < stages; ++i) {
         const double at = time.value + (radau().node[i] * h + time.rest);
         const bool late = h > 0 ? at > last_stage_time_ : at < last_stage_time_;
-        f.col(i) = evaluate(late ? last_stage_time_ : at,
-                            state.value + (Vector(stage_.col(i)) + state.rest));
+        rates_.col(i) = evaluate(late ? last_stage_time_ : at,
+                                 state.value + (Vector(stages_.value.col(i)) + state.rest));
       }
-      if (!finite(f)) return false;
-      const Stages residual = f - stage_ * radau().inverse.transpose() / h;
-      Stages correction =
-          real_.solve(Vector(residual * radau().real_covector)) * radau().real_vector.transpose();
-      for (std::size_t k = 0; k < pairs; ++k) {
-        const ComplexVector w = complex_[k].solve(ComplexVector(residual * radau().covector[k]));
-        correction += 2 * (w * radau().vector[k].transpose()).real();
-      }
-      stage_ += correction;
+      if (!finite(rates_)) return false;
+      const Eigen::MatrixXd& correction = stages_.correct(rates_, h);
       double change = 0;
       for (int i = 0; i < stages; ++i) {
-        change = std::max(change, sizes_.relative(correction.col(i), stage_.col(i)));
+        change = std::max(change, sizes_.relative(correction.col(i), stages_.value.col(i)));
       }
       if (!std::isfinite(change)) return false;
       if (change <= rounding) return true;
       if (iteration > 1) {
         const double shrinks = change / change_before;
-        // Rounding in a stiff field ends the descent before rounding of the state would.
-        if (shrinks >= 1) return change <= 1e3 * enough && iteration > 2;
+        if (shrinks >= 1) return change <= stalled;
         if (shrinks / (1 - shrinks) * change <= enough) return true;
         const double at_the_end = std::pow(shrinks, most_iterations - iteration) * change;
-        if (at_the_end > enough) return false;
+        if (at_the_end > enough && change > stalled) return false;
       }
       change_before = change;
     }
-    return false;
+    return change_before <= stalled;
   }
 
   /// One step of length h; says whether it stood. Sets the length of the next.
@@ -378,27 +306,31 @@ class RadauSteps {
     if (effort_.evaluations > accuracy_.most_evaluations) {
       detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
-    const Stages kept = stage_;
-    factorise(h);
-    guess(0, h_before_ == 0 ? 0 : h / h_before_);
+    const Eigen::MatrixXd kept = stages_.value;
+    stages_.factorise(tangent_, h);
+    if (h_before_ == 0) {
+      stages_.value.setZero();
+    } else {
+      stages_.guess(0, h / h_before_);
+    }
     if (!solve_stages(time_, state_, h)) {
-      stage_ = kept;
+      stages_.value = kept;
       effort_.rejected += 1;
       step_ = std::abs(h) / 4;
       return false;
     }
-    const Vector change = stage_.col(stages - 1);
-    const Vector from_stages = stage_ * (radau().error / h);
-    Vector error = real_.solve(Vector(rate_ + from_stages));
+    const Vector change = last_stage();
+    const Vector from_stages = stages_.value * (radau().error / h);
+    Vector error = stages_.solve(rate_ + from_stages);
     double worst = sizes_.relative(error, change) / allowed_;
     if (worst >= 1 && (again || effort_.steps == 0)) {
       // What a stiff field makes of a start off its slow motion is not the step's error.
-      error = real_.solve(Vector(evaluate(start_time_, y() + error) + from_stages));
+      error = stages_.solve(evaluate(start_time_, y() + error) + from_stages);
       worst = sizes_.relative(error, change) / allowed_;
     }
     const double root = 1.0 / (stages + 1);
     if (!(worst < 1)) {
-      stage_ = kept;
+      stages_.value = kept;
       effort_.rejected += 1;
       const double aim = std::isfinite(worst) ? 0.9 * std::pow(worst, -root) : 0.125;
       step_ = std::abs(h) * std::clamp(aim, 0.125, 0.9);
@@ -431,13 +363,12 @@ class RadauSteps {
   double start_time_ = 0;       ///< no stage is earlier
   double last_stage_time_ = 0;  ///< or later
   double step_ = 0;
-  double h_before_ = 0;  ///< of the step that stage_ belongs to; 0 if there is none
+  double h_before_ = 0;  ///< of the step that the stages belong to; 0 if there is none
   double worst_before_ = 1;
-  Vector rate_ = Vector::Zero();
-  Stages stage_ = Stages::Zero();  ///< Z
-  Eigen::Matrix<double, n, n> tangent_ = Eigen::Matrix<double, n, n>::Zero();
-  Eigen::PartialPivLU<Eigen::Matrix<double, n, n>> real_;
-  std::array<Eigen::PartialPivLU<ComplexMatrix>, pairs> complex_;
+  Vector rate_;
+  detail::RadauStages stages_;
+  Eigen::MatrixXd rates_ = stages_.value;  ///< at the stages
+  Eigen::MatrixXd tangent_;
   Effort effort_;
 };
 

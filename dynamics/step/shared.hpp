@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <sstream>
+#include <type_traits>
 #include <vector>
 
 #include <dynamics/step/compensated.hpp>
@@ -53,6 +54,21 @@ template <class S>
     if (on_the_way) next = jump;
   }
   return next;
+}
+
+/// Whether a field writes its rate into a vector that has its size already.
+template <class Field, class S, class Vector>
+inline constexpr bool writes_in_place =
+    std::is_invocable_v<Field&, const S&, const Vector&, Vector&>;
+
+/// The rate that a field gives, whichever way it is called.
+template <class Field, class S, class Vector>
+void call(Field& field, const S& t, const Vector& y, Vector& rate) {
+  if constexpr (writes_in_place<Field, S, Vector>) {
+    field(t, y, rate);
+  } else {
+    rate = field(t, y);
+  }
 }
 
 /// A time just on this side of t where the field jumps at t, as seen from `side`; else t.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <dynamics/step/explicit.hpp>
@@ -91,12 +92,12 @@ struct KahanLi8 {
 /// Fixed steps, symmetric in time. They need resolve the torque as the body meets it, not the spin.
 /// Steps that meet share their drift.
 ///
-/// Flow   : SymmetricFreeFlow, or one of yours. A body with three moments would take 4.6 us a drift
-///          by exact::FreeTop, so that ExplicitSteps is faster on it
+/// Flow   : SymmetricFreeFlow, or one of yours. A body with three moments has elliptic functions to
+///          evaluate at each drift, and ExplicitSteps is faster on it
 /// Scheme : Blanes864 for fast tops, KahanLi8 for the last digits, Strang for 1e-4
 /// Error  : top of 3000 rad/s (A = 3e-4, C = 1e-4 kg m^2, 0.049 N m) after 10 s, in rad: Blanes864
-///          1.3e-8 in 3.7 ms, 2.2e-10 in 7.3 ms; KahanLi8 8e-15 in 34 ms; Verner98 takes 45 ms for
-///          8e-10 and stops at 7e-13                      (tests/dynamics/step/splitting.cpp)
+///          1.3e-8 and, in smaller steps, 2.2e-10; KahanLi8 8e-15
+///          (tests/dynamics/step/splitting.cpp)
 /// Cost   : 7 drifts and kicks a step, 17 with KahanLi8, 1 with Strang
 /// Throws : InvalidInput for a step or a start that is none; ComputationFailed naming the time
 ///          where the torque is not finite: the last good time and state stay readable
@@ -124,6 +125,9 @@ class SplittingSteps {
 
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
+  /// Evaluations after which the integration gives up.
+  void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
+
   /// Moves to the time `end`, which is hit exactly, in equal steps no longer than the one asked
   /// for; forwards or backwards.
   void advance_to(double end) {
@@ -133,6 +137,10 @@ class SplittingSteps {
     const long double outer = Scheme::drift[0] * h;
     double done = 0;
     while (done < steps.count) {
+      if (effort_.evaluations > most_evaluations_) {
+        if (done > 0) flow_.drift(state_, outer);
+        detail::stop_integration(t(), most_evaluations_, " evaluations are spent");
+      }
       const auto before = state_;
       const bool first = done == 0;
       if (!step(h, first ? outer : 2 * outer)) {
@@ -169,6 +177,7 @@ class SplittingSteps {
   double step_;
   detail::Compensated<double> time_;
   typename Flow::State state_;
+  double most_evaluations_ = std::numeric_limits<double>::infinity();
   Effort effort_;
 };
 
