@@ -24,8 +24,8 @@ struct ClosedForm {
 /// The closed form of a top, where it has one: free of torque, Lagrange's, or a
 /// gyrostat whose rotor lies on a principal axis.
 ///
-/// Error  : the estimate is four roundings and what 64 bits leave of the angle turned through, as
-///          the tests of exact/ measure it
+/// Error  : the estimate is the rounding of a quaternion and 2^-63 of each radian
+///          turned through (tests/dynamics/solve/solve)
 [[nodiscard]] inline std::optional<ClosedForm<EulerTop::State>> closed_form(
     const EulerTop& top, double begin, const EulerTop::State& start) {
   const Vector3<double>& I = top.moments();
@@ -50,8 +50,8 @@ struct ClosedForm {
         },
         [rate, begin](double t) {
           constexpr double u = std::numeric_limits<double>::epsilon() / 2;
-          return 4 * u + 2 * double(std::numeric_limits<exact::Real>::epsilon()) * rate *
-                             std::abs(t - begin);
+          return 1.5 * u +
+                 double(std::numeric_limits<exact::Real>::epsilon()) * rate * std::abs(t - begin);
         }};
   };
   if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));

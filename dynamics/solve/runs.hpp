@@ -1,13 +1,17 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <utility>
+#include <vector>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/scene/euler_top.hpp>
+#include <dynamics/solve/adaptive_runs.hpp>
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/advance.hpp>
 #include <dynamics/step/gauss.hpp>
@@ -27,58 +31,37 @@
 ///   run(x)                with on_the_way(t, end) -> State and effort()
 namespace kreisel::detail {
 
-template <class Scene>
-inline constexpr bool has_fixed_size = int(Scene::Vector::RowsAtCompileTime) > 0;
-
 /// The Jacobian of a scene's field: exact, where the field takes dual numbers.
 template <class Scene>
 [[nodiscard]] auto jacobian_of(const Scene& scene) {
   constexpr int n = int(Scene::Vector::RowsAtCompileTime);
-  using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, n + 1, 1>>;
-  using DualVector = Eigen::Matrix<Dual, n, 1>;
-  if constexpr (requires(const Dual& t, const DualVector& y) { scene.rates(t, y); }) {
-    return forward_jacobian<n>(SceneField<Scene>{&scene});
-  } else {
+  if constexpr (n == Eigen::Dynamic) {
     return difference_jacobian<n>(SceneField<Scene>{&scene});
+  } else {
+    using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, n + 1, 1>>;
+    using DualVector = Eigen::Matrix<Dual, n, 1>;
+    if constexpr (requires(const Dual& t, const DualVector& y) { scene.rates(t, y); }) {
+      return forward_jacobian<n>(SceneField<Scene>{&scene});
+    } else {
+      return difference_jacobian<n>(SceneField<Scene>{&scene});
+    }
   }
 }
 
-/// What is fastest in a field: its eigenvalue of the greatest modulus.
+/// What is fastest in a field: its eigenvalue of the greatest modulus; 0 where the Jacobian is not
+/// finite, for whether a field is stiff cannot end a run that goes on without knowing.
 template <class Scene>
 [[nodiscard]] std::complex<double> fastest_rate(const Scene& scene, double t,
                                                 const typename Scene::State& state) {
-  const auto J = jacobian_of(scene)(t, Scene::to_vector(state)).of_state;
-  const auto rates = J.eigenvalues().eval();
+  const Eigen::MatrixXd J = jacobian_of(scene)(t, scene.to_vector(state)).of_state;
+  if (!J.allFinite()) return 0;
+  const Eigen::VectorXcd rates = eigenvalues(J);
   int fastest = 0;
   for (int i = 1; i < int(rates.size()); ++i) {
     if (std::abs(rates[i]) > std::abs(rates[fastest])) fastest = i;
   }
   return rates[fastest];
 }
-
-/// The settings of steps that adapt themselves: an accuracy.
-class AdaptiveRuns {
- public:
-  explicit AdaptiveRuns(const Task& task) : task_(task) {}
-
-  [[nodiscard]] double first() const { return std::max(task_.tolerance / 10, 4 * least); }
-  [[nodiscard]] static double finer(double accuracy) { return std::max(accuracy / 30, least); }
-  [[nodiscard]] static bool last(double accuracy) { return accuracy <= 4 * least; }
-  [[nodiscard]] static double tightened(double accuracy, double ratio) {
-    return std::max(accuracy * std::clamp(ratio, 1e-4, 0.2), 4 * least);
-  }
-
- protected:
-  static constexpr double least = 1e-16;
-
-  [[nodiscard]] const Task& task() const { return task_; }
-  [[nodiscard]] Accuracy accuracy(double relative) const {
-    return {relative, task_.smallest, task_.most_evaluations};
-  }
-
- private:
-  const Task& task_;
-};
 
 template <class Scene>
 class VernerRuns : public AdaptiveRuns {
@@ -94,8 +77,9 @@ class VernerRuns : public AdaptiveRuns {
     Run(const Scene& scene, const Task& task, const typename Scene::State& start,
         const Accuracy& accuracy)
         : scene_(scene),
-          // Where radau13 may not take over there is no need to look.
-          looks_(has_fixed_size<Scene> && task.method == Method::automatic),
+          // Where radau13 may not take over there is no need to look; and it cannot, where its
+          // factorisations would outweigh everything.
+          looks_(task.method == Method::automatic && scene.to_vector(start).size() <= 200),
           steps_(scene, task.begin, start, accuracy) {
       steps_.stop_at(task.jumps);
     }
@@ -104,9 +88,7 @@ class VernerRuns : public AdaptiveRuns {
     [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
       while (!steps_.covers(t)) {
         steps_.step_towards(end);
-        if constexpr (has_fixed_size<Scene>) {
-          if (looks_ && proves_stiff(end)) return steps_.state();
-        }
+        if (looks_ && proves_stiff(end)) return steps_.state();
       }
       return steps_.at(t);
     }
@@ -159,18 +141,19 @@ class RadauRuns : public AdaptiveRuns {
   static constexpr double rounding = 24;  // where Newton's iterations stop
 
   struct Run {
+    const Scene* scene;
     Steps steps;
 
     [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
       while (!steps.covers(t)) steps.step_towards(end);
-      return Scene::from_vector(steps.at(t));
+      return scene->from_vector(steps.at(t));
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
   [[nodiscard]] Run run(double setting) const {
-    Run r{Steps(Field{&scene_}, jacobian_of(scene_), task().begin, Scene::to_vector(start_),
-                accuracy(setting), Scene::blocks)};
+    Run r{&scene_, Steps(Field{&scene_}, jacobian_of(scene_), task().begin,
+                         scene_.to_vector(start_), accuracy(setting), blocks_of(scene_))};
     r.steps.stop_at(task().jumps);
     return r;
   }
@@ -183,11 +166,26 @@ class RadauRuns : public AdaptiveRuns {
 /// The settings of fixed steps of a method of the order given: their length.
 class FixedRuns {
  public:
-  FixedRuns(int order, double first, double shortest)
-      : root_(1.0 / order), first_(first), shortest_(shortest) {}
+  FixedRuns(int order, double first, double shortest, const Task& task)
+      : root_(1.0 / order), first_(first), shortest_(shortest) {
+    double from = task.begin;
+    for (const double to : task.times) {
+      if (to != from) intervals_.push_back(std::abs(to - from));
+      from = to;
+    }
+  }
 
   [[nodiscard]] double first() const { return first_; }
-  [[nodiscard]] double finer(double step) const { return step * std::pow(30.0, -root_); }
+
+  /// At least one step more between any two outputs, at which all steps end: else two runs would be
+  /// the same, and tell nothing of their error.
+  [[nodiscard]] double finer(double step) const {
+    double fine = step * std::pow(30.0, -root_);
+    for (const double interval : intervals_) {
+      fine = std::min(fine, interval / (std::ceil(interval / step) + 1));
+    }
+    return fine;
+  }
   [[nodiscard]] bool last(double step) const { return step <= shortest_; }
   [[nodiscard]] double tightened(double step, double ratio) const {
     return std::max(step * std::clamp(std::pow(ratio, root_), 0.2, 0.9), shortest_);
@@ -197,18 +195,30 @@ class FixedRuns {
   double root_;
   double first_;
   double shortest_;
+  std::vector<double> intervals_;
 };
 
-/// The mean of the first steps of Verner98 at accuracy 1e-14.
+/// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
 template <class Scene>
 [[nodiscard]] double pace(const Scene& scene, const Task& task,
                           const typename Scene::State& start) {
   ExplicitSteps<typename Scene::Vector, SceneField<Scene>> steps(
-      {&scene}, task.begin, Scene::to_vector(start), {1e-14, task.smallest}, Scene::blocks);
+      {&scene}, task.begin, scene.to_vector(start), {1e-14, task.smallest}, blocks_of(scene));
   const double end = task.times.back();
-  for (int i = 0; i < 30 && steps.t() != end; ++i) steps.step_towards(end);
-  const double mean = std::abs(steps.t() - task.begin) / std::max(steps.effort().steps, 1.0);
-  return mean > 0 ? mean : 1.0;
+  const auto go = [&] {
+    const double from = steps.t();
+    const double before = steps.effort().steps;
+    for (int i = 0; i < 20 && steps.t() != end; ++i) steps.step_towards(end);
+    const double taken = steps.effort().steps - before;
+    return taken > 0 ? std::abs(steps.t() - from) / taken : 0;
+  };
+  double pace = go();
+  for (int i = 0; i < 30; ++i) {
+    const double next = go();
+    if (next < 1.2 * pace) break;
+    pace = next;
+  }
+  return std::max(pace, std::numeric_limits<double>::min());
 }
 
 template <class Scene>
@@ -223,22 +233,26 @@ class GaussRuns : public FixedRuns {
   static constexpr double rounding = 2.5;
 
   struct Run {
+    const Scene* scene;
     GaussSteps<typename Scene::Vector, Field> steps;
 
     [[nodiscard]] typename Scene::State on_the_way(double t, double /*end*/) {
-      return Scene::from_vector(steps.advance_to(t));
+      return scene->from_vector(steps.advance_to(t));
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
   [[nodiscard]] Run run(double step) const {
-    return {{Field{&scene_}, task_.begin, Scene::to_vector(start_), step, Scene::blocks}};
+    Run r{&scene_,
+          {Field{&scene_}, task_.begin, scene_.to_vector(start_), step, blocks_of(scene_)}};
+    r.steps.give_up_after(task_.most_evaluations);
+    return r;
   }
 
  private:
   // 16 Gauss points carry about twice as far as Verner98's stages do at 1e-14.
   GaussRuns(const Scene& scene, const Task& task, const typename Scene::State& start, double pace)
-      : FixedRuns(16, 2 * pace, pace / 2), scene_(scene), task_(task), start_(start) {}
+      : FixedRuns(16, 2 * pace, pace / 2, task), scene_(scene), task_(task), start_(start) {}
 
   const Scene& scene_;
   const Task& task_;
@@ -261,14 +275,10 @@ class GaussRuns : public FixedRuns {
 
 class SplittingRuns : public FixedRuns {
   struct Weight {
-    Vector3<double> moment;
+    const EulerTop* top;
 
     [[nodiscard]] Vector3<double> operator()(double /*t*/, const Eigen::Quaterniond& q) const {
-      const double x = q.x(), y = q.y(), z = q.z(), w = q.w();
-      const double scale = 1 / (x * x + y * y + z * z + w * w);
-      const Vector3<double> up(2 * scale * (x * z - w * y), 2 * scale * (y * z + w * x),
-                               scale * (w * w + z * z - x * x - y * y));
-      return up.cross(moment);
+      return top->weight_torque(q);
     }
   };
 
@@ -291,12 +301,14 @@ class SplittingRuns : public FixedRuns {
 
   [[nodiscard]] Run run(double step) const {
     const Vector3<double>& I = top_.moments();
-    return {{SymmetricFreeFlow(I.x(), I.z()),
-             {top_.weight_moment()},
-             task_.begin,
-             start_.attitude,
-             start_.angular_velocity,
-             step}};
+    Run r{{SymmetricFreeFlow(I.x(), I.z()),
+           {&top_},
+           task_.begin,
+           start_.attitude,
+           start_.angular_velocity,
+           step}};
+    r.steps.give_up_after(task_.most_evaluations);
+    return r;
   }
 
  private:
@@ -312,7 +324,7 @@ class SplittingRuns : public FixedRuns {
   SplittingRuns(const EulerTop& top, const Task& task, const EulerTop::State& start, double rate)
       // Steps of 2/rate err by some 1e-9.
       : FixedRuns(8, 2 / rate * std::clamp(std::pow(task.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
-                  0.02 / rate),
+                  0.02 / rate, task),
         top_(top),
         task_(task),
         start_(start) {}

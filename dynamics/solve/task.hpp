@@ -45,7 +45,7 @@ struct Task {
   /// A part of the state smaller than this (SI) counts as being so large.
   double smallest = 1e-3;
 
-  /// Evaluations of the field after which each of the runs gives up.
+  /// Evaluations of the field after which each run of adaptive steps gives up.
   double most_evaluations = 1e8;
 
   /// Called at every output with the time; false cancels the run. What was computed is kept.
@@ -67,7 +67,15 @@ inline void check(const Task& task) {
     refuse_task("tolerance = ", task.tolerance,
                 " lies outside [1e-15, 1e-2], what double precision can promise");
   }
-  if (!(task.smallest >= 0)) refuse_task("smallest = ", task.smallest, " must be 0 or above");
+  if (!(task.smallest >= 0 && std::isfinite(task.smallest))) {
+    refuse_task("smallest = ", task.smallest, " must be finite, 0 or above");
+  }
+  for (const double jump : task.jumps) {
+    if (!std::isfinite(jump)) refuse_task("the time of a jump, ", jump, ", is not finite");
+  }
+  if (!(task.most_evaluations > 0)) {
+    refuse_task("most_evaluations = ", task.most_evaluations, " must be above 0");
+  }
   if (task.times.empty()) refuse_task("no output times are given");
   const double direction = task.times.back() < task.begin ? -1 : 1;
   double before = task.begin;

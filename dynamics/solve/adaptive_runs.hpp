@@ -1,0 +1,35 @@
+#pragma once
+
+#include <algorithm>
+
+#include <dynamics/solve/task.hpp>
+#include <dynamics/step/accuracy.hpp>
+
+namespace kreisel::detail {
+
+/// The settings of steps that adapt themselves: an accuracy.
+class AdaptiveRuns {
+ public:
+  explicit AdaptiveRuns(const Task& task) : task_(task) {}
+
+  [[nodiscard]] double first() const { return std::max(task_.tolerance / 10, 4 * least); }
+  [[nodiscard]] static double finer(double accuracy) { return std::max(accuracy / 30, least); }
+  [[nodiscard]] static bool last(double accuracy) { return accuracy <= 4 * least; }
+  [[nodiscard]] static double tightened(double accuracy, double ratio) {
+    return std::max(accuracy * std::clamp(ratio, 1e-4, 0.2), 4 * least);
+  }
+
+  [[nodiscard]] Accuracy accuracy(double relative) const {
+    return {relative, task_.smallest, task_.most_evaluations};
+  }
+
+ protected:
+  [[nodiscard]] const Task& task() const { return task_; }
+
+ private:
+  static constexpr double least = 1e-16;
+
+  const Task& task_;
+};
+
+}  // namespace kreisel::detail
