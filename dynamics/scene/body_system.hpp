@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -53,11 +55,13 @@ class BodySystem {
 
   BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {})
       : guide_(std::move(guide)), tree_(std::move(bodies)), gravity_(gravity) {
-    if (!detail::is_finite(detail::field(gravity_, {})))
+    if (!detail::is_finite(detail::field<double>(gravity_, {})))
       throw InvalidInput("system of bodies: gravity is not finite");
   }
 
+  [[nodiscard]] const M& guide() const { return guide_; }
   [[nodiscard]] const BodyTree& tree() const { return tree_; }
+  [[nodiscard]] const Gravity& gravity() const { return gravity_; }
   [[nodiscard]] BodyWorkspace workspace() const { return BodyWorkspace(tree_); }
   [[nodiscard]] int body_count() const { return static_cast<int>(tree_.bodies().size()); }
 
@@ -109,6 +113,77 @@ class BodySystem {
     return result;
   }
 
+  /// The vector field for dual numbers (Eigen's AutoDiffScalar with derivatives of fixed size), as
+  /// the exact linearisation takes it:  M d(v') = -d(forces that v' takes).
+  ///
+  /// Error  : rates in time of a guide's accelerations and of rotors' speeds that take doubles alone
+  ///          are differences, which err by 2^-42 of their fifth derivatives
+  /// Cost   : one evaluation in dual numbers of the inverse dynamics, and a solution for each
+  ///          derivative; memory is asked for
+  /// Throws : InvalidInput besides, naming the body, for a load that takes no dual numbers
+  template <class Dual>
+  [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
+      const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
+    using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
+    for (const int body : tree_.loaded()) {
+      const auto& loads = tree_.body(body).loads;
+      if (std::all_of(loads.begin(), loads.end(),
+                      [](const BodyLoad& load) { return load.takes_dual_numbers(); })) {
+        continue;
+      }
+      detail::refuse_body(tree_.body(body).name,
+                          "a load of it takes no dual numbers, so it has no linear equations: make "
+                          "it a template on the number type N,  Force<Body, N> operator()(const "
+                          "Situation<N>&) const");
+    }
+    BodyWorkspace w = workspace();
+    Vector number(y.size());
+    for (Eigen::Index i = 0; i < y.size(); ++i) number[i] = y[i].value();
+    Vector rate;
+    const double now = t.value();
+    rates(now, number, rate, w);
+    Duals result = rate.template cast<Dual>();
+    const Dual* v = y.data() + tree_.coordinates();
+    const Dual* dv = result.data() + tree_.coordinates();
+    detail::set_coordinate_rates(tree_, y.data(), v, result.data());
+    for (const detail::RotorLink& rotor : tree_.rotors()) {
+      const auto& asked = tree_.body(rotor.link.body).rotor->acceleration;
+      if (!asked || t.derivatives().isZero(0)) continue;
+      result[tree_.coordinates() + rotor.link.v].derivatives() =
+          detail::slope_in_time(asked, now) * t.derivatives();
+    }
+
+    detail::MotionSpace<Dual> d(tree_);
+    const FrameMotion<Guide, Inertial, Dual> guide = detail::guide_at<Dual>(guide_, t);
+    detail::set_poses_and_motions(tree_, root(guide), y.data(), v, dv, d);
+    detail::take_off_loads(tree_, t, guide, v, d);
+    detail::add_rotor_forces_at(tree_, v, dv, d);
+    detail::sum_inwards(tree_, d);
+    Duals taken(tree_.rates());
+    detail::project(tree_, d, taken.data());
+    detail::project_rotors(tree_, dv, d, taken.data());
+    detail::set_joint_forces(tree_, y.data(), v, d);
+
+    Vector left(tree_.rates());
+    for (Eigen::Index k = 0; k < Dual().derivatives().size(); ++k) {
+      for (Eigen::Index i = 0; i < left.size(); ++i) {
+        left[i] = d.joint_force[i].derivatives()[k] - taken[i].derivatives()[k];
+      }
+      respond(left, w);
+      for (Eigen::Index i = 0; i < left.size(); ++i) {
+        result[tree_.coordinates() + i].derivatives()[k] += w.acceleration[i];
+      }
+    }
+    return result;
+  }
+
+  /// The same at a time that is given.
+  template <class Dual>
+  requires(!std::same_as<Dual, double>) [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
+      double t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
+    return rates(Dual(t), y);
+  }
+
   /// Inverse dynamics: the joint forces, besides those of the description, that bring about the
   /// accelerations dv.
   void joint_forces(double t, const Vector& y, const Vector& dv, Vector& result,
@@ -119,8 +194,11 @@ class BodySystem {
     detail::set_poses_and_motions(tree_, root(guide), y.data(), rates_of(y),
                                   dv.size() ? dv.data() : nullptr, w);
     detail::take_off_loads(tree_, t, guide, rates_of(y), w);
+    const double* given = dv.size() ? dv.data() : w.still.data();
+    detail::add_rotor_forces_at(tree_, rates_of(y), given, w);
     detail::sum_inwards(tree_, w);
     detail::project(tree_, w, result.data());
+    detail::project_rotors(tree_, given, w, result.data());
     detail::set_joint_forces(tree_, y.data(), rates_of(y), w);
     result -= w.joint_force;
   }
@@ -144,6 +222,11 @@ class BodySystem {
       if (!link.moved_by_forces()) continue;
       for (int k = 0; k < detail::rate_count(link.kind); ++k) result.drive[link.v + k] = 0;
     }
+    for (const detail::RotorLink& rotor : tree_.rotors()) {
+      if (!rotor.regulated()) result.drive[rotor.link.v] = 0;
+    }
+    detail::set_rotor_poses(tree_, y.data(), w);
+    detail::complete_rotor_forces(tree_, rates_of(y), w.acceleration.data(), w);
     result.on_body.resize(tree_.bodies().size());
     for (int i = 0; i < body_count(); ++i) {
       result.on_body[index(i)] = detail::joint_reaction(tree_, i, w);
@@ -170,11 +253,13 @@ class BodySystem {
       }
     };
     w.joint_force.setZero();
+    detail::ask_spin_up(tree_, t, w);
     answer({}, v, nullptr, y, w);
     note(&ReactionParts::spin);
     answer(moving, v, nullptr, y, w);
     note(&ReactionParts::guide);
     for (ReactionParts& parts : result) parts.guide = parts.guide - parts.spin;
+    detail::ask_no_spin_up(w);
     answer(weight, still, nullptr, y, w);
     note(&ReactionParts::gravity);
     detail::set_joint_forces(tree_, y.data(), v, w);
@@ -188,6 +273,7 @@ class BodySystem {
     require(y, {}, w);
     detail::set_poses(tree_, y.data(), w);
     detail::set_places(tree_, rates_of(y), w);
+    detail::set_rotor_places(tree_, y.data(), rates_of(y), w);
     return detail::situation(tree_, t, guide_(t), body, w);
   }
 
@@ -200,6 +286,8 @@ class BodySystem {
     const FrameMotion<Guide, Inertial> guide = guide_(t);
     detail::set_motions(tree_, root(guide), rates_of(y), w.acceleration.data(), w);
     detail::set_places(tree_, rates_of(y), w);
+    detail::set_rotor_places(tree_, y.data(), rates_of(y), w);
+    detail::set_rotor_motions(tree_, rates_of(y), w.acceleration.data(), w);
     return detail::terms(tree_, detail::situation(tree_, t, guide, body, w), body,
                          detail::field(gravity_, guide), w);
   }
@@ -209,19 +297,37 @@ class BodySystem {
     const FrameMotion<Guide, Inertial> guide = guide_(t);
     detail::set_poses(tree_, y.data(), w);
     detail::set_places(tree_, rates_of(y), w);
-    return detail::balance(tree_, t, guide, gravity_, y.data(), w);
+    detail::set_rotor_places(tree_, y.data(), rates_of(y), w);
+    return detail::balance(tree_, t, guide, gravity_, y.data(), rates_of(y), w);
   }
 
   /// What does not change during a motion, as far as the description shows it: the energy where the
-  /// guide rests and all forces have a potential, the momentum where nothing acts from outside.
-  [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(double t,
+  /// guide rests and all forces have a potential, without that of the spin where rotors are
+  /// regulated; the momentum where nothing acts from outside; the cyclic momentum C (phi' + e.w) of
+  /// every free rotor.
+  ///
+  /// Source : paper 000 (4), and (9): T2 + V = const for L = const
+  [[nodiscard]] std::vector<std::pair<std::string, S>> conserved(double t,
                                                                  const State& state) const {
-    std::vector<std::pair<const char*, S>> result;
+    std::vector<std::pair<std::string, S>> result;
+    BodyWorkspace w = workspace();
+    const BodyBalance now = balance(t, to_vector(state), w);
+    const FrameMotion<Guide, Inertial> guide = guide_(t);
+    for (std::size_t k = 0; k < tree_.rotors().size(); ++k) {
+      const detail::RotorLink& rotor = tree_.rotors()[k];
+      if (rotor.mode != RotorMode::free) continue;
+      result.emplace_back("cyclic momentum of '" + tree_.body(rotor.link.body).name + "'",
+                          detail::momentum_weight(tree_, k, guide, state.rates.data(), w));
+    }
     if constexpr (detail::rests<M>) {
-      BodyWorkspace w = workspace();
-      const BodyBalance now = balance(t, to_vector(state), w);
-      if (detail::keeps_energy(tree_)) {
-        result.emplace_back("energy", now.kinetic_energy + now.potential_energy);
+      switch (detail::energy_law(tree_)) {
+        case detail::EnergyLaw::none: break;
+        case detail::EnergyLaw::all:
+          result.emplace_back("energy", now.kinetic_energy + now.potential_energy);
+          break;
+        case detail::EnergyLaw::without_spin:
+          result.emplace_back("energy without spin", now.carrier_energy + now.potential_energy);
+          break;
       }
       if (detail::keeps_momentum(tree_, gravity_)) {
         const auto& [p, L] = now.momentum.value;
@@ -236,7 +342,7 @@ class BodySystem {
   }
 
  private:
-  using LinkMotion = detail::LinkMotion;
+  using LinkMotion = detail::LinkMotion<>;
 
   [[nodiscard]] static std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -253,16 +359,17 @@ class BodySystem {
       throw InvalidInput("system of bodies: " + std::to_string(per_rate.size()) + " numbers for " +
                          std::to_string(tree_.rates()) + " rates");
     }
-    if (w.pose.size() != tree_.links().size() || w.joint_force.size() != tree_.rates()) {
+    if (w.pose.size() != tree_.slots() || w.joint_force.size() != tree_.rates()) {
       throw InvalidInput("system of bodies: the workspace is of another system");
     }
   }
 
   /// Where the tree begins. In a uniform field the weights of all bodies are what a guide
   /// accelerated by -g would ask for.
-  [[nodiscard]] LinkMotion root(const FrameMotion<Guide, Inertial>& guide) const {
+  template <class N>
+  [[nodiscard]] detail::LinkMotion<N> root(const FrameMotion<Guide, Inertial, N>& guide) const {
     if constexpr (detail::rests<M>) {
-      return {Vector3<double>::Zero(), Vector3<double>::Zero(), -detail::field(gravity_, guide)};
+      return {Vector3<N>::Zero(), Vector3<N>::Zero(), -detail::field(gravity_, guide)};
     } else {
       return {guide.V.value.resultant, guide.dV.value.resultant,
               guide.origin_acceleration() - detail::field(gravity_, guide)};
@@ -276,7 +383,18 @@ class BodySystem {
     detail::take_off_loads(tree_, t, guide, rates_of(y), w);
     detail::set_joint_forces(tree_, y.data(), rates_of(y), w);
     if (extra.size()) w.joint_force += extra;
+    detail::ask_spin_up(tree_, t, w);
+    detail::add_rotor_forces(tree_, rates_of(y), w.joint_force.data(), w);
     detail::eliminate_and_solve(tree_, w.joint_force.data(), result, w);
+  }
+
+  /// The accelerations  M dv = joint_force  of a system at rest, once the joints are eliminated.
+  void respond(const Vector& joint_force, BodyWorkspace& w) const {
+    const double* still = w.still.data();
+    detail::set_motions(tree_, LinkMotion{}, still, nullptr, w);
+    detail::ask_no_spin_up(w);
+    detail::add_rotor_forces(tree_, still, joint_force.data(), w);
+    detail::solve(tree_, joint_force.data(), w.acceleration.data(), w);
   }
 
   /// Reactions to a part of the causes; the joints are eliminated and w.joint_force is set.
@@ -287,9 +405,14 @@ class BodySystem {
       if (loads_at) detail::take_off_loads(tree_, loads_at->t, loads_at->guide, rates_of(y), w);
     };
     set_forces(nullptr);
+    detail::add_rotor_forces(tree_, v, w.joint_force.data(), w);
     detail::solve(tree_, w.joint_force.data(), w.acceleration.data(), w);
-    set_forces(w.acceleration.data());
+    const double* dv = w.acceleration.data();
+    set_forces(dv);
+    detail::add_rotor_forces_at(tree_, v, dv, w);
     detail::sum_inwards(tree_, w);
+    detail::set_rotor_poses(tree_, y.data(), w);
+    detail::complete_rotor_forces(tree_, v, dv, w);
   }
 
   M guide_;

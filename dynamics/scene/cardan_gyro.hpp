@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -14,7 +16,11 @@
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/load.hpp>
+#include <dynamics/scene/structure.hpp>
+#include <dynamics/step/lanes.hpp>
+#include <motor/absent.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -27,11 +33,13 @@ namespace kreisel {
 ///
 /// Source : paper 002 section 6: Theta_A .. Theta_C with the indices 1, 2 and 3
 /// Units  : kg m^2
-struct CardanMoments {
-  Vector3<double> rotor;
-  Vector3<double> inner_ring = Vector3<double>::Zero();
-  Vector3<double> outer_ring = Vector3<double>::Zero();
+template <class P>
+struct BasicCardanMoments {
+  Vector3<P> rotor;
+  Vector3<P> inner_ring = Vector3<P>::Zero();
+  Vector3<P> outer_ring = Vector3<P>::Zero();
 };
+using CardanMoments = BasicCardanMoments<double>;
 
 /// What a bearing does about its axis:  torque = -stiffness q - damping q',  q from `reference`.
 ///
@@ -39,20 +47,39 @@ struct CardanMoments {
 /// digits: at 1e12 N m/rad the last digit of an angle of 0.3 is worth 5.5e-5 N m.
 ///
 /// Units  : N m/rad, N m s/rad, radian
-struct CardanBearing {
-  double stiffness = 0;
-  double damping = 0;
-  double reference = 0;  ///< where the spring is slack and the state's angle is 0
+template <class P>
+struct BasicCardanBearing {
+  P stiffness = P(0);
+  P damping = P(0);
+  P reference = P(0);  ///< where the spring is slack and the state's angle is 0
 };
+using CardanBearing = BasicCardanBearing<double>;
 
-struct CardanBearings {
-  CardanBearing outer = {};  ///< of alpha, between the guide and the outer ring
-  CardanBearing inner = {};  ///< of beta, between both rings
+template <class P>
+struct BasicCardanBearings {
+  BasicCardanBearing<P> outer = {};  ///< of alpha, between the guide and the outer ring
+  BasicCardanBearing<P> inner = {};  ///< of beta, between both rings
+};
+using CardanBearings = BasicCardanBearings<double>;
+
+/// How a Cardan gyro moves.
+struct CardanState {
+  double alpha = 0;       ///< of the outer ring, from bearings().outer.reference
+  double beta = 0;        ///< of the inner ring, from bearings().inner.reference
+  double phi = 0;         ///< of the rotor
+  double alpha_rate = 0;  ///< against the guide
+  double beta_rate = 0;   ///< against the outer ring
+  double phi_rate = 0;    ///< against the inner ring
 };
 
 /// A rotor left to itself. Friction acts between it and the inner ring, in N m s/rad.
 struct FreeRotor {
   double friction = 0;
+};
+
+/// A rotor left to itself in a bearing without friction: a FreeRotor of 0, known beforehand.
+struct FrictionlessRotor {
+  static constexpr double friction = 0;
 };
 
 /// A rotor driven from the inner ring by a torque in N m: a number, or a function of the time and
@@ -100,36 +127,22 @@ struct CardanBalance {
 
 namespace detail {
 
-/// A zero known when the program is compiled. What it multiplies is left out, so that one set of
-/// formulas serves a guide at rest and a symmetric rotor at the cost of theirs alone.
-struct Absent {
-  template <class T>
-  friend Absent operator*(const T&, Absent) {
-    return {};
-  }
-  template <class T>
-  requires(!std::is_same_v<T, Absent>) friend Absent operator*(Absent, const T&) { return {}; }
-
-  friend Absent operator+(Absent, Absent) { return {}; }
-  template <class T>
-  requires(!std::is_same_v<T, Absent>) friend T operator+(const T& x, Absent) { return x; }
-  template <class T>
-  requires(!std::is_same_v<T, Absent>) friend T operator+(Absent, const T& x) { return x; }
-
-  friend Absent operator-(Absent, Absent) { return {}; }
-  template <class T>
-  requires(!std::is_same_v<T, Absent>) friend T operator-(const T& x, Absent) { return x; }
-  template <class T>
-  requires(!std::is_same_v<T, Absent>) friend auto operator-(Absent, const T& x) { return -x; }
-};
-
-template <class A, class B>
-using AbsentIfBoth = std::conditional_t<std::is_same_v<A, Absent>, B, A>;
-
 template <class M>
 inline constexpr bool is_resting = false;
 template <class G, class I, class S>
 inline constexpr bool is_resting<RestingFrame<G, I, S>> = true;
+
+/// u of a guide in steady motion, worked out once.
+template <class M>
+[[nodiscard]] auto steady_rate(const M& guide) {
+  if constexpr (SteadyGuide<M>) {
+    return guide.steady().u;
+  } else {
+    return NoVector{};
+  }
+}
+template <class M>
+using SteadyRate = decltype(steady_rate(std::declval<const M&>()));
 
 template <class Rotor>
 inline constexpr bool is_driven = false;
@@ -145,9 +158,14 @@ struct SinCos {
 /// Sine and cosine of reference + deviation, both relatively exact to 2u also where one of them
 /// is nearly 0: what rounding leaves of the sum is added to first order.
 template <class S>
-[[nodiscard]] SinCos<S> sin_cos(double reference, const S& deviation) {
+[[nodiscard]] SinCos<S> sin_cos(Absent /*reference*/, const S& deviation) {
   using std::cos, std::sin;
-  if (reference == 0) return {S(sin(deviation)), S(cos(deviation))};
+  return {S(sin(deviation)), S(cos(deviation))};
+}
+template <class P, class S>
+[[nodiscard]] SinCos<S> sin_cos(const P& reference, const S& deviation) {
+  using std::cos, std::sin;
+  if (all(reference == P(0))) return sin_cos(Absent{}, deviation);
   const S sum = reference + deviation;
   const S back = sum - reference;
   const S rest = (reference - S(sum - back)) + S(deviation - back);
@@ -156,19 +174,37 @@ template <class S>
   return {S(s + rest * c), S(c - rest * s)};
 }
 
-/// u and its rate on guide axes; G is a number or Absent.
-template <class G>
+/// u and its rate on guide axes; G and V are numbers or Absent.
+template <class G, class V>
 struct Turning {
-  std::array<G, 3> u = {};
-  std::array<G, 3> du = {};
+  Components<G> u = {};
+  Components<V> du = {};
+};
+
+/// Moments of inertia of a ring and, added to it, of what a symmetric rotor has without its spin.
+template <class P>
+struct RingMoments {
+  P a, b, c;
+  P c_less_ab;  ///< c - b - a
+  P a_less_c;   ///< a - c
+  P bc_less_a;  ///< b + c - a, from the ring's b - a
+
+  /// The ring's moments J, the rotor's A, and C where the rotor's speed is regulated.
+  RingMoments(const Vector3<P>& J, const P& rotor_a, const P& rotor_c)
+      : a(J.x() + rotor_a),
+        b(J.y() + rotor_a),
+        c(J.z() + rotor_c),
+        c_less_ab(c - b - a),
+        a_less_c(a - c),
+        bc_less_a(c + (J.y() - J.x())) {}
 };
 
 /// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
-/// number or, for a symmetric rotor, Absent.
-template <class S, class N>
+/// number or, for a symmetric rotor that counts with the ring, Absent.
+template <class N>
 struct TurnedRotor {
-  S P;  ///< about A_2
-  S Q;  ///< about B_2
+  N P;  ///< about A_2
+  N Q;  ///< about B_2
   N R;  ///< the product of inertia, + off the diagonal
   N W;  ///< P - Q without cancellation
 };
@@ -181,14 +217,14 @@ struct CardanMotion {
 };
 
 /// Rates of angular momentum of the three bodies, each on its ring's axes, the rotor's on the inner
-/// ring's; of phi'' nothing.
-template <class S, class K>
+/// ring's; of phi'' nothing. N is Absent where the rotor counts with the inner ring.
+template <class S, class K, class N>
 struct CardanRates {
   K outer_a, outer_b, outer_c;
   S inner_a, inner_b, inner_c;
-  S rotor_a, rotor_b;
+  N rotor_a, rotor_b;
   S dz_2;   ///< of the angular velocity of the inner ring about C
-  S twist;  ///< u_A L_B - u_B L_A of the rotor, which with C_1 (dz_2 + phi'') is its rate about C
+  N twist;  ///< u_A L_B - u_B L_A of the rotor, which with C_1 (dz_2 + phi'') is its rate about C
 };
 
 }  // namespace detail
@@ -219,28 +255,24 @@ struct CardanRates {
 /// Units  : rad/s, N m
 /// Error  : of the accelerations <= 1e-14 of the greatest, rings with 1e-8 of the mass at 1e-8
 ///          from 90 degrees included (tests/dynamics/scene/cardan_gyro.cpp)
-/// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving: one more
+/// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving: one more;
+///          of the rest what guide and rotor leave (tests/dynamics/scene/pruning_cost.sh)
 /// Throws : InvalidInput where no body has such moments, the rotor's C is 0, the equations are
 ///          singular at every angle, or stiffness, damping or friction is below 0;
 ///          ComputationFailed from rates() and all that needs accelerations where they are singular
-template <class M, class Rotor = FreeRotor>
+///
+/// Parameter : what moments and bearings are: double; or a pack, for as many gyros side by side
+template <class M, class Rotor = FreeRotor, class Parameter = double>
 class CardanGyro {
   static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
-  static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, RegulatedRotor> ||
-                    detail::is_driven<Rotor>,
-                "the rotor is a FreeRotor, a DrivenRotor or a RegulatedRotor");
+  static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, FrictionlessRotor> ||
+                    std::is_same_v<Rotor, RegulatedRotor> || detail::is_driven<Rotor>,
+                "the rotor is a FreeRotor, FrictionlessRotor, DrivenRotor or RegulatedRotor");
 
  public:
   using Vector = Eigen::Matrix<double, 6, 1>;
 
-  struct State {
-    double alpha = 0;       ///< of the outer ring, from bearings().outer.reference
-    double beta = 0;        ///< of the inner ring, from bearings().inner.reference
-    double phi = 0;         ///< of the rotor
-    double alpha_rate = 0;  ///< against the guide
-    double beta_rate = 0;   ///< against the outer ring
-    double phi_rate = 0;    ///< against the inner ring
-  };
+  using State = CardanState;
 
   CardanGyro(const CardanMoments& moments, const CardanBearings& bearings, M guide,
              Rotor rotor = {})
@@ -248,7 +280,9 @@ class CardanGyro {
         bearings_(bearings),
         guide_(std::move(guide)),
         rotor_(std::move(rotor)),
-        symmetric_(moments.rotor.x() == moments.rotor.y()) {
+        symmetric_(moments.rotor.x() == moments.rotor.y()),
+        plain_(symmetric_ && bearings.outer.reference == 0 && bearings.inner.reference == 0),
+        singular_(singular()) {
     check_moments();
     check_bearing("outer", bearings.outer);
     check_bearing("inner", bearings.inner);
@@ -258,8 +292,23 @@ class CardanGyro {
     }
   }
 
-  [[nodiscard]] const CardanMoments& moments() const { return moments_; }
-  [[nodiscard]] const CardanBearings& bearings() const { return bearings_; }
+  /// Several gyros, one a lane of N; nothing if some are symmetric and some are not, or the friction
+  /// of their rotors differs.
+  template <class N>
+  requires(detail::is_resting<M> && !detail::is_driven<Rotor>)
+      [[nodiscard]] static std::optional<CardanGyro<M, Rotor, N>> side_by_side(
+          const std::array<const CardanGyro*, std::size_t(N::lanes)>& gyros) {
+    for (const CardanGyro* gyro : gyros) {
+      if (gyro->symmetric_ != gyros[0]->symmetric_ ||
+          gyro->rotor_.friction != gyros[0]->rotor_.friction) {
+        return {};
+      }
+    }
+    return CardanGyro<M, Rotor, N>(gyros);
+  }
+
+  [[nodiscard]] const BasicCardanMoments<Parameter>& moments() const { return moments_; }
+  [[nodiscard]] const BasicCardanBearings<Parameter>& bearings() const { return bearings_; }
   [[nodiscard]] const Rotor& rotor() const { return rotor_; }
 
   /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, phi; their rates), for double and
@@ -271,8 +320,8 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
                                              const Eigen::Matrix<S, 6, 1>& y) const {
-    if (symmetric_) return rates_of<detail::Absent>(t, y);
-    return rates_of<S>(t, y);
+    if (plain_) return rates_of<detail::Absent, detail::Absent>(t, y);
+    return less_plain_rates<S>(t, y);
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
 
@@ -284,8 +333,9 @@ class CardanGyro {
     const Vector dy = rates(t, to_vector(state));
     const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
     const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
-    const auto k = momentum_rates<double, double, double, double>(
+    const auto k = momentum_rates<double, double, double, double, double>(
         turning_at<double>(t), {sa, ca}, {sb, cb}, turned_rotor<double>(state.phi),
+        detail::RingMoments<double>(moments_.inner_ring, 0, 0),
         {state.alpha_rate, state.beta_rate, state.phi_rate, dy[3], dy[4]});
     const double friction = rotor_.friction * state.phi_rate;
     const double on_rotor = regulated ? moments_.rotor.z() * (k.dz_2 + dy[5]) + k.twist
@@ -311,8 +361,7 @@ class CardanGyro {
     const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
     const auto [P, Q, R, W] = turned_rotor<double>(state.phi);
     const auto [u, du] = turning_at<double>(t);
-    const Vector3<double> w_3(state.alpha_rate + u[0], u[1] * ca + u[2] * sa,
-                              u[2] * ca - u[1] * sa);
+    const Vector3<double> w_3(state.alpha_rate + u.x, u.y * ca + u.z * sa, u.z * ca - u.y * sa);
     const Vector3<double> w_2(w_3.x() * cb - w_3.z() * sb, w_3.y() + state.beta_rate,
                               w_3.x() * sb + w_3.z() * cb);
     const double spin = w_2.z() + state.phi_rate;
@@ -336,12 +385,15 @@ class CardanGyro {
   ///                      kinetic energy without what phi' adds to it, and springs
   ///   alpha momentum     guide at rest, outer bearing without spring and friction
   ///   rotor momentum     free symmetric rotor without friction, any guide
+  ///   Jacobi integral    guide in steady motion, no friction in the rings, rotor free without
+  ///                      friction or symmetric and regulated:  T_2 - T_0 + potential
   [[nodiscard]] std::vector<std::pair<const char*, double>> conserved(double t,
                                                                       const State& state) const {
     const CardanBalance all = balance(t, state);
     const auto& [outer, inner] = bearings_;
     const bool rings_free = outer.damping == 0 && inner.damping == 0;
-    const bool rotor_free = std::is_same_v<Rotor, FreeRotor> && rotor_.friction == 0;
+    const bool rotor_free = (std::is_same_v<Rotor, FreeRotor> ||
+                             std::is_same_v<Rotor, FrictionlessRotor>)&&rotor_.friction == 0;
     std::vector<std::pair<const char*, double>> kept;
     if constexpr (detail::is_resting<M>) {
       if (rings_free && rotor_free) {
@@ -355,6 +407,22 @@ class CardanGyro {
       }
       if (outer.stiffness == 0 && outer.damping == 0) {
         kept.emplace_back("alpha momentum", all.alpha_momentum);
+      }
+    }
+    if constexpr (SteadyGuide<M> && !detail::is_resting<M>) {
+      // T_2 - T_0: what is quadratic in the rates less what does not depend on them.
+      if (rings_free && (rotor_free || (regulated && symmetric_))) {
+        State back = state, still = state;
+        back.alpha_rate = -state.alpha_rate;
+        back.beta_rate = -state.beta_rate;
+        still.alpha_rate = still.beta_rate = 0;
+        if (!regulated) {
+          back.phi_rate = -state.phi_rate;
+          still.phi_rate = 0;
+        }
+        const double both = all.kinetic_energy + balance(t, back).kinetic_energy;
+        kept.emplace_back("Jacobi integral",
+                          both / 2 - 2 * balance(t, still).kinetic_energy + all.potential_energy);
       }
     }
     if (rotor_free && symmetric_) kept.emplace_back("rotor momentum", all.rotor_momentum);
@@ -374,6 +442,37 @@ class CardanGyro {
   }
 
  private:
+  template <class, class, class>
+  friend class CardanGyro;
+
+  using One = CardanGyro<M, Rotor, double>;
+
+  using Gyros = std::array<const One*, std::size_t(detail::lanes_of<Parameter>)>;
+
+  explicit CardanGyro(const Gyros& gyros)
+      : moments_{gathered(gyros, [](const One& g) { return g.moments_.rotor; }),
+                 gathered(gyros, [](const One& g) { return g.moments_.inner_ring; }),
+                 gathered(gyros, [](const One& g) { return g.moments_.outer_ring; })},
+        bearings_{gathered_bearing(gyros, &CardanBearings::outer),
+                  gathered_bearing(gyros, &CardanBearings::inner)},
+        guide_(gyros[0]->guide_),
+        rotor_(gyros[0]->rotor_),
+        symmetric_(gyros[0]->symmetric_),
+        plain_(std::all_of(gyros.begin(), gyros.end(), [](const One* g) { return g->plain_; })),
+        singular_(gathered(gyros, [](const One& g) { return g.singular_; })) {}
+
+  template <class Get>
+  [[nodiscard]] static auto gathered(const Gyros& gyros, const Get& get) {
+    return detail::gathered<Parameter>(gyros, get);
+  }
+
+  [[nodiscard]] static BasicCardanBearing<Parameter> gathered_bearing(
+      const Gyros& gyros, CardanBearing CardanBearings::*which) {
+    return {gathered(gyros, [&](const One& g) { return (g.bearings_.*which).stiffness; }),
+            gathered(gyros, [&](const One& g) { return (g.bearings_.*which).damping; }),
+            gathered(gyros, [&](const One& g) { return (g.bearings_.*which).reference; })};
+  }
+
   static constexpr bool regulated = std::is_same_v<Rotor, RegulatedRotor>;
 
   template <class... Words>
@@ -427,20 +526,22 @@ class CardanGyro {
 
   /// What spring and friction resist with; the torque is its negative.
   template <class S>
-  [[nodiscard]] static S resistance(const CardanBearing& bearing, const S& q, const S& dq) {
+  [[nodiscard]] static S resistance(const BasicCardanBearing<Parameter>& bearing, const S& q,
+                                    const S& dq) {
     return bearing.stiffness * q + bearing.damping * dq;
   }
 
   /// On a rotor that is not regulated, about C: drive and friction.
   template <class S>
-  [[nodiscard]] S spin_torque([[maybe_unused]] const S& t, const S& df) const {
-    const S friction = rotor_.friction * df;
-    if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
-      return rotor_.torque - friction;
+  [[nodiscard]] auto spin_torque([[maybe_unused]] const S& t, [[maybe_unused]] const S& df) const {
+    if constexpr (std::is_same_v<Rotor, FrictionlessRotor>) {
+      return detail::Absent{};
+    } else if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
+      return S(rotor_.torque - S(rotor_.friction * df));
     } else if constexpr (detail::is_driven<Rotor>) {
-      return rotor_.torque(t, df) - friction;
+      return S(rotor_.torque(t, df) - S(rotor_.friction * df));
     } else {
-      return -friction;
+      return S(-S(rotor_.friction * df));
     }
   }
 
@@ -449,36 +550,44 @@ class CardanGyro {
   static constexpr bool guide_takes = GuideMotion<M, Guide, Inertial, S>;
 
   template <class S>
-  [[nodiscard]] detail::Turning<S> turning_at(const S& t) const {
-    detail::Turning<S> result;
-    const auto fill = [&result](const auto& guide) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        result.u[i] = S(guide.u[static_cast<Eigen::Index>(i)]);
-        result.du[i] = S(guide.du[static_cast<Eigen::Index>(i)]);
-      }
+  [[nodiscard]] detail::Turning<S, S> turning_at(const S& t) const {
+    const auto lifted = [](const auto& turning) {
+      return detail::Turning<S, S>{{S(turning.u.x()), S(turning.u.y()), S(turning.u.z())},
+                                   {S(turning.du.x()), S(turning.du.y()), S(turning.du.z())}};
     };
     if constexpr (guide_takes<S>) {
-      fill(turning(guide_, t));
+      return lifted(turning(guide_, t));
     } else {
       const double time = static_cast<double>(detail::number_in(t));
-      fill(turning(guide_, time));
+      detail::Turning<S, S> result = lifted(turning(guide_, time));
       // First order in t - time, which is 0 but for its derivatives.
-      for (std::size_t i = 0; i < 3; ++i) {
-        const S added = (t - time) * result.du[i];
-        result.u[i] = S(result.u[i] + added);
-      }
+      const S later = t - time;
+      result.u = result.u + later * result.du;
+      return result;
     }
-    return result;
+  }
+
+  /// What the equations feel of the guide: of a steady one that turns no rate, of one at rest
+  /// nothing.
+  template <class S>
+  [[nodiscard]] auto felt_turning(const S& t) const {
+    if constexpr (detail::is_resting<M>) {
+      return detail::Turning<detail::Absent, detail::Absent>{};
+    } else if constexpr (SteadyGuide<M>) {
+      return detail::Turning<S, detail::Absent>{{S(steady_.x), S(steady_.y), S(steady_.z)}, {}};
+    } else {
+      return turning_at<S>(t);
+    }
   }
 
   template <class N, class S>
-  [[nodiscard]] detail::TurnedRotor<S, N> turned_rotor(const S& phi) const {
-    const double A = moments_.rotor.x();
-    const double B = moments_.rotor.y();
-    if constexpr (std::is_same_v<N, detail::Absent>) {
-      return {S(A), S(A), {}, {}};
+  [[nodiscard]] detail::TurnedRotor<N> turned_rotor([[maybe_unused]] const S& phi) const {
+    if constexpr (detail::is_absent<N>) {
+      return {};
     } else {
       using std::cos, std::sin;
+      const Parameter A = moments_.rotor.x();
+      const Parameter B = moments_.rotor.y();
       const S s = sin(phi);
       const S c = cos(phi);
       const S ss = s * s;
@@ -490,108 +599,124 @@ class CardanGyro {
 
   /// The left sides of the equations of motion.
   ///
-  /// G, N, D are S or Absent: a guide that moves, a rotor that is not symmetric, angular
-  /// accelerations that are given.
-  template <class S, class G, class N, class D>
-  [[nodiscard]] auto momentum_rates(const detail::Turning<G>& guide, const detail::SinCos<G>& alpha,
-                                    const detail::SinCos<S>& beta,
-                                    const detail::TurnedRotor<S, N>& rotor,
+  /// G, V, N, D are S or Absent: a guide that turns, one that does so unsteadily, a rotor that is
+  /// not counted with the inner ring, angular accelerations that are given.
+  template <class S, class G, class V, class N, class D>
+  [[nodiscard]] auto momentum_rates(const detail::Turning<G, V>& guide,
+                                    const detail::SinCos<G>& alpha, const detail::SinCos<S>& beta,
+                                    const detail::TurnedRotor<N>& rotor,
+                                    const detail::RingMoments<Parameter>& inner,
                                     const detail::CardanMotion<S, D>& motion) const {
-    using K = detail::AbsentIfBoth<G, D>;
+    using K = detail::Total<G, D>;
+    using E = detail::Total<V, D>;
     const auto& [ux, uy, uz] = guide.u;
     const auto& [vx, vy, vz] = guide.du;
     const auto& [sa, ca] = alpha;
     const auto& [sb, cb] = beta;
     const auto& [P, Q, R, W] = rotor;
     const auto& [da, db, df, dda, ddb] = motion;
-    const auto& J_2 = moments_.inner_ring;
     const auto& J_3 = moments_.outer_ring;
 
-    // Absolute angular velocities of outer (3) and inner ring (2) on their own axes, and rates.
+    // Absolute angular velocities of outer (3) and inner ring (2) on their own axes, and rates;
+    // fx and fz without what beta' does to dx2 and dz2.
     const S x3 = da + ux;
     const G y3 = uy * ca + uz * sa;
     const G z3 = uz * ca - uy * sa;
-    const K dx3 = dda + vx;
-    const G dy3 = vy * ca + vz * sa + da * z3;
-    const G dz3 = vz * ca - vy * sa - da * y3;
+    const E dx3 = dda + vx;
+    const G dy3 = da * z3 + V(vy * ca + vz * sa);
+    const G dz3 = V(vz * ca - vy * sa) - da * y3;
     const S x2 = x3 * cb - z3 * sb;
     const S y2 = y3 + db;
     const S z2 = x3 * sb + z3 * cb;
-    const S dx2 = dx3 * cb - dz3 * sb - db * z2;
+    const K fx = dx3 * cb - dz3 * sb;
+    const K fz = dx3 * sb + dz3 * cb;
     const K dy2 = dy3 + ddb;
-    const S dz2 = dx3 * sb + dz3 * cb + db * x2;
+    const S dz2 = fz + db * x2;
 
-    const S L_a = P * x2 + R * y2;
-    const S L_b = Q * y2 + R * x2;
-    const S L_c = moments_.rotor.z() * S(z2 + df);
-    detail::CardanRates<S, K> k;
-    k.outer_a = J_3.x() * dx3 + (J_3.z() - J_3.y()) * (y3 * z3);
-    k.outer_b = J_3.y() * dy3 + (J_3.x() - J_3.z()) * (z3 * x3);
-    k.outer_c = J_3.z() * dz3 + (J_3.y() - J_3.x()) * (x3 * y3);
-    k.inner_a = J_2.x() * dx2 + (J_2.z() - J_2.y()) * S(y2 * z2);
-    k.inner_b = J_2.y() * dy2 + (J_2.x() - J_2.z()) * S(z2 * x2);
-    k.inner_c = J_2.z() * dz2 + (J_2.y() - J_2.x()) * S(x2 * y2);
-    k.rotor_a = P * dx2 + R * dy2 + df * (W * y2 - 2.0 * (R * x2)) + (y2 * L_c - z2 * L_b);
-    k.rotor_b = Q * dy2 + R * dx2 + df * (W * x2 + 2.0 * (R * y2)) + (z2 * L_a - x2 * L_c);
+    // A symmetric rotor, counted with the ring, is left with the momentum of its spin: all of it,
+    // or, with C in the ring, that against the ring.
+    constexpr bool counted = detail::is_absent<N>;
+    using Spin = std::conditional_t<counted, S, detail::Absent>;
+    const S L_c = moments_.rotor.z() * S(counted && regulated ? df : S(z2 + df));
+    const Spin H = detail::kept<Spin>(L_c);
+    detail::CardanRates<S, K, N> k;
+    k.outer_a = J_3.x() * dx3 + outer_[0] * G(y3 * z3);
+    k.outer_b = J_3.y() * dy3 + outer_[1] * G(z3 * x3);
+    k.outer_c = J_3.z() * dz3 + outer_[2] * G(x3 * y3);
+    k.inner_a = inner.a * K(fx + y3 * z2) + y2 * S(inner.c_less_ab * z2 + H);
+    k.inner_b = inner.b * dy2 + x2 * S(inner.a_less_c * z2 - H);
+    k.inner_c = inner.c * K(fz - y3 * x2) + inner.bc_less_a * S(x2 * y2);
+    if constexpr (!counted) {
+      const S dx2 = fx - db * z2;
+      const S L_a = P * x2 + R * y2;
+      const S L_b = Q * y2 + R * x2;
+      k.rotor_a = P * dx2 + R * dy2 + df * (W * y2 - 2.0 * (R * x2)) + (y2 * L_c - z2 * L_b);
+      k.rotor_b = Q * dy2 + R * dx2 + df * (W * x2 + 2.0 * (R * y2)) + (z2 * L_a - x2 * L_c);
+      k.twist = R * S((x2 - y2) * (x2 + y2)) - W * S(x2 * y2);
+    }
     k.dz_2 = dz2;
-    k.twist = S(0) + (R * S((x2 - y2) * (x2 + y2)) - W * S(x2 * y2));
     return k;
   }
 
-  /// N is S, or Absent if the rotor is symmetric.
-  template <class N, class S>
+  /// N is S, or Absent if the rotor is symmetric; Reference is Absent where the bearings have none.
+  template <class N, class Reference, class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
-    using G = std::conditional_t<detail::is_resting<M>, detail::Absent, S>;
-    constexpr bool round = std::is_same_v<N, detail::Absent>;
-    const double A_1 = moments_.rotor.x();
-    const double B_1 = moments_.rotor.y();
-    const double C_1 = moments_.rotor.z();
-    const double A_2 = moments_.inner_ring.x();
-    const double B_2 = moments_.inner_ring.y();
-    const double A_3 = moments_.outer_ring.x();
+    constexpr bool round = detail::is_absent<N>;
+    const Parameter A_1 = moments_.rotor.x();
+    const Parameter B_1 = moments_.rotor.y();
+    const Parameter C_1 = moments_.rotor.z();
+    const Parameter A_3 = moments_.outer_ring.x();
+    const detail::RingMoments<Parameter>& inner = round ? counted_ring_ : bare_ring_;
 
-    detail::Turning<G> guide;
+    const auto guide = felt_turning<S>(t);
+    using G = std::decay_t<decltype(guide.u.x)>;
+    using V = std::decay_t<decltype(guide.du.x)>;
     detail::SinCos<G> alpha;
-    if constexpr (!detail::is_resting<M>) {
-      guide = turning_at<S>(t);
-      alpha = detail::sin_cos(bearings_.outer.reference, y[0]);
+    if constexpr (!detail::is_absent<G>) {
+      alpha = detail::sin_cos(detail::kept<Reference>(bearings_.outer.reference), y[0]);
     }
-    const detail::SinCos<S> beta = detail::sin_cos(bearings_.inner.reference, y[1]);
+    const detail::SinCos<S> beta =
+        detail::sin_cos(detail::kept<Reference>(bearings_.inner.reference), y[1]);
     const auto& [sb, cb] = beta;
-    const detail::TurnedRotor<S, N> rotor = turned_rotor<N>(y[2]);
+    const detail::TurnedRotor<N> rotor = turned_rotor<N>(y[2]);
     const auto& [P, Q, R, W] = rotor;
-    const auto k =
-        momentum_rates<S, G, N, detail::Absent>(guide, alpha, beta, rotor, {y[3], y[4], y[5]});
+    const auto k = momentum_rates<S, G, V, N, detail::Absent>(guide, alpha, beta, rotor, inner,
+                                                              {y[3], y[4], y[5]});
 
     // The rotor's torque about C stands in for C_1 (dz_2 + phi''), or phi'' = 0 does.
-    S on_rotor;
-    if constexpr (regulated) {
-      on_rotor = C_1 * k.dz_2 + k.twist;
-    } else {
-      on_rotor = spin_torque<S>(t, y[5]);
-    }
+    const auto on_rotor = [&] {
+      if constexpr (!regulated) {
+        return spin_torque<S>(t, y[5]);
+      } else if constexpr (round) {
+        return detail::Absent{};
+      } else {
+        return S(C_1 * k.dz_2 + k.twist);
+      }
+    }();
     const S left_a = resistance(bearings_.outer, y[0], y[3]) +
-                     (cb * S(k.rotor_a + k.inner_a) + sb * S(on_rotor + k.inner_c) + k.outer_a);
-    const S left_b = resistance(bearings_.inner, y[1], y[4]) + (k.rotor_b + k.inner_b);
-    const S across = A_3 + carried() * S(sb * sb);
+                     S(S(cb * S(k.rotor_a + k.inner_a) + sb * S(on_rotor + k.inner_c)) + k.outer_a);
+    const S left_b = resistance(bearings_.inner, y[1], y[4]) + S(k.rotor_b + k.inner_b);
+    const S across = A_3 + carried_ * S(sb * sb);
     const S cc = cb * cb;
-    const S M_bb = B_2 + Q;
-    const S M_aa = across + cc * S(A_2 + P);
+    using detail::any;  // lanes of a pack stop together
     S dda;
     S ddb;
     if constexpr (round) {
-      if (M_aa <= singular_) stop(y[1]);
+      const S M_aa = across + cc * inner.a;
+      if (any(M_aa <= singular_)) stop(y[1]);
       dda = -left_a / M_aa;
-      ddb = -left_b / M_bb;
+      ddb = -left_b / inner.b;
     } else {
-      const S det = across * M_bb + cc * S(A_2 * M_bb + B_2 * P + A_1 * B_1);
-      if (det <= singular_) stop(y[1]);
+      const S M_aa = across + cc * S(inner.a + P);
+      const S M_bb = inner.b + Q;
+      const S det = across * M_bb + cc * S(inner.a * M_bb + inner.b * P + A_1 * B_1);
+      if (any(det <= singular_)) stop(y[1]);
       const S M_ab = R * cb;
       dda = (M_ab * left_b - M_bb * left_a) / det;
       ddb = (M_ab * left_a - M_aa * left_b) / det;
     }
     S ddf(0);
-    if constexpr (!regulated) ddf = (on_rotor - k.twist) / C_1 - k.dz_2 - sb * dda;
+    if constexpr (!regulated) ddf = (on_rotor - k.twist) / C_1 - S(k.dz_2 + sb * dda);
     Eigen::Matrix<S, 6, 1> dy;
     dy[0] = y[3];
     dy[1] = y[4];
@@ -600,6 +725,14 @@ class CardanGyro {
     dy[4] = ddb;
     dy[5] = ddf;
     return dy;
+  }
+
+  /// Out of line, so that the plain ones are not.
+  template <class S>
+  [[nodiscard]] EIGEN_DONT_INLINE Eigen::Matrix<S, 6, 1> less_plain_rates(
+      const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
+    if (symmetric_) return rates_of<detail::Absent, Parameter>(t, y);
+    return rates_of<S, Parameter>(t, y);
   }
 
   /// How small the determinant (of a symmetric rotor: its factor M_aa) counts as 0. It has no error
@@ -614,31 +747,43 @@ class CardanGyro {
   }
 
   /// What turns with the inner ring about C.
-  [[nodiscard]] double carried() const {
+  [[nodiscard]] Parameter carried() const {
     if constexpr (regulated) return moments_.inner_ring.z() + moments_.rotor.z();
     return moments_.inner_ring.z();
   }
 
   template <class S>
-  [[noreturn]] void stop(const S& beta) const {
+  [[noreturn]] EIGEN_DONT_INLINE void stop(const S& beta) const {
+    using detail::any;
     std::ostringstream text;
     text.precision(17);
     text << "Cardan gyro: at beta = "
-         << bearings_.inner.reference + static_cast<double>(detail::number_in(beta))
+         << detail::number_in(bearings_.inner.reference) +
+                static_cast<double>(detail::number_in(beta))
          << " rad the mass matrix is singular: ";
-    const bool light = moments_.outer_ring.x() == 0 && moments_.inner_ring.z() == 0 && !regulated;
+    const bool light = any(moments_.outer_ring.x() == Parameter(0)) &&
+                       any(moments_.inner_ring.z() == Parameter(0)) && !regulated;
     text << (light ? "nothing resists the rotation alpha of the outer ring (A_3 + C_2 sin^2 beta = "
                      "0 and cos beta = 0: gimbal lock of rings without mass)"
                    : "nothing resists the rotation beta of the inner ring (B_2 + Q = 0)");
     throw ComputationFailed(text.str());
   }
 
-  CardanMoments moments_;
-  CardanBearings bearings_;
+  BasicCardanMoments<Parameter> moments_;
+  BasicCardanBearings<Parameter> bearings_;
   M guide_;
   [[no_unique_address]] Rotor rotor_;
   bool symmetric_;
-  double singular_ = singular();
+  bool plain_;  ///< symmetric, and no reference of a bearing but 0
+  Parameter carried_ = carried();
+  detail::RingMoments<Parameter> bare_ring_{moments_.inner_ring, Parameter(0), Parameter(0)};
+  detail::RingMoments<Parameter> counted_ring_{moments_.inner_ring, moments_.rotor.x(),
+                                               regulated ? moments_.rotor.z() : Parameter(0)};
+  Vector3<Parameter> outer_{moments_.outer_ring.z() - moments_.outer_ring.y(),
+                            moments_.outer_ring.x() - moments_.outer_ring.z(),
+                            moments_.outer_ring.y() - moments_.outer_ring.x()};
+  Parameter singular_;
+  detail::SteadyRate<M> steady_ = detail::steady_rate(guide_);
 };
 
 }  // namespace kreisel

@@ -13,6 +13,8 @@ namespace kreisel {
 /// in it: that is the guide's motion. The field's gradient over the body is left out (see
 /// OblateGravitation).
 struct EarthGravitation {
+  static constexpr bool ignores_spin = true;
+
   [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {
     const Vector3<double> centre = s.centre();
     const Vector3<double> g =

@@ -2,13 +2,20 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/structure.hpp>
+#include <dynamics/step/lanes.hpp>
+#include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 
@@ -28,6 +35,13 @@ struct TopInvariants {
   Vector3<S> momentum;  ///< Theta w + h on inertial axes: stays without weight
 };
 
+/// How an Euler top moves.
+struct EulerTopState {
+  Eigen::Quaternion<double> attitude =
+      Eigen::Quaternion<double>::Identity();                   ///< body to inertial, any norm
+  Vector3<double> angular_velocity = Vector3<double>::Zero();  ///< w, on body axes
+};
+
 /// A top held at a point of the inertial frame: Euler's free top, the heavy tops of Lagrange and of
 /// Kovalevskaya, and the gyrostat, which carries a rotor driven at constant speed against it.
 ///
@@ -41,27 +55,26 @@ struct TopInvariants {
 /// Frame  : body axes = principal axes through the held point; inertial z up
 /// Units  : kg m^2, N m, N m s, rad/s
 /// Throws : InvalidInput where no body has such moments of inertia, or one of them is 0
-class EulerTop {
+///
+/// P      : what moments and momenta are: double; or a pack, for as many tops side by side
+template <class P>
+class BasicEulerTop {
  public:
   using S = double;
   using Vector = Eigen::Matrix<S, 7, 1>;
 
-  struct State {
-    Eigen::Quaternion<S> attitude =
-        Eigen::Quaternion<S>::Identity();              ///< body to inertial, any norm
-    Vector3<S> angular_velocity = Vector3<S>::Zero();  ///< w, on body axes
-  };
+  using State = EulerTopState;
 
   /// `weight_moment` is k = m g r_s, mass times gravity times centre of mass; `rotor_momentum` is
   /// h, the rotor's inertia times its relative speed (its inertia belongs to `moments` as well).
-  explicit EulerTop(const Vector3<S>& moments, const Vector3<S>& weight_moment = Vector3<S>::Zero(),
-                    const Vector3<S>& rotor_momentum = Vector3<S>::Zero())
+  explicit BasicEulerTop(const Vector3<S>& moments,
+                         const Vector3<S>& weight_moment = Vector3<S>::Zero(),
+                         const Vector3<S>& rotor_momentum = Vector3<S>::Zero())
       : moments_(moments),
         weight_moment_(weight_moment),
         rotor_momentum_(rotor_momentum),
-        heavy_(!weight_moment.isZero(0)),
-        has_rotor_(!rotor_momentum.isZero(0)),
-        inverse_(moments.cwiseInverse()) {
+        load_(load(!weight_moment.isZero(0), !rotor_momentum.isZero(0))),
+        tensor_({moments.x(), moments.y(), moments.z()}) {
     check(Inertia<S>{0, Vector3<S>::Zero(), {moments.x(), moments.y(), moments.z()}},
           Mass::zero_allowed, "Euler top");
     if (!(moments.minCoeff() > 0)) {
@@ -73,32 +86,50 @@ class EulerTop {
         !(rotor_momentum - rotor_momentum).isZero(0)) {
       throw InvalidInput("Euler top: weight moment or rotor momentum is not finite");
     }
-    for (int i = 0; i < 3; ++i) {
-      inverse_rest_[i] = -std::fma(moments[i], inverse_[i], S(-1)) * inverse_[i];
-    }
   }
 
-  [[nodiscard]] const Vector3<S>& moments() const { return moments_; }
-  [[nodiscard]] const Vector3<S>& weight_moment() const { return weight_moment_; }
-  [[nodiscard]] const Vector3<S>& rotor_momentum() const { return rotor_momentum_; }
+  /// Several tops, one a lane of N.
+  template <class N>
+  [[nodiscard]] static std::optional<BasicEulerTop<N>> side_by_side(
+      const std::array<const BasicEulerTop*, std::size_t(N::lanes)>& tops) {
+    return BasicEulerTop<N>(tops);
+  }
 
-  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; w).
-  [[nodiscard]] Vector rates(const S& /*t*/, const Vector& y) const {
-    const auto [q, w] = from_vector(y);
-    // Differences of moments come first: exact where two of them agree, so that a symmetric top
-    // keeps its spin to the last bit.
-    const S A = moments_.x(), B = moments_.y(), C = moments_.z();
-    Vector3<S> torque((B - C) * w.y() * w.z(), (C - A) * w.z() * w.x(), (A - B) * w.x() * w.y());
-    if (heavy_) torque -= weight_moment_.cross(vertical(q));
-    if (has_rotor_) torque += rotor_momentum_.cross(w);
-    const Eigen::Vector4d dq = attitude_rate(q, w);
-    const auto turn = [&](int i) { return torque[i] * inverse_[i] + torque[i] * inverse_rest_[i]; };
-    return Vector(dq[0], dq[1], dq[2], dq[3], turn(0), turn(1), turn(2));
+  [[nodiscard]] const Vector3<P>& moments() const { return moments_; }
+  [[nodiscard]] const Vector3<P>& weight_moment() const { return weight_moment_; }
+  [[nodiscard]] const Vector3<P>& rotor_momentum() const { return rotor_momentum_; }
+
+  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; w), for double and what
+  /// calculates like it: dual numbers.
+  template <class N>
+  [[nodiscard]] Eigen::Matrix<N, 7, 1> rates(const std::type_identity_t<N>& /*t*/,
+                                             const Eigen::Matrix<N, 7, 1>& y) const {
+    const Eigen::Quaternion<N> q(y[3], y[0], y[1], y[2]);
+    const Vector3<N> w(y[4], y[5], y[6]);
+    detail::Components<N> torque = tensor_.gyroscopic_torque(detail::components(w));
+    if (load_ != Load::none) {
+      if (load_ != Load::weight) {
+        torque = torque + cross(detail::components(rotor_momentum_), detail::components(w));
+      }
+      if (load_ != Load::rotor) torque = torque + torque_of_weight(q);
+    }
+    const detail::Components<N> dw = tensor_.solve(torque);
+    const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, w);
+    return Eigen::Matrix<N, 7, 1>(dq[0], dq[1], dq[2], dq[3], dw.x, dw.y, dw.z);
+  }
+  [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
+
+  /// -k x gamma, what the weight does about the held point, on body axes.
+  ///
+  /// Units  : N m
+  template <class N>
+  [[nodiscard]] Vector3<N> weight_torque(const Eigen::Quaternion<N>& q) const {
+    return detail::vector<N>(torque_of_weight(q));
   }
 
   [[nodiscard]] TopInvariants<S> invariants(const State& state) const {
     const auto& [q, w] = state;
-    const Vector3<S> gamma = vertical(q);
+    const Vector3<S> gamma = detail::vector<S>(vertical(q));
     const Vector3<S> L = moments_.cwiseProduct(w) + rotor_momentum_;
     using Complex = std::complex<S>;
     const Complex z(w.x(), w.y());
@@ -130,6 +161,10 @@ class EulerTop {
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 2> blocks = {4, 3};
 
+  /// For linear equations: where a quaternion begins, and what the components are.
+  [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
+  static constexpr std::array names = {"q_x", "q_y", "q_z", "q_w", "w_x", "w_y", "w_z"};
+
   [[nodiscard]] static Vector to_vector(const State& state) {
     return (Vector() << state.attitude.coeffs(), state.angular_velocity).finished();
   }
@@ -139,21 +174,56 @@ class EulerTop {
   }
 
  private:
-  /// Inertial z on body axes, the last row of the rotation.
-  [[nodiscard]] static Vector3<S> vertical(const Eigen::Quaternion<S>& q) {
-    const S x = q.x(), y = q.y(), z = q.z(), w = q.w();
-    const S scale = 1 / (x * x + y * y + z * z + w * w);
-    return {2 * scale * (x * z - w * y), 2 * scale * (y * z + w * x),
-            scale * (w * w + z * z - x * x - y * y)};
+  enum class Load : char { none, weight, rotor, both };
+
+  [[nodiscard]] static constexpr Load load(bool heavy, bool has_rotor) {
+    if (heavy) return has_rotor ? Load::both : Load::weight;
+    return has_rotor ? Load::rotor : Load::none;
   }
 
-  Vector3<S> moments_;
-  Vector3<S> weight_moment_;
-  Vector3<S> rotor_momentum_;
-  bool heavy_;
-  bool has_rotor_;
-  Vector3<S> inverse_;
-  Vector3<S> inverse_rest_;  ///< what the rounded inverses lack: else a long run would show it
+  template <class>
+  friend class BasicEulerTop;
+
+  using One = BasicEulerTop<S>;
+
+  explicit BasicEulerTop(const std::array<const One*, std::size_t(detail::lanes_of<P>)>& tops)
+      : moments_(gathered(tops, &One::moments_)),
+        weight_moment_(gathered(tops, &One::weight_moment_)),
+        rotor_momentum_(gathered(tops, &One::rotor_momentum_)),
+        load_(load(any_bears(tops, &One::weight_moment_), any_bears(tops, &One::rotor_momentum_))),
+        tensor_({moments_.x(), moments_.y(), moments_.z()}) {}
+
+  template <class Tops>
+  [[nodiscard]] static Vector3<P> gathered(const Tops& tops, Vector3<S> One::*member) {
+    return detail::gathered<P>(tops,
+                               [&](const auto& top) -> const Vector3<S>& { return top.*member; });
+  }
+
+  template <class Tops>
+  [[nodiscard]] static bool any_bears(const Tops& tops, Vector3<S> One::*member) {
+    return std::any_of(tops.begin(), tops.end(),
+                       [&](const One* top) { return !(top->*member).isZero(0); });
+  }
+
+  /// Inertial z on body axes, the last row of the rotation.
+  template <class N>
+  [[nodiscard]] static detail::Components<N> vertical(const Eigen::Quaternion<N>& q) {
+    const detail::Turn<N> R = detail::Turn<N>::from(q);
+    return {R.zx, R.zy, R.zz};
+  }
+
+  template <class N>
+  [[nodiscard]] detail::Components<N> torque_of_weight(const Eigen::Quaternion<N>& q) const {
+    return cross(vertical(q), detail::components(weight_moment_));
+  }
+
+  Vector3<P> moments_;
+  Vector3<P> weight_moment_;
+  Vector3<P> rotor_momentum_;
+  Load load_;
+  detail::PrincipalTensor<P> tensor_;
 };
+
+using EulerTop = BasicEulerTop<double>;
 
 }  // namespace kreisel

@@ -4,9 +4,16 @@
 
 #include <array>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
+#include <dynamics/scene/dual_numbers.hpp>
+#include <dynamics/scene/felt_motion.hpp>
+#include <dynamics/scene/jacobi_integral.hpp>
 #include <dynamics/scene/read_out.hpp>
+#include <dynamics/scene/structure.hpp>
+#include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 
 namespace kreisel {
@@ -38,31 +45,91 @@ class FreeBody {
       : inertia_(inertia),
         guide_(std::move(guide)),
         loads_(std::move(loads)...),
-        factor_((check(inertia.value, Mass::positive, "free body"), inertia.value)) {}
+        centre_(detail::without<FirstMoment, Loads...>(
+            detail::components(checked_centre(inertia.value)))),
+        tensor_(detail::tensor_of<Loads...>(about_centre(inertia.value), "free body")),
+        felt_(std::apply(
+            [this](const Loads&... all) {
+              return Felt(detail::NoVector{}, guide_, "free body", all...);
+            },
+            loads_)) {
+    detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
+                                                   "free body, first moment");
+  }
 
   [[nodiscard]] Situation<S> situation(const S& t, const State& state) const {
-    return {
-        t, {Pose<S>::from(state.attitude, state.position)}, state.velocity, guide_(t), inertia_};
+    Situation<S> s = situation_in<S>(t, Pose<S>::from(state.attitude).rotation, state.position,
+                                     state.velocity.value);
+    s.guide = detail::guide_at<S>(guide_, t);
+    return s;
   }
 
-  /// *V', from  T *V' = P - T (oF + [F V']) - [V (T V)].
-  [[nodiscard]] Rate<Body, Velocity<Body, Guide, Body, S>> acceleration(
-      const Situation<S>& s) const {
-    const Force<Body, S> P =
-        std::apply([&s](const auto&... loads) { return detail::total_load(s, loads...); }, loads_);
-    return {factor_.solve((P - detail::without_acceleration(s)).value)};
+  /// *V', from what moves the centre of mass c and what turns the body about it, w = u' + R^t u:
+  ///
+  ///   Theta_c .w = M - c x P - w x (Theta_c w),      *u' = .w - R^t ou + u' x R^t u
+  ///   *v' = P/m + R^t (g' - ou x r - u x (u x r)) - .w x c - w x (w x c) - (2 R^t u + u') x v'
+  ///
+  /// with g' what a body at rest in the guide's origin feels of uniform gravity, r the place of O'
+  /// in the guide, P and M all other loads.
+  template <class N>
+  [[nodiscard]] Rate<Body, Velocity<Body, Guide, Body, N>> acceleration(
+      const Situation<N>& s) const {
+    return std::apply(
+        [&](const Loads&... all) -> Rate<Body, Velocity<Body, Guide, Body, N>> {
+          return {acceleration_of(detail::Turn<N>::from(s.X.value.rotation), s.X.value.translation,
+                                  s.V_rel.value, felt_.in(s.guide, all...), force(s))
+                      .motor()};
+        },
+        loads_);
   }
 
-  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; position; u'; v').
-  [[nodiscard]] Vector rates(const S& t, const Vector& y) const {
-    const State state = from_vector(y);
-    const Situation<S> s = situation(t, state);
-    const auto& [u, v] = state.velocity.value;
-    const Motor<S> dV = acceleration(s).value;
-    return (Vector() << attitude_rate(state.attitude, u), s.X.value.rotation * v, dV.resultant,
-            dV.moment)
-        .finished();
+  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; position; u'; v'), for
+  /// double and, if the loads take them, dual numbers (detail::guide_at says what a guide knows of
+  /// them).
+  template <class N>
+  requires(Load<Loads, N>&&...)
+      [[nodiscard]] Eigen::Matrix<N, 13, 1> rates(const std::type_identity_t<N>& t,
+                                                  const Eigen::Matrix<N, 13, 1>& y) const {
+    const Eigen::Quaternion<N> q(y[3], y[0], y[1], y[2]);
+    const Vector3<N> r(y[4], y[5], y[6]);
+    const Vector3<N> u(y[7], y[8], y[9]);
+    const Vector3<N> v(y[10], y[11], y[12]);
+    const auto turn = detail::Turn<N>::from(q);
+    const Acceleration<N> dV = std::apply(
+        [&](const Loads&... all) {
+          if constexpr (!has_forces) {
+            return acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), NoForce{});
+          } else {
+            Situation<N> s = situation_in<N>(t, turn.matrix(), r, {u, v});
+            if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
+            if constexpr (guide_is_read && !SteadyGuide<M>) {
+              return acceleration_of(turn, r, {u, v}, felt_.in(s.guide, all...), force(s));
+            } else {
+              return acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), force(s));
+            }
+          }
+        },
+        loads_);
+    const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
+    const auto dr = turned(turn, detail::components(v));
+    // One by one: Eigen's list of many would fill blocks.
+    Eigen::Matrix<N, 13, 1> dy;
+    dy[0] = dq[0];
+    dy[1] = dq[1];
+    dy[2] = dq[2];
+    dy[3] = dq[3];
+    dy[4] = dr.x;
+    dy[5] = dr.y;
+    dy[6] = dr.z;
+    dy[7] = dV.angular.x;
+    dy[8] = dV.angular.y;
+    dy[9] = dV.angular.z;
+    dy[10] = dV.linear.x;
+    dy[11] = dV.linear.y;
+    dy[12] = dV.linear.z;
+    return dy;
   }
+  [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
   [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {
     const Situation<S> s = situation(t, state);
@@ -71,8 +138,24 @@ class FreeBody {
         loads_);
   }
 
+  /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
+  /// at rest), if no load does work besides its potential.
+  [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
+                                                                 const State& state) const {
+    return std::apply(
+        [&](const Loads&... all) {
+          return detail::kept_energy(guide_, situation(t, state), all...);
+        },
+        loads_);
+  }
+
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 4> blocks = {4, 3, 3, 3};
+
+  /// For linear equations: where a quaternion begins, and what the components are.
+  [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
+  static constexpr std::array names = {"q_x",  "q_y",  "q_z",  "q_w",  "x",    "y",   "z",
+                                       "u'_x", "u'_y", "u'_z", "v'_x", "v'_y", "v'_z"};
 
   [[nodiscard]] static Vector to_vector(const State& state) {
     const auto& [u, v] = state.velocity.value;
@@ -86,10 +169,88 @@ class FreeBody {
   }
 
  private:
+  /// All but the guide's motion.
+  template <class N>
+  [[nodiscard]] Situation<N> situation_in(const N& t, const Matrix3<N>& attitude,
+                                          const Vector3<N>& position, const Motor<N>& V) const {
+    return {t, {{attitude, position}}, {V}, {}, {detail::lifted<N>(inertia_.value)}};
+  }
+
+  template <class P, class T>
+  struct Wrench {
+    P force;
+    T torque;
+  };
+  using NoForce = Wrench<detail::NoVector, detail::NoVector>;
+
+  static constexpr bool has_forces = (detail::is_force<Loads> || ...);
+  static constexpr bool guide_is_read = (detail::reads_guide<Loads>() || ...);
+
+  /// Of the loads that are not uniform gravity.
+  template <class N>
+  [[nodiscard]] auto force(const Situation<N>& s) const {
+    if constexpr (has_forces) {
+      return std::apply(
+          [&s](const Loads&... all) {
+            const Motor<N> sum = detail::forces(s, all...).value;
+            return Wrench<detail::Components<N>, detail::Components<N>>{
+                detail::components(sum.resultant), detail::components(sum.moment)};
+          },
+          loads_);
+    } else {
+      return NoForce{};
+    }
+  }
+
+  template <class N>
+  struct Acceleration {
+    detail::Components<N> angular;
+    detail::Components<N> linear;
+
+    [[nodiscard]] Motor<N> motor() const {
+      return {detail::vector<N>(angular), detail::vector<N>(linear)};
+    }
+  };
+
+  template <class N, class U, class F>
+  [[nodiscard]] Acceleration<N> acceleration_of(const detail::Turn<N>& R,
+                                                const Vector3<N>& position, const Motor<N>& V,
+                                                const U& guide, const F& load) const {
+    const auto u_rel = detail::components(V.resultant);
+    const auto v_rel = detail::components(V.moment);
+    const auto r = detail::components(position);
+    const auto u = turned_back(R, guide.u);
+    const auto w = u_rel + u;
+    const auto dw =
+        tensor_.solve(tensor_.gyroscopic_torque(w) + load.torque - cross(centre_, load.force));
+    const auto g = turned_back(
+        R, guide.g - detail::carried_acceleration(guide.u, guide.du, detail::NoVector{}, r));
+    const auto du = dw - turned_back(R, guide.du) + cross(u_rel, u);
+    const auto dv = load.force / inertia_.value.mass + g - cross(dw, centre_) -
+                    cross(w, cross(w, centre_)) - cross(w + u, v_rel);
+    return {du, dv};
+  }
+
+  [[nodiscard]] static Vector3<S> checked_centre(const Inertia<S>& T) {
+    check(T, Mass::positive, "free body");
+    [[maybe_unused]] const FactoredInertia<S> refuses_singular_ones(T);
+    return T.first_moment / T.mass;
+  }
+
+  [[nodiscard]] static Symmetric3<S> about_centre(const Inertia<S>& T) {
+    const Vector3<S> c = T.first_moment / T.mass;
+    return T.tensor - offset_product(c, Vector3<S>(T.first_moment / S(2)));
+  }
+
+  using CentreKept = detail::Kept<FirstMoment, S, Loads...>;
+  using Felt = detail::FeltMotion<true, detail::NoVector, M, Loads...>;
+
   InertiaTensor<Body, S> inertia_;
   M guide_;
   std::tuple<Loads...> loads_;
-  FactoredInertia<S> factor_;
+  CentreKept centre_;
+  detail::TensorOf<Loads...> tensor_;
+  Felt felt_;
 };
 
 }  // namespace kreisel

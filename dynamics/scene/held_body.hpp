@@ -1,15 +1,21 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <array>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
+#include <dynamics/scene/dual_numbers.hpp>
+#include <dynamics/scene/felt_motion.hpp>
+#include <dynamics/scene/jacobi_integral.hpp>
 #include <dynamics/scene/read_out.hpp>
+#include <dynamics/scene/structure.hpp>
+#include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 
@@ -49,8 +55,17 @@ class HeldBody {
         point_(point),
         guide_(std::move(guide)),
         loads_(std::move(loads)...),
-        tensor_(inertia.value.tensor.matrix()) {
+        first_moment_(
+            detail::without<FirstMoment, Loads...>(detail::components(inertia.value.first_moment))),
+        tensor_(detail::tensor_of<Loads...>(inertia.value.tensor, "held body")),
+        felt_(std::apply(
+            [this](const Loads&... all) {
+              return Felt(detail::components(point_), guide_, "held body", all...);
+            },
+            loads_)) {
     check(inertia.value, Mass::positive, "held body");
+    detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
+                                                   "held body, first moment");
     if (!(point - point).isZero(0)) throw InvalidInput("held body: the point is not finite");
     const Eigen::SelfAdjointEigenSolver<Matrix3<S>> eigen(inertia.value.tensor.matrix(),
                                                           Eigen::EigenvaluesOnly);
@@ -64,28 +79,59 @@ class HeldBody {
   }
 
   [[nodiscard]] Situation<S> situation(const S& t, const State& state) const {
-    return {t,
-            {Pose<S>::from(state.attitude, point_)},
-            {{state.angular_velocity, Vector3<S>::Zero()}},
-            guide_(t),
-            inertia_};
+    Situation<S> s =
+        situation_in<S>(t, Pose<S>::from(state.attitude).rotation, state.angular_velocity);
+    s.guide = detail::guide_at<S>(guide_, t);
+    return s;
   }
 
-  /// *u', the rate of the angular velocity on body axes.
+  /// *u', the rate of the angular velocity on body axes:
   ///
-  ///   Theta *u' = M - (moment of  T (oF + [F V']) + [V (T V)]  at O')
-  [[nodiscard]] Vector3<S> acceleration(const Situation<S>& s) const {
-    const Force<Body, S> P = load(s);
-    return tensor_.solve(P.value.moment - detail::without_acceleration(s).value.moment);
+  ///   Theta .w = M + s x R^t g' - w x (Theta w),   w = u' + R^t u,   *u' = .w - R^t ou + u' x R^t u
+  ///
+  /// with g' what a body at rest in the guide feels at O' of uniform gravity, and M all other loads.
+  template <class N>
+  [[nodiscard]] Vector3<N> acceleration(const Situation<N>& s) const {
+    const auto turn = detail::Turn<N>::from(s.X.value.rotation);
+    const auto u = detail::components(s.V_rel.value.resultant);
+    return std::apply(
+        [&](const Loads&... all) -> Vector3<N> {
+          return detail::vector<N>(acceleration_of(turn, u, felt_.in(s.guide, all...), torque(s)));
+        },
+        loads_);
   }
 
-  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; u').
-  [[nodiscard]] Vector rates(const S& t, const Vector& y) const {
-    const State state = from_vector(y);
-    const Eigen::Vector4d dq = attitude_rate(state.attitude, state.angular_velocity);
-    const Vector3<S> du = acceleration(situation(t, state));
-    return Vector(dq[0], dq[1], dq[2], dq[3], du[0], du[1], du[2]);
+  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; u'), for double and, if
+  /// the loads take them, dual numbers (detail::guide_at says what a guide knows of them).
+  template <class N>
+  requires(Load<Loads, N>&&...)
+      [[nodiscard]] Eigen::Matrix<N, 7, 1> rates(const std::type_identity_t<N>& t,
+                                                 const Eigen::Matrix<N, 7, 1>& y) const {
+    const Eigen::Quaternion<N> q(y[3], y[0], y[1], y[2]);
+    const Vector3<N> u(y[4], y[5], y[6]);
+    const auto turn = detail::Turn<N>::from(q);
+    const auto du = std::apply(
+        [&](const Loads&... all) {
+          if constexpr (!has_forces) {
+            return acceleration_of(turn, detail::components(u), felt_.at(guide_, N(t), all...),
+                                   detail::NoVector{});
+          } else {
+            Situation<N> s = situation_in<N>(t, turn.matrix(), u);
+            if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
+            if constexpr (guide_is_read && !SteadyGuide<M>) {
+              return acceleration_of(turn, detail::components(u), felt_.in(s.guide, all...),
+                                     torque(s));
+            } else {
+              return acceleration_of(turn, detail::components(u), felt_.at(guide_, N(t), all...),
+                                     torque(s));
+            }
+          }
+        },
+        loads_);
+    const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
+    return Eigen::Matrix<N, 7, 1>(dq[0], dq[1], dq[2], dq[3], du.x, du.y, du.z);
   }
+  [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
   [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {
     const Situation<S> s = situation(t, state);
@@ -96,8 +142,23 @@ class HeldBody {
         loads_);
   }
 
+  /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
+  /// at rest), if no load does work besides its potential.
+  [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
+                                                                 const State& state) const {
+    return std::apply(
+        [&](const Loads&... all) {
+          return detail::kept_energy(guide_, situation(t, state), all...);
+        },
+        loads_);
+  }
+
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 2> blocks = {4, 3};
+
+  /// For linear equations: where a quaternion begins, and what the components are.
+  [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
+  static constexpr std::array names = {"q_x", "q_y", "q_z", "q_w", "u'_x", "u'_y", "u'_z"};
 
   [[nodiscard]] static Vector to_vector(const State& state) {
     return (Vector() << state.attitude.coeffs(), state.angular_velocity).finished();
@@ -108,16 +169,55 @@ class HeldBody {
   }
 
  private:
-  [[nodiscard]] Force<Body, S> load(const Situation<S>& s) const {
-    return std::apply([&s](const auto&... loads) { return detail::total_load(s, loads...); },
-                      loads_);
+  /// All but the guide's motion.
+  template <class N>
+  [[nodiscard]] Situation<N> situation_in(const N& t, const Matrix3<N>& attitude,
+                                          const Vector3<N>& u) const {
+    return {t,
+            {{attitude, point_.template cast<N>()}},
+            {{u, Vector3<N>::Zero()}},
+            {},
+            {detail::lifted<N>(inertia_.value)}};
   }
+
+  template <class N, class U, class T>
+  [[nodiscard]] detail::Components<N> acceleration_of(const detail::Turn<N>& R,
+                                                      const detail::Components<N>& u_rel,
+                                                      const U& guide, const T& torque) const {
+    const auto u = turned_back(R, guide.u);
+    const auto w = u_rel + u;
+    const auto moment =
+        tensor_.gyroscopic_torque(w) + cross(first_moment_, turned_back(R, guide.g)) + torque;
+    return tensor_.solve(moment) - turned_back(R, guide.du) + cross(u_rel, u);
+  }
+
+  static constexpr bool has_forces = (detail::is_force<Loads> || ...);
+  static constexpr bool guide_is_read = (detail::reads_guide<Loads>() || ...);
+
+  /// Of the loads that are not uniform gravity.
+  template <class N>
+  [[nodiscard]] auto torque(const Situation<N>& s) const {
+    if constexpr (has_forces) {
+      return std::apply(
+          [&s](const Loads&... all) {
+            return detail::components(detail::forces(s, all...).value.moment);
+          },
+          loads_);
+    } else {
+      return detail::NoVector{};
+    }
+  }
+
+  using FirstMomentKept = detail::Kept<FirstMoment, S, Loads...>;
+  using Felt = detail::FeltMotion<!FirstMomentKept::absent, detail::Components<S>, M, Loads...>;
 
   InertiaTensor<Body, S> inertia_;
   Vector3<S> point_;
   M guide_;
   std::tuple<Loads...> loads_;
-  Eigen::LDLT<Matrix3<S>> tensor_;
+  FirstMomentKept first_moment_;
+  detail::TensorOf<Loads...> tensor_;
+  Felt felt_;
 };
 
 }  // namespace kreisel

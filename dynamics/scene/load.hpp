@@ -49,7 +49,11 @@ struct Situation {
 
 /// What acts on a body: called with a situation it gives force and torque about the body's origin,
 /// on body axes. A user's lambda is one. A load that has a potential says so by a member
-/// potential(situation), which the read-outs add up.
+/// potential(situation), which the read-outs add up; one that does not look at Situation::guide by
+/// a static member ignores_guide = true, which spares scenes to work the guide out.
+///
+/// Those here are called with situations in any numbers: what they do is differentiated by dual
+/// ones.
 template <class L, class S = double>
 concept Load = requires(const L& load, const Situation<S>& s) {
   { load(s) } -> std::same_as<Force<Body, S>>;
@@ -74,11 +78,15 @@ inline constexpr bool are_loads = (Load<Loads> && ...);
 /// Units  : m/s^2
 template <class A, class S = double>
 struct UniformGravity {
+  static constexpr bool ignores_spin = !std::is_same_v<A, Body>;
+  static constexpr bool on_guide_axes = std::is_same_v<A, Guide>;
+
   Vector3<S> g;
 
-  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
-    const Vector3<S> g_Body = s.template on_body_axes<A>(g);
-    const Inertia<S>& T = s.inertia.value;
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+    const Vector3<N> g_Body = s.template on_body_axes<A>(g.template cast<N>());
+    const Inertia<N>& T = s.inertia.value;
     return {{T.mass * g_Body, T.first_moment.cross(g_Body)}};
   }
 
@@ -93,13 +101,17 @@ struct UniformGravity {
 /// Units  : N, N m, metre (point: body axes)
 template <class A, class S = double>
 struct ConstantLoad {
+  static constexpr bool ignores_guide = !std::is_same_v<A, Inertial>;
+
   Vector3<S> force = Vector3<S>::Zero();
   Vector3<S> torque = Vector3<S>::Zero();
   Vector3<S> point = Vector3<S>::Zero();
 
-  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
-    const Vector3<S> f = s.template on_body_axes<A>(force);
-    return {{f, s.template on_body_axes<A>(torque) + point.cross(f)}};
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+    const Vector3<N> f = s.template on_body_axes<A>(force.template cast<N>());
+    return {{f, s.template on_body_axes<A>(torque.template cast<N>()) +
+                    point.template cast<N>().cross(f)}};
   }
 };
 
@@ -108,12 +120,15 @@ struct ConstantLoad {
 /// Units  : N s/m, N m s
 template <class S = double>
 struct ViscousDrag {
+  static constexpr bool ignores_guide = true;
+
   S torque_per_rate = S(0);     ///< d
   S force_per_velocity = S(0);  ///< k, acting at the body's origin
 
-  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
-    return {
-        {-force_per_velocity * s.V_rel.value.moment, -torque_per_rate * s.V_rel.value.resultant}};
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+    return {{N(-force_per_velocity) * s.V_rel.value.moment,
+             N(-torque_per_rate) * s.V_rel.value.resultant}};
   }
 };
 
@@ -124,24 +139,30 @@ struct ViscousDrag {
 /// Throws : ComputationFailed where both ends meet and a rest length above 0 leaves no direction
 template <class S = double>
 struct Spring {
+  static constexpr bool ignores_guide = true;
+
   Vector3<S> guide_end;
   Vector3<S> body_end;
   S stiffness = S(0);
   S rest_length = S(0);
   S damping = S(0);
 
-  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
-    const Vector3<S> reach =
-        s.template on_body_axes<Guide>(s.template place<Guide>(body_end) - guide_end);
-    const S length = reach.norm();
-    if (length == S(0) && rest_length == S(0)) return {};
-    if (length == S(0))
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+    const Vector3<N> end = body_end.template cast<N>();
+    const Vector3<N> reach =
+        s.template on_body_axes<Guide>(s.template place<Guide>(end) - guide_end.template cast<N>());
+    const N length = reach.norm();
+    if (length == N(0) && rest_length == S(0)) return {};
+    if (length == N(0))
       throw ComputationFailed("Spring: both ends meet, its force has no direction");
-    const Vector3<S> along = reach / length;
-    const S pull = stiffness * (length - rest_length) + damping * along.dot(s.velocity(body_end));
-    const Vector3<S> f = -pull * along;
-    return {{f, body_end.cross(f)}};
+    const Vector3<N> along = reach / length;
+    const N pull = stiffness * (length - rest_length) + damping * along.dot(s.velocity(end));
+    const Vector3<N> f = -pull * along;
+    return {{f, end.cross(f)}};
   }
+
+  [[nodiscard]] bool keeps_energy() const { return damping == S(0); }
 
   [[nodiscard]] S potential(const Situation<S>& s) const {
     const S stretch = (s.template place<Guide>(body_end) - guide_end).norm() - rest_length;
@@ -155,19 +176,26 @@ struct Spring {
 /// Units  : metre, N/m, N s/m, N
 template <class S = double>
 struct ElasticMount {
+  static constexpr bool ignores_guide = true;
+
   Vector3<S> guide_end;
   Vector3<S> body_end;
   Matrix3<S> stiffness = Matrix3<S>::Zero();
   Matrix3<S> damping = Matrix3<S>::Zero();
   Vector3<S> preload = Vector3<S>::Zero();  ///< on the body, on guide axes, when both ends meet
 
-  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
-    const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;
-    const Vector3<S> rate = s.X.value.rotation * s.velocity(body_end);
-    const Vector3<S> pull = stiffness * deflection + damping * rate - preload;
-    const Vector3<S> f = s.template on_body_axes<Guide>(Vector3<S>(-pull));
-    return {{f, body_end.cross(f)}};
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+    const Vector3<N> end = body_end.template cast<N>();
+    const Vector3<N> deflection = s.template place<Guide>(end) - guide_end.template cast<N>();
+    const Vector3<N> rate = s.X.value.rotation * s.velocity(end);
+    const Vector3<N> pull = stiffness.template cast<N>() * deflection +
+                            damping.template cast<N>() * rate - preload.template cast<N>();
+    const Vector3<N> f = s.template on_body_axes<Guide>(Vector3<N>(-pull));
+    return {{f, end.cross(f)}};
   }
+
+  [[nodiscard]] bool keeps_energy() const { return damping.isZero(0); }
 
   [[nodiscard]] S potential(const Situation<S>& s) const {
     const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;

@@ -18,6 +18,8 @@ namespace kreisel {
 /// Source : the potential GM/r [1 - J2 (R/r)^2 P2(s)], differentiated
 template <class S = double>
 struct OblateGravitation {
+  static constexpr bool ignores_spin = true;
+
   S parameter = S(3986004418LL) * S(100000);  ///< GM
   S radius = S(6378137);                      ///< R, equatorial
   S j2 = S(1.08262982131e-3);                 ///< 0: a sphere

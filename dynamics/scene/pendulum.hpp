@@ -8,6 +8,8 @@
 
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/structure.hpp>
+#include <motor/absent.hpp>
 #include <motor/error.hpp>
 #include <motor/motor.hpp>
 
@@ -101,6 +103,15 @@ struct PendulumGuide {
   }
 };
 
+/// A guide at rest, gravity straight down: the pendulum of the inertial frame, of which E alone is
+/// left.
+///
+/// Units  : m/s^2
+template <class S = double>
+struct RestingPendulumGuide {
+  S gravity = S(0);
+};
+
 /// The pendulum's guide that stands on the earth: uniform gravity, or on request with its gradient.
 enum class GravityGradient { left_out, taken_in };
 
@@ -135,16 +146,95 @@ struct PendulumParts {
 
 namespace detail {
 
+/// The moments of inertia that matter and the products, over a common divisor; of a body without
+/// products P is Absent.
+template <class S, class P>
+struct PendulumShape {
+  S moment;    ///< m a
+  S b_less_a;  ///< Theta_B - Theta_A
+  Components<P> phi;
+};
+
+/// PendulumTerms of which each is a number or Absent.
+template <class E, class F, class H, class K>
+struct PlaneTerms {
+  E e;
+  F f;
+  H h;
+  K k;
+
+  template <class E2, class F2, class H2, class K2>
+  friend auto operator+(const PlaneTerms& a, const PlaneTerms<E2, F2, H2, K2>& b) {
+    using Sum = PlaneTerms<Total<E, E2>, Total<F, F2>, Total<H, H2>, Total<K, K2>>;
+    return Sum{Total<E, E2>(a.e + b.e), Total<F, F2>(a.f + b.f), Total<H, H2>(a.h + b.h),
+               Total<K, K2>(a.k + b.k)};
+  }
+};
+
 /// What a field of force  G r dm  does to the body, from the four numbers of G that matter.
 ///
 /// With G = u^2 - u u^t it gives the centrifugal terms, with G the gravity gradient the tidal ones.
+template <class S, class P, class A>
+[[nodiscard]] auto gradient_terms(const PendulumShape<S, P>& body, const A& yy_less_xx, const A& xy,
+                                  const A& xz, const A& yz) {
+  using E = Product<A, P>;
+  const Components<P>& phi = body.phi;
+  const S& d = body.b_less_a;
+  return PlaneTerms<E, E, A, A>{E(xz * phi.y + yz * phi.x), E(xz * phi.x - yz * phi.y),
+                                A(A(-A(xy * d)) - E(yy_less_xx * phi.z)),
+                                A(E(E(xy * phi.z) * S(2)) - A(A(yy_less_xx * d) / S(2)))};
+}
+
+template <class S, class P, class A>
+[[nodiscard]] auto centrifugal_terms(const PendulumShape<S, P>& body, const Components<A>& u) {
+  return gradient_terms(body, A(A(u.x - u.y) * A(u.x + u.y)), A(-A(u.x * u.y)), A(-A(u.x * u.z)),
+                        A(-A(u.y * u.z)));
+}
+
+template <class S, class P, class A>
+[[nodiscard]] auto euler_terms(const PendulumShape<S, P>& body, const Components<A>& du) {
+  using E = Product<A, P>;
+  const Components<P>& phi = body.phi;
+  return PlaneTerms<E, E, Absent, Absent>{
+      E(phi.x * du.x - phi.y * du.y), E(E(-E(phi.x * du.y)) - E(phi.y * du.x)), {}, {}};
+}
+
+/// Of a gravity gradient G.
+template <class S, class P>
+[[nodiscard]] auto tidal_terms(const PendulumShape<S, P>& body, const Matrix3<S>& G) {
+  return gradient_terms(body, S(G(1, 1) - G(0, 0)), S(G(0, 1)), S(G(0, 2)), S(G(1, 2)));
+}
+
+/// 0 for what is Absent.
+template <class S, class F>
+[[nodiscard]] PendulumTerms<S> terms(const PlaneTerms<F, F, S, S>& t) {
+  return {S(S(0) + t.e), S(S(0) + t.f), t.h, t.k};
+}
 template <class S>
-[[nodiscard]] PendulumTerms<S> gradient_terms(const PendulumBody<S>& body, const S& yy_less_xx,
-                                              const S& xy, const S& xz, const S& yz) {
-  const S b_less_a = body.theta_b - body.theta_a;
-  return {xz * body.phi_b + yz * body.phi_a, xz * body.phi_a - yz * body.phi_b,
-          -(xy * b_less_a) - yy_less_xx * body.phi_c,
-          S(2) * xy * body.phi_c - yy_less_xx * b_less_a / S(2)};
+[[nodiscard]] PendulumTerms<S> terms(const PlaneTerms<S, S, Absent, Absent>& t) {
+  return {t.e, t.f, S(0), S(0)};
+}
+
+template <class S>
+[[nodiscard]] PendulumShape<S, S> shape(const PendulumBody<S>& body) {
+  return {body.mass * body.arm, body.theta_b - body.theta_a, {body.phi_a, body.phi_b, body.phi_c}};
+}
+
+/// e sin(phi) + f cos(phi) + h cos(2 phi) + k sin(2 phi), each of the four a number or Absent.
+template <class A, class E, class F, class H, class K>
+[[nodiscard]] A restoring_moment(const E& e, const F& f, const H& h, const K& twice_k,
+                                 const A& phi) {
+  using std::cos, std::sin;
+  const A s = sin(phi);
+  if constexpr (is_absent<F> && is_absent<H> && is_absent<K>) {
+    return s * e;
+  } else {
+    const A c = cos(phi);
+    const Product<A, F> across(c * f);
+    const Product<A, H> aside(A((c - s) * (c + s)) * h);
+    return A(s * A(e + Product<A, K>(c * twice_k))) +
+           Total<decltype(across), decltype(aside)>(across + aside);
+  }
 }
 
 }  // namespace detail
@@ -178,15 +268,11 @@ template <class S>
   result.tilt.e =
       g.x() > S(0) ? S(-moment * aside2 / (g_norm + g.x())) : S(moment * (g.x() - g_norm));
   result.tilt.f = -moment * g.y();
-  result.centrifugal =
-      detail::gradient_terms(body, S((u.x() - u.y()) * (u.x() + u.y())), S(-u.x() * u.y()),
-                             S(-u.x() * u.z()), S(-u.y() * u.z()));
-  result.euler.e = body.phi_a * du.x() - body.phi_b * du.y();
-  result.euler.f = -(body.phi_a * du.y()) - body.phi_b * du.x();
+  const detail::PendulumShape<S, S> shape = detail::shape(body);
+  result.centrifugal = detail::terms(detail::centrifugal_terms(shape, detail::components(u)));
+  result.euler = detail::terms(detail::euler_terms(shape, detail::components(du)));
   if (guide.gravity_gradient) {
-    const Matrix3<S>& G = *guide.gravity_gradient;
-    result.gravity_gradient =
-        detail::gradient_terms(body, S(G(1, 1) - G(0, 0)), G(0, 1), G(0, 2), G(1, 2));
+    result.gravity_gradient = detail::terms(detail::tidal_terms(shape, *guide.gravity_gradient));
   }
   return result;
 }
@@ -209,12 +295,7 @@ struct PendulumCoefficients {
   /// Error : <= 4u (|E sin phi| + |F cos phi| + |H cos 2phi| + |K sin 2phi|)
   template <class A>
   [[nodiscard]] A moment(const A& phi) const {
-    using std::cos, std::sin;
-    const A s = sin(phi);
-    const A c = cos(phi);
-    const A c2 = (c - s) * (c + s);
-    const A s2 = s * c * S(2);
-    return s * e() + c * f + c2 * h + s2 * k;
+    return detail::restoring_moment(e(), f, h, S(2 * k), phi);
   }
 
   /// d moment / d phi.
@@ -266,50 +347,124 @@ template <class S, class A>
 
 struct NoDamping {};
 
+namespace detail {
+
+template <class Motion>
+inline constexpr bool is_steady_pendulum_guide = false;
+template <class S>
+inline constexpr bool is_steady_pendulum_guide<PendulumGuide<S>> = true;
+template <class S>
+inline constexpr bool is_steady_pendulum_guide<RestingPendulumGuide<S>> = true;
+
+/// E, F, H, 2K and ou_z over Theta_C: numbers, or Absent.
+template <class E, class F, class H, class K, class D>
+struct PendulumEquation {
+  E e;
+  F f;
+  H h;
+  K twice_k;
+  D drive;
+};
+
+template <class S, class P>
+[[nodiscard]] auto pendulum_equation(const PendulumShape<S, P>& over_theta,
+                                     const PendulumGuide<S>& guide) {
+  const Vector3<S>& g = guide.effective_gravity;
+  const auto turning = centrifugal_terms(over_theta, components(guide.angular_velocity)) +
+                       euler_terms(over_theta, components(guide.angular_acceleration));
+  PendulumTerms<S> sum = terms(turning);
+  if (guide.gravity_gradient) {
+    sum = sum + terms(tidal_terms(over_theta, *guide.gravity_gradient));
+  }
+  return PendulumEquation<S, S, S, S, S>{S(over_theta.moment * g.x() + sum.e),
+                                         S(sum.f - over_theta.moment * g.y()), sum.h, S(2 * sum.k),
+                                         guide.angular_acceleration.z()};
+}
+
+template <class S, class P>
+[[nodiscard]] PendulumEquation<S, Absent, Absent, Absent, Absent> pendulum_equation(
+    const PendulumShape<S, P>& over_theta, const RestingPendulumGuide<S>& guide) {
+  return {S(over_theta.moment * guide.gravity), {}, {}, {}, {}};
+}
+
+/// The equation, if it is the same at all times.
+template <class Shape, class Motion>
+[[nodiscard]] auto steady_equation(const Shape& over_theta, const Motion& motion) {
+  if constexpr (is_steady_pendulum_guide<Motion>) {
+    return pendulum_equation(over_theta, motion);
+  } else {
+    return Absent{};
+  }
+}
+
+}  // namespace detail
+
 /// The equation of motion as a vector field  (time, state) -> d state/dt:
 ///
 ///   Theta_C phi.. + f(phi.) + E sin phi + F cos phi + H cos 2phi + K sin 2phi = -Theta_C ou_z
 ///
-/// Motion is the guide's: a PendulumGuide, when it is steady, or a function of time that returns
-/// one. Damping is a function phi. -> f(phi.) in N m, with f(w) w >= 0 for a brake.
+/// Motion is the guide's: a PendulumGuide, when it is steady, a RestingPendulumGuide, or a function
+/// of time that returns one of both. Damping is a function phi. -> f(phi.) in N m, with f(w) w >= 0
+/// for a brake. Of a body said to be Without<ProductsOfInertia> Phi_A .. Phi_C are left out.
 ///
 /// Source : paper 002 (23)
 /// Error  : that of PendulumCoefficients::moment
-/// Cost   : one sine, one cosine and 17 flops when the guide is steady, some 60 flops more when not
-template <class S, class Motion = PendulumGuide<S>, class Damping = NoDamping>
+/// Cost   : one sine, one cosine and 14 flops when the guide is steady, some 30 to 50 flops more
+///          when not
+/// Throws : InvalidInput where products of inertia are said to vanish and do not
+template <class S, class Motion = PendulumGuide<S>, class Damping = NoDamping, class... Known>
 class PendulumField {
  public:
-  explicit PendulumField(const PendulumBody<S>& body, Motion motion, Damping damping = {})
-      : body_(body), motion_(std::move(motion)), damping_(std::move(damping)) {
-    if constexpr (steady) coefficients_ = coefficients(body_, motion_);
-  }
+  explicit PendulumField(const PendulumBody<S>& body, Motion motion, Damping damping = {},
+                         Known... /*known*/)
+      : theta_c_(body.theta_c),
+        shape_(known_shape(body)),
+        motion_(std::move(motion)),
+        damping_(std::move(damping)),
+        steady_(detail::steady_equation(shape_, motion_)) {}
 
   template <class A>
   [[nodiscard]] PendulumState<A> operator()(const S& time, const PendulumState<A>& state) const {
     if constexpr (steady) {
-      return rate(coefficients_, motion_.angular_acceleration.z(), state);
+      return rate(steady_, state);
     } else {
-      const PendulumGuide<S> guide = motion_(time);
-      return rate(coefficients(body_, guide), guide.angular_acceleration.z(), state);
+      return rate(detail::pendulum_equation(shape_, motion_(time)), state);
     }
   }
 
  private:
-  static constexpr bool steady = std::is_same_v<Motion, PendulumGuide<S>>;
+  static constexpr bool steady = detail::is_steady_pendulum_guide<Motion>;
+  static constexpr bool principal = detail::principal<Known...>;
+  using Shape = detail::PendulumShape<S, std::conditional_t<principal, detail::Absent, S>>;
 
-  template <class A>
-  [[nodiscard]] PendulumState<A> rate(const PendulumCoefficients<S>& c, const S& du_z,
-                                      const PendulumState<A>& state) const {
-    A moment = c.moment(state[0]);
-    if constexpr (!std::is_same_v<Damping, NoDamping>) moment += damping_(state[1]);
-    const A acceleration = -moment / body_.theta_c - du_z;
+  [[nodiscard]] static Shape known_shape(const PendulumBody<S>& body) {
+    const S moment = body.mass * body.arm / body.theta_c;
+    const S b_less_a = (body.theta_b - body.theta_a) / body.theta_c;
+    if constexpr (principal) {
+      if (body.phi_a != S(0) || body.phi_b != S(0) || body.phi_c != S(0)) {
+        throw InvalidInput("pendulum: a product of inertia is said to vanish and does not");
+      }
+      return {moment, b_less_a, {}};
+    } else {
+      const S& c = body.theta_c;
+      return {moment, b_less_a, {S(body.phi_a / c), S(body.phi_b / c), S(body.phi_c / c)}};
+    }
+  }
+
+  template <class E, class A>
+  [[nodiscard]] PendulumState<A> rate(const E& equation, const PendulumState<A>& state) const {
+    const auto& [e, f, h, twice_k, drive] = equation;
+    A resistance = detail::restoring_moment(e, f, h, twice_k, state[0]);
+    if constexpr (!std::is_same_v<Damping, NoDamping>) resistance += damping_(state[1]) / theta_c_;
+    const A acceleration = -A(resistance + drive);
     return {state[1], acceleration};
   }
 
-  PendulumBody<S> body_;
+  S theta_c_;
+  Shape shape_;
   Motion motion_;
   [[no_unique_address]] Damping damping_;
-  PendulumCoefficients<S> coefficients_ = {};
+  decltype(detail::steady_equation(std::declval<Shape>(), std::declval<Motion>())) steady_;
 };
 
 /// The linearised equation  Theta_C phi.. + (E + 2K) phi = -(F + H), undamped, ou = 0.

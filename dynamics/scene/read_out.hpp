@@ -52,32 +52,6 @@ template <class S, class L>
   }
 }
 
-/// The left side of the law without T *V', by the vectors of (19): with a the acceleration that O'
-/// has while the body keeps its velocity motor V', and w = u' + u,
-///
-///   {m a + dw x s + w x (w x s);  s x a + Theta dw + w x Theta w},
-///   a = a_guide(O') + 2 u x v' + u' x v',   dw = ou + u x u'.
-///
-/// Not by motors, because there u' x v and v x m v come and go again: on the earth v = 465 m/s, and
-/// what rounding leaves of them is a torque of 1e-11 N m on a kilogram.
-template <class S>
-[[nodiscard]] Force<Body, S> without_acceleration(const Situation<S>& s) {
-  const auto to_body = s.X.value.rotation.transpose();
-  const auto& [u_rel, v_rel] = s.V_rel.value;
-  const Vector3<S>& u_G = s.guide.V.value.resultant;
-  const Vector3<S>& du_G = s.guide.dV.value.resultant;
-  const Vector3<S>& r_G = s.X.value.translation;
-  const Vector3<S> u = to_body * u_G;
-  const Vector3<S> carried =
-      to_body * (s.guide.origin_acceleration() + du_G.cross(r_G) + u_G.cross(u_G.cross(r_G)));
-  const Vector3<S> a = carried + (S(2) * u + u_rel).cross(v_rel);
-  const Vector3<S> w = u_rel + u;
-  const Vector3<S> dw = to_body * du_G + u.cross(u_rel);
-  const auto& [m, first_moment, Theta] = s.inertia.value;
-  return {{m * a + dw.cross(first_moment) + w.cross(w.cross(first_moment)),
-           first_moment.cross(a) + Theta * dw + w.cross(Theta * w)}};
-}
-
 template <class S, class... Loads>
 [[nodiscard]] ReadOut<S> read_out(const Situation<S>& s,
                                   const Rate<Body, Velocity<Body, Guide, Body, S>>& dV_rel,

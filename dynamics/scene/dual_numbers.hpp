@@ -1,0 +1,135 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <type_traits>
+
+#include <dynamics/guide/motion.hpp>
+#include <dynamics/inertia.hpp>
+#include <dynamics/scene/load.hpp>
+#include <dynamics/step/lanes.hpp>
+
+/// Scenes of double in numbers that calculate like it: dual numbers (Eigen's AutoDiffScalar), packs.
+
+namespace kreisel::detail {
+
+template <class S>
+[[nodiscard]] Inertia<S> lifted(const Inertia<>& T) {
+  const Symmetric3<>& t = T.tensor;
+  return {S(T.mass),
+          T.first_moment.template cast<S>(),
+          {S(t.xx), S(t.yy), S(t.zz), S(t.xy), S(t.xz), S(t.yz)}};
+}
+
+/// The derivative of a function of time by central differences of step h: errs by 4 h^4 / 5! of the
+/// fifth derivative and by rounding, u/h of the value.
+template <class F>
+[[nodiscard]] auto slope_in_time(const F& f, double t) {
+  constexpr double h = 0x1p-10;
+  const auto off = [&](double step) {
+    using Value = std::decay_t<decltype(f(t))>;
+    return Value(f(t + step) - f(t - step));
+  };
+  using Value = decltype(off(h));
+  return Value((8 * off(h) - off(2 * h)) / (12 * h));
+}
+
+/// How the guide moves at a dual time. Of a guide that takes doubles alone pose and velocity are
+/// exact to first order; it does not know the rates of ou and of the acceleration of its origin on
+/// its own axes, which are differences where the time has a derivative.
+template <class S, class M>
+[[nodiscard]] FrameMotion<Guide, Inertial, S> guide_at(const M& guide, const S& t) {
+  if constexpr (GuideMotion<M, Guide, Inertial, S>) {
+    return guide(t);
+  } else {
+    const double time = number_in(t);
+    const FrameMotion<Guide, Inertial> now = guide(time);
+    const S later = t - time;  // 0 but for its derivatives
+    const Matrix3<double>& R = now.X.value.rotation;
+    const Matrix3<double> turning = R * skew(now.V.value.resultant);
+    using Accelerations = Eigen::Matrix<double, 6, 1>;
+    Accelerations jerk = Accelerations::Zero();
+    if constexpr (!is_pack<S>) {  // whose lanes share the time
+      if (!later.derivatives().isZero(0)) {
+        const auto accelerations = [&guide](double at) -> Accelerations {
+          const FrameMotion<Guide, Inertial> then = guide(at);
+          return (Accelerations() << then.dV.value.resultant, then.origin_acceleration())
+              .finished();
+        };
+        jerk = slope_in_time(accelerations, time);
+      }
+    }
+    const auto moved = [&later](const auto& value, const auto& rate) {
+      return (value.template cast<S>() + later * rate.template cast<S>()).eval();
+    };
+    const Vector3<double> shift = R * now.V.value.moment;
+    FrameMotion<Guide, Inertial, S> result;
+    result.X.value = {moved(R, turning), moved(now.X.value.translation, shift)};
+    result.V.value = {moved(now.V.value.resultant, now.dV.value.resultant),
+                      moved(now.V.value.moment, now.dV.value.moment)};
+    const auto& [u, v] = result.V.value;
+    result.dV.value = {moved(now.dV.value.resultant, jerk.template head<3>()),
+                       moved(now.origin_acceleration(), jerk.template tail<3>()) - u.cross(v)};
+    return result;
+  }
+}
+
+/// A number and its rate along one direction.
+using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+
+/// A situation in dual numbers, of which only the k-th derivative counts.
+template <class Dual>
+[[nodiscard]] Situation<AlongOne> along_one(const Situation<Dual>& s, Eigen::Index k) {
+  const auto number = [k](const Dual& x) {
+    AlongOne one(x.value());
+    one.derivatives()[0] = x.derivatives()[k];
+    return one;
+  };
+  const auto all = [&number](const auto& v) { return v.unaryExpr(number).eval(); };
+  const auto motor = [&all](const Motor<Dual>& m) -> Motor<AlongOne> {
+    return {all(m.resultant), all(m.moment)};
+  };
+  const auto pose = [&all](const Pose<Dual>& X) -> Pose<AlongOne> {
+    return {all(X.rotation), all(X.translation)};
+  };
+  const Inertia<Dual>& T = s.inertia.value;
+  const Symmetric3<Dual>& t = T.tensor;
+  return {number(s.t),
+          {pose(s.X.value)},
+          {motor(s.V_rel.value)},
+          {{pose(s.guide.X.value)}, {motor(s.guide.V.value)}, {motor(s.guide.dV.value)}},
+          {{number(T.mass),
+            all(T.first_moment),
+            {number(t.xx), number(t.yy), number(t.zz), number(t.xy), number(t.xz), number(t.yz)}}}};
+}
+
+/// What a linear map of doubles makes of a vector of other numbers.
+template <class Map, class S, int n>
+[[nodiscard]] Eigen::Matrix<S, n, 1> mapped(const Map& map, const Eigen::Matrix<S, n, 1>& x) {
+  using Numbers = Eigen::Matrix<double, n, 1>;
+  if constexpr (std::is_same_v<S, double>) {
+    return map(x);
+  } else if constexpr (is_pack<S>) {
+    Eigen::Matrix<S, n, 1> result;
+    for (int k = 0; k < S::lanes; ++k) {
+      Numbers part;
+      for (int i = 0; i < n; ++i) part[i] = x[i].lane(k);
+      const Numbers image = map(part);
+      for (int i = 0; i < n; ++i) result[i].set_lane(k, image[i]);
+    }
+    return result;
+  } else {
+    Numbers part;
+    for (int i = 0; i < n; ++i) part[i] = x[i].value();
+    Eigen::Matrix<S, n, 1> result = Numbers(map(part)).template cast<S>();
+    for (Eigen::Index k = 0; k < x[0].derivatives().size(); ++k) {
+      for (int i = 0; i < n; ++i) part[i] = x[i].derivatives()[k];
+      const Numbers along = map(part);
+      for (int i = 0; i < n; ++i) result[i].derivatives()[k] = along[i];
+    }
+    return result;
+  }
+}
+
+}  // namespace kreisel::detail

@@ -1,0 +1,220 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <dynamics/guide/motion.hpp>
+#include <dynamics/scene/dual_numbers.hpp>
+#include <dynamics/scene/load.hpp>
+#include <dynamics/scene/structure.hpp>
+#include <motor/absent.hpp>
+
+/// What a body in a guide feels of the guide's motion, on guide axes: by need and, where the motion
+/// is steady, worked out beforehand.
+
+namespace kreisel::detail {
+
+/// u and ou of the guide, and g' = g - a: uniform gravity less the inertial acceleration of the
+/// guide-fixed point in question.
+template <class U, class Du, class G>
+struct Felt {
+  U u;
+  Du du;
+  G g;
+};
+
+template <class L>
+inline constexpr bool is_without = false;
+template <class Quantity, Axis... axes>
+inline constexpr bool is_without<Without<Quantity, axes...>> = true;
+
+/// Whether a load is a field of gravity that is uniform in the guide or in the inertial frame.
+template <class L>
+inline constexpr bool is_field =
+    std::is_same_v<L, UniformGravity<Guide>> || std::is_same_v<L, UniformGravity<Inertial>>;
+
+/// Whether a load has to be asked with a situation.
+template <class L>
+inline constexpr bool is_force = !is_field<L> && !is_without<L>;
+
+template <class L>
+[[nodiscard]] constexpr bool reads_guide() {
+  if constexpr (requires { L::ignores_guide; }) {
+    return is_force<L> && !L::ignores_guide;
+  } else {
+    return is_force<L>;
+  }
+}
+
+template <class A, class... Loads>
+inline constexpr bool has_field = (std::is_same_v<Loads, UniformGravity<A>> || ...);
+
+/// The sum of the fields that are uniform on the axes of A.
+template <class A, class... Loads>
+[[nodiscard]] auto field_on(const Loads&... loads) {
+  if constexpr (has_field<A, Loads...>) {
+    Vector3<double> sum = Vector3<double>::Zero();
+    const auto add = [&sum](const auto& load) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(load)>, UniformGravity<A>>) sum += load.g;
+    };
+    (add(loads), ...);
+    return components(sum);
+  } else {
+    return NoVector{};
+  }
+}
+
+/// The inertial acceleration of the guide-fixed point r, that of the guide's origin being a.
+template <class U, class Du, class A, class R>
+[[nodiscard]] auto carried_acceleration(const U& u, const Du& du, const A& a, const R& r) {
+  return a + cross(du, r) + cross(u, cross(u, r));
+}
+
+/// A vector at rest in the inertial frame, on the axes of a guide that turns steadily with u = |u| n:
+///
+///   exp(-u t) g = n n.g + cos(|u| t) (g - n n.g) + sin(|u| t) g x n
+struct TurningField {
+  Components<double> across;
+  Components<double> aside;
+  double rate;
+
+  /// `along` is what of g does not turn.
+  TurningField(const Vector3<double>& g, const Vector3<double>& along, const Vector3<double>& u)
+      : across(components(Vector3<double>(g - along))),
+        aside(components(Vector3<double>(g.cross(u.stableNormalized())))),
+        rate(u.stableNorm()) {}
+
+  template <class N>
+  [[nodiscard]] Components<N> at(const N& t) const {
+    using std::cos, std::sin;
+    const N angle = rate * t;
+    return N(cos(angle)) * across + N(sin(angle)) * aside;
+  }
+};
+
+/// What is known beforehand of g' and of the field that turns in the guide.
+template <class U, class G, class Field>
+struct Known {
+  U u;
+  G g;
+  Field field;
+};
+
+struct Nothing {};
+
+template <class... Loads>
+inline constexpr bool restricts_felt_gravity = (vanishes<FeltGravity, Axis::x, Loads...> ||
+                                                vanishes<FeltGravity, Axis::y, Loads...> ||
+                                                vanishes<FeltGravity, Axis::z, Loads...>);
+
+template <class... Loads>
+inline constexpr bool restricts_guide_rate = (vanishes<GuideRate, Axis::x, Loads...> ||
+                                              vanishes<GuideRate, Axis::y, Loads...> ||
+                                              vanishes<GuideRate, Axis::z, Loads...>);
+
+/// Throws : InvalidInput where components are said to vanish that do not
+template <bool gravity, class P, class M, class... Loads>
+[[nodiscard]] auto known_motion(const P& r, const M& guide, const std::string& what,
+                                const Loads&... loads) {
+  if constexpr (!SteadyGuide<M>) {
+    static_assert(!restricts_guide_rate<Loads...> && !restricts_felt_gravity<Loads...>,
+                  "Without<GuideRate> and Without<FeltGravity> take a guide in steady motion");
+    return Nothing{};
+  } else {
+    const auto motion = guide.steady();
+    check_vanishing<GuideRate, Loads...>(vector<double>(motion.u), what + ", rate of the guide");
+    const auto u = without<GuideRate, Loads...>(motion.u);
+    using U = std::remove_const_t<decltype(u)>;
+    if constexpr (!gravity) {
+      return Known<U, NoVector, Nothing>{u, {}, {}};
+    } else {
+      const auto carried = carried_acceleration(u, NoVector{}, motion.origin_acceleration, r);
+      const auto in_guide = field_on<Guide>(loads...) - carried;
+      const auto inertial =
+          turned_back(Turn<double>::from(guide(0).X.value.rotation), field_on<Inertial>(loads...));
+      if constexpr (has_field<Inertial, Loads...> && !U::absent) {
+        static_assert(!restricts_felt_gravity<Loads...>,
+                      "gravity that rests in the inertial frame turns in this guide");
+        const Vector3<double> all = vector<double>(inertial);
+        const Vector3<double> n = vector<double>(u).stableNormalized();
+        const Vector3<double> along = n.isZero(0) ? all : Vector3<double>(n.dot(all) * n);
+        return Known<U, Components<double>, TurningField>{
+            u, in_guide + components(along), TurningField(all, along, vector<double>(u))};
+      } else {
+        const auto all = in_guide + inertial;
+        check_vanishing<FeltGravity, Loads...>(vector<double>(all), what + ", felt gravity");
+        const auto g = without<FeltGravity, Loads...>(all);
+        return Known<U, std::remove_const_t<decltype(g)>, Nothing>{u, g, {}};
+      }
+    }
+  }
+}
+
+/// The motion of a guide M as a body with these loads feels it at the guide-fixed point r.
+///
+/// P is NoVector where r is the guide's origin. Without `gravity` g' is Absent: it does not matter
+/// to what is held at its centre of mass.
+template <bool gravity, class P, class M, class... Loads>
+class FeltMotion {
+ public:
+  FeltMotion(const P& r, const M& guide, const std::string& what, const Loads&... loads)
+      : r_(r), known_(known_motion<gravity>(r, guide, what, loads...)) {}
+
+  template <class N>
+  [[nodiscard]] auto at(const M& guide, const N& t, const Loads&... loads) const {
+    if constexpr (requires { known_.field.at(t); }) {
+      return felt(known_.u, NoVector{}, known_.g + known_.field.at(t));
+    } else if constexpr (SteadyGuide<M>) {
+      return felt(known_.u, NoVector{}, known_.g);
+    } else if constexpr (!gravity && std::is_same_v<N, double>) {
+      const FrameTurning<N> now = turning(guide, t);
+      return felt(components(now.u), components(now.du), NoVector{});
+    } else {
+      return in(guide_at<N>(guide, t), loads...);
+    }
+  }
+
+  /// The same from all of the guide's motion.
+  template <class N>
+  [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const Loads&... loads) const {
+    const auto u = components(now.V.value.resultant);
+    const auto du = components(now.dV.value.resultant);
+    if constexpr (gravity) {
+      const auto g =
+          field_on<Guide>(loads...) +
+          turned_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
+          carried_acceleration(u, du, components(now.origin_acceleration()), r_);
+      return felt(u, du, g);
+    } else {
+      return felt(u, du, NoVector{});
+    }
+  }
+
+ private:
+  using KnownMotion =
+      decltype(known_motion<gravity>(std::declval<const P&>(), std::declval<const M&>(),
+                                     std::string(), std::declval<const Loads&>()...));
+
+  template <class U, class Du, class G>
+  [[nodiscard]] static Felt<U, Du, G> felt(const U& u, const Du& du, const G& g) {
+    return {u, du, g};
+  }
+
+  P r_;
+  KnownMotion known_;
+};
+
+/// The loads that are no field and no statement, together.
+template <class N, class... Loads>
+[[nodiscard]] Force<Body, N> forces(const Situation<N>& s, const Loads&... loads) {
+  Force<Body, N> sum;
+  const auto add = [&](const auto& load) {
+    if constexpr (is_force<std::decay_t<decltype(load)>>) sum = sum + load(s);
+  };
+  (add(loads), ...);
+  return sum;
+}
+
+}  // namespace kreisel::detail

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <utility>
+
+#include <dynamics/guide/motion.hpp>
+#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/scene/gimbal_oscillation.hpp>
+
+namespace kreisel {
+
+/// What is kept of J_f, the momentum that a rotor has because the guide turns.
+enum class GuideMomentum {
+  none,        ///< Schuler: J_f = 0
+  constant,    ///< (47): the tensor of the rotor that is not inclined
+  first_order  ///< and its part of first order in alpha, beta, and the drive's torque
+};
+
+/// A rotor on a guide that turns, its axis near the guide's z: small oscillations alpha, beta while
+/// it runs at constant speed Omega against its suspension, whose rings have no mass.
+///
+///   oJ + u x J + oJ_f + u x J_f = M     (its components x and y)
+///
+///   J_x = P alpha' + R beta' + H beta   P = A cos^2 phi + B sin^2 phi   R = (A - B) sin(2 phi)/2
+///   J_y = R alpha' + Q beta' - H alpha  Q = A sin^2 phi + B cos^2 phi   H = C Omega, phi = Omega t
+///   J_fx = P u_x + R u_y + u_z g_a        g_a = (C - P) beta + R alpha
+///   J_fy = R u_x + Q u_y + u_z g_b        g_b = (Q - C) alpha - R beta
+///   J_fz = C u_z + u_x g_a + u_y g_b
+///
+/// M is what springs and friction do, and of first order the drive's torque C ou_z, which lies
+/// along the inclined axis: -alpha C ou_z to M_y.
+///
+/// Source : paper 002 (44)-(48), with the terms of g that (47) lacks. Of J_z only H is in the
+///          field: its parts of second order come with u and do not change the error's order.
+///          They are in relative_momentum(), with the one that (46) lacks
+/// Frame  : guide axes, reduced where the axes meet
+/// Units  : rad, rad/s
+/// Error  : for angles and u of the size eps, of the order eps^k, k = 3 with first_order, also if
+///          u_z is not small; 2 with constant, 1 if u_z is not small; 1 with none, but 2 for a
+///          symmetric rotor and constant u (tests/dynamics/scene/gyro_small_oscillations.cpp).
+///          departure() measures it
+/// Throws : InvalidInput for what CardanGyro refuses, references of the bearings other than 0, or a
+///          speed that is not finite
+template <class M>
+class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRotor>> {
+  static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
+
+  using Base = GimbalOscillation<CardanGyro<M, RegulatedRotor>>;
+
+ public:
+  using typename Base::State;
+  using typename Base::Vector;
+
+  /// mass x'' + damping x' + stiffness x = force,  x = (alpha, beta), at one moment.
+  struct Coefficients {
+    Eigen::Matrix2d mass, damping, stiffness;
+    Eigen::Vector2d force;
+  };
+
+  /// `rotor` has the moments A, B, C; `speed` is Omega.
+  GyroSmallOscillations(const Vector3<double>& rotor, const CardanBearings& bearings, double speed,
+                        M guide, GuideMomentum kept = GuideMomentum::first_order)
+      : Base(typename Base::Exact(CardanMoments{rotor}, bearings, guide), speed,
+             "small oscillations of a gyro"),
+        guide_(std::move(guide)),
+        kept_(kept) {}
+
+  [[nodiscard]] Coefficients coefficients(double t) const {
+    const auto [T, dT] = tensor(t);
+    const auto [u, du] = turning(guide_, t);
+    const auto& [about_a, about_b] = this->exact().bearings();
+    const double C = this->exact().moments().rotor.z();
+    const double H = C * this->speed();
+    const Eigen::Vector2d across(u.x(), u.y());
+    const Eigen::Vector2d d_across(du.x(), du.y());
+    const double z = u.z();
+    const double dz = du.z();
+    Eigen::Matrix2d S;
+    S << 0, 1, -1, 0;
+    // With w = (w_x, w_y) the components x and y of u x w are -u_z S w + S (u_x, u_y) w_z.
+    Coefficients c;
+    c.mass = T;
+    c.damping = dT + H * S - z * S * T;
+    c.stiffness = -z * H * S * S;
+    c.stiffness(0, 0) += about_a.stiffness;
+    c.stiffness(1, 1) += about_b.stiffness;
+    c.damping(0, 0) += about_a.damping;
+    c.damping(1, 1) += about_b.damping;
+    c.force = -H * (S * across);
+    if (kept_ == GuideMomentum::none) return c;
+    c.force -= dT * across + T * d_across - z * (S * (T * across)) + C * z * (S * across);
+    if (kept_ == GuideMomentum::constant) return c;
+    // g = E x: J_f gains u_z E x across and (u_x, u_y) . E x along z.
+    Eigen::Matrix2d E, dE;
+    E << T(0, 1), C - T(0, 0), T(1, 1) - C, -T(0, 1);
+    dE << dT(0, 1), -dT(0, 0), dT(1, 1), -dT(0, 1);
+    c.damping += z * E;
+    c.stiffness += z * dE + dz * E - z * z * (S * E) + (S * across) * (across.transpose() * E);
+    c.stiffness(1, 0) += C * dz;
+    return c;
+  }
+
+  /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, alpha', beta').
+  [[nodiscard]] Vector rates(double t, const Vector& y) const {
+    const Coefficients c = coefficients(t);
+    const Eigen::Vector2d force = c.force - c.damping * Eigen::Vector2d(y[2], y[3]) -
+                                  c.stiffness * Eigen::Vector2d(y[0], y[1]);
+    const Eigen::Vector2d acceleration = c.mass.inverse() * force;
+    return {y[2], y[3], acceleration[0], acceleration[1]};
+  }
+
+  /// J, the rotor's momentum relative to the guide, about the point where the axes meet.
+  ///
+  ///   J_z = (R alpha - P beta) alpha' + (Q alpha - R beta) beta'
+  ///         + C u'_C (1 - (alpha^2 + beta^2)/2)
+  ///
+  /// Source : paper 002 (46); the term with alpha^2 + beta^2 is missing there, without which its
+  ///          third line is no better than C u'_C alone
+  /// Units  : N m s
+  /// Error  : of third order across, of fourth along z; with u'_C = Omega + alpha' beta
+  [[nodiscard]] Vector3<double> relative_momentum(double t, const State& s) const {
+    const Eigen::Matrix2d T = tensor(t).first;
+    const double spin = this->exact().moments().rotor.z() * (this->speed() + s.alpha_rate * s.beta);
+    const Eigen::Vector2d across = T * Eigen::Vector2d(s.alpha_rate, s.beta_rate);
+    const double squares = s.alpha * s.alpha + s.beta * s.beta;
+    return {across.x() + spin * s.beta, across.y() - spin * s.alpha,
+            s.alpha * across.y() - s.beta * across.x() + spin * (1 - squares / 2)};
+  }
+
+ private:
+  /// The rotor's moments across and their rate:  (P R; R Q).
+  [[nodiscard]] std::pair<Eigen::Matrix2d, Eigen::Matrix2d> tensor(double t) const {
+    const auto& rotor = this->exact().moments().rotor;
+    const double mean = (rotor.x() + rotor.y()) / 2;
+    const double half = (rotor.x() - rotor.y()) / 2;
+    const double c = half * std::cos(2 * this->speed() * t);
+    const double s = half * std::sin(2 * this->speed() * t);
+    Eigen::Matrix2d T, dT;
+    T << mean + c, s, s, mean - c;
+    dT << -s, c, c, s;
+    return {T, 2 * this->speed() * dT};
+  }
+
+  M guide_;
+  GuideMomentum kept_;
+};
+
+}  // namespace kreisel
