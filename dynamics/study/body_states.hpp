@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <dynamics/body/tree.hpp>
+
+namespace kreisel {
+
+/// The places in a BodySystem's state where a quaternion begins.
+[[nodiscard]] inline std::vector<int> quaternions(const BodyTree& tree) {
+  std::vector<int> places;
+  for (const detail::Link& link : tree.links()) {
+    if (detail::coordinate_count(link.kind) >= 4) places.push_back(link.q);
+  }
+  return places;
+}
+
+/// What the directions are in which that state can move (study/tangent.hpp), by the bodies' names:
+/// "rotor" and "rotor'" for an angle and its rate, "root about x" and "root' about x" for an
+/// attitude, "root x" for a place, "fork 1" and "fork 2" for both angles of a universal joint.
+[[nodiscard]] inline std::vector<std::string> direction_names(const BodyTree& tree) {
+  const auto rates = static_cast<std::size_t>(tree.rates());
+  std::vector<std::string> names(2 * rates);
+  const auto name = [&](const detail::Link& link, int k, const std::string& what) {
+    const auto at = static_cast<std::size_t>(link.v) + static_cast<std::size_t>(k);
+    names[at] = tree.body(link.body).name + what;
+    names[rates + at] = tree.body(link.body).name + "'" + what;
+  };
+  static constexpr const char* axes[] = {"x", "y", "z"};
+  for (const detail::Link& link : tree.links()) {
+    const int count = detail::rate_count(link.kind);
+    if (count == 1) {
+      const bool universal = tree.body(link.body).joint.kind == JointKind::universal;
+      name(link, 0, !universal ? "" : link.is_cross ? " 1" : " 2");
+    }
+    for (int k = 0; k < 3 && count >= 3; ++k) {
+      name(link, k, std::string(" about ") + axes[k]);
+      if (count == 6) name(link, 3 + k, std::string(" ") + axes[k]);
+    }
+  }
+  for (const detail::RotorLink& rotor : tree.rotors()) name(rotor.link, 0, "");
+  return names;
+}
+
+}  // namespace kreisel

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <Eigen/QR>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <dynamics/study/linearize.hpp>
+
+namespace kreisel {
+
+/// What a search for an equilibrium leaves alone; places count in eta, where each quaternion is
+/// three angles (study/tangent.hpp).
+struct EquilibriumSearch {
+  std::vector<int> held = {};     ///< keep their value from the guess: a speed that is given
+  std::vector<int> running = {};  ///< may have a rate: cyclic angles of a steady motion
+  std::vector<int> quaternions = {};
+  int most_iterations = 60;
+};
+
+/// A state in which nothing changes, but for what runs.
+template <class Vector>
+struct FoundEquilibrium {
+  Vector state;
+  double residual = 0;  ///< of the rates, greatest
+  double step = 0;      ///< the last one of Newton's, greatest component: the error
+  int iterations = 0;
+  int neutral = 0;  ///< directions in which the equilibrium is not isolated
+};
+
+/// Newton's method with the exact Jacobian, halving steps that lead uphill. Where equations or
+/// unknowns are redundant the shortest step is taken: the equilibrium nearest to the guess.
+///
+/// Scene  : Differentiable
+/// Error  : quadratic convergence down to rounding, `step`; linear where the Jacobian is singular
+///          at the equilibrium only
+/// Throws : InvalidInput for places that are none; ComputationFailed with residual and state where
+///          there is no equilibrium near, or none that the steps reach
+template <class Scene>
+[[nodiscard]] FoundEquilibrium<typename Scene::Vector> find_equilibrium(
+    const Scene& scene, double t, const typename Scene::Vector& guess,
+    const EquilibriumSearch& search = {}) {
+  const Tangent tangent = detail::tangent_of(scene, guess.size(), search.quaternions);
+  const auto others = [&](const std::vector<int>& left_out) {
+    std::vector<bool> kept(static_cast<std::size_t>(tangent.dimension()), true);
+    for (const int i : left_out) {
+      if (i < 0 || i >= tangent.dimension()) {
+        std::ostringstream text;
+        text << "equilibrium: there is no component " << i << " among " << tangent.dimension();
+        throw InvalidInput(text.str());
+      }
+      kept[static_cast<std::size_t>(i)] = false;
+    }
+    std::vector<int> places;
+    for (int i = 0; i < tangent.dimension(); ++i) {
+      if (kept[static_cast<std::size_t>(i)]) places.push_back(i);
+    }
+    return places;
+  };
+  const std::vector<int> unknown = others(search.held);
+  const std::vector<int> wanted = others(search.running);
+  const auto rates = [&](const typename Scene::Vector& y) {
+    const Eigen::VectorXd f = scene.rates(t, y);
+    return Eigen::VectorXd((tangent.inverse(y) * f)(wanted));
+  };
+  const auto greatest = [](const Eigen::VectorXd& v) {
+    return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
+  };
+
+  FoundEquilibrium<typename Scene::Vector> result;
+  result.state = guess;
+  Eigen::VectorXd f = rates(guess);
+  for (; result.iterations < search.most_iterations; ++result.iterations) {
+    const typename Scene::Vector& y = result.state;
+    const auto d = detail::derivatives(scene, t, y, tangent.basis(y));
+    const Eigen::MatrixXd A = detail::reduced(tangent, y, d).A(wanted, unknown);
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(A);
+    result.neutral = static_cast<int>(A.cols() - factors.rank());
+    const Eigen::VectorXd newton = -factors.solve(f);
+    Eigen::VectorXd eta = Eigen::VectorXd::Zero(tangent.dimension());
+    double share = 1;
+    bool falls = false;
+    for (; share > 1e-4 && !falls; share /= 2) {
+      eta(unknown) = share * newton;
+      const typename Scene::Vector next = tangent.moved(y, eta);
+      const Eigen::VectorXd f_next = rates(next);
+      falls = f_next.norm() < f.norm();
+      if (!falls) continue;
+      result.state = next;
+      f = f_next;
+    }
+    result.residual = greatest(f);
+    result.step = greatest(newton);
+    const double size = 1 + greatest(result.state);
+    if (result.residual == 0 || result.step <= 4 * std::numeric_limits<double>::epsilon() * size) {
+      return result;
+    }
+    if (!falls) {
+      // Rounding has the last word, if what is left of the step is nothing else.
+      if (result.step <= 1e-9 * size) return result;
+      break;
+    }
+  }
+  std::ostringstream text;
+  text.precision(10);
+  text << "equilibrium: none reached in " << result.iterations << " steps; a rate of "
+       << greatest(f) << " is left at y = [" << result.state.transpose() << "]";
+  throw ComputationFailed(text.str());
+}
+
+}  // namespace kreisel

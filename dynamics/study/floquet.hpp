@@ -1,0 +1,155 @@
+#pragma once
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <sstream>
+
+#include <dynamics/decompositions.hpp>
+#include <dynamics/study/transition.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+/// What Floquet's theory says of a motion whose equations are periodic.
+enum class Stability {
+  stable,    ///< bounded for ever, in the linear equations
+  unstable,  ///< some neighbours leave exponentially
+  undecided  ///< so near to the boundary that the error of the matrix hides the answer
+};
+
+/// The eigenvalues of the transition matrix over one period, by which neighbours grow in it.
+///
+/// Source : G. Floquet, Annales de l'Ecole Normale 12 (1883) 47
+/// Error  : u |X| and that of the matrix, times the eigenvalue's condition: near a stability
+///          boundary, where two of them meet, the square root of it
+/// Throws : ComputationFailed if the QR iteration does not converge
+template <int n>
+[[nodiscard]] Eigen::Matrix<std::complex<double>, n, 1> floquet_multipliers(
+    const Transition<n>& period) {
+  return detail::eigenvalues(period.matrix);
+}
+
+/// The multipliers of two degrees of freedom without damping, which come as l and 1/l:
+///
+///   l^4 - a_1 l^3 + a_2 l^2 - a_1 l + 1 = 0,   z = l + 1/l,   z^2 - a_1 z + a_2 - 2 = 0
+///
+/// Stable if and only if both z are real, distinct and within (-2, 2). On the boundary one of three
+/// discriminants is 0:
+///
+///   at_minus_one = a_2 + 2 a_1 + 2    a pair leaves through -1: a subharmonic of twice the period
+///   at_plus_one  = a_2 - 2 a_1 + 2    through +1: divergence
+///   krein        = a_1^2 - 4 (a_2 - 2)    two pairs meet on the circle and leave it together
+///
+/// They are computed without multipliers and are smooth in every parameter, also where multipliers
+/// have a branch point.
+///
+/// Source : Floquet; M. G. Krein; paper 002 (49), whose coefficients have the period pi/Omega
+/// Units  : 1
+struct PairedMultipliers {
+  double a_1 = 0;  ///< trace of X
+  double a_2 = 0;  ///< sum of its principal 2x2 minors
+  double a_1_error = 0;
+  double a_2_error = 0;
+
+  /// Error  : bounds by that of the matrix, entry by entry
+  /// Throws : InvalidInput if the multipliers are no pairs: the equations are damped or driven, or
+  ///          conserve nothing; then floquet_multipliers() has to do
+  [[nodiscard]] static PairedMultipliers of(const Transition<4>& period) {
+    const auto& X = period.matrix;
+    const auto& E = period.error;
+    PairedMultipliers p;
+    for (int i = 0; i < 4; ++i) {
+      p.a_1 += X(i, i);
+      p.a_1_error += E(i, i);
+      for (int j = 0; j < i; ++j) {
+        p.a_2 += X(i, i) * X(j, j) - X(i, j) * X(j, i);
+        p.a_2_error += std::abs(X(i, i)) * E(j, j) + std::abs(X(j, j)) * E(i, i) +
+                       std::abs(X(i, j)) * E(j, i) + std::abs(X(j, i)) * E(i, j);
+      }
+    }
+    const double det = X.determinant();
+    // |X|^-1 has the size of X, so that this is the determinant's error on the minors' scale.
+    const double slack = 8 * (p.a_1_error + p.a_2_error) + 1e-9;
+    if (!(std::abs(det - 1) <= slack)) {
+      std::ostringstream text;
+      text.precision(10);
+      text << "Floquet multipliers: the determinant over one period is " << det
+           << ", not 1: they do not come in pairs l, 1/l";
+      throw InvalidInput(text.str());
+    }
+    return p;
+  }
+
+  [[nodiscard]] double at_minus_one() const { return a_2 + 2 * a_1 + 2; }
+  [[nodiscard]] double at_plus_one() const { return a_2 - 2 * a_1 + 2; }
+  [[nodiscard]] double krein() const { return a_1 * a_1 - 4 * (a_2 - 2); }
+
+  /// Of at_minus_one() and at_plus_one(), and of krein().
+  [[nodiscard]] double one_error() const { return a_2_error + 2 * a_1_error; }
+  [[nodiscard]] double krein_error() const { return 2 * std::abs(a_1) * a_1_error + 4 * a_2_error; }
+
+  [[nodiscard]] Stability verdict() const {
+    if (krein() < -krein_error() || at_minus_one() < -one_error() || at_plus_one() < -one_error()) {
+      return Stability::unstable;
+    }
+    const bool inside = at_minus_one() > one_error() && at_plus_one() > one_error();
+    // With both products (z_1 + 2)(z_2 + 2) and (z_1 - 2)(z_2 - 2) positive both z lie on the same
+    // side of -2 and on the same side of 2.
+    if (inside && krein() > krein_error()) {
+      return std::abs(a_1) < 4 ? Stability::stable : Stability::unstable;
+    }
+    return inside && std::abs(a_1) - a_1_error > 4 ? Stability::unstable : Stability::undecided;
+  }
+
+  /// l_1, 1/l_1, l_2, 1/l_2, those outside the unit circle or on its upper half first.
+  ///
+  /// Error  : of a_1 and a_2 times 1/(|z_1 - z_2| |l - 1/l|)
+  [[nodiscard]] std::array<std::complex<double>, 4> multipliers() const {
+    using Complex = std::complex<double>;
+    const double D = krein();
+    // Krein's discriminant, and the one of l^2 - z l + 1 as a product, lest digits cancel.
+    Complex z_1, z_2;
+    if (D >= 0) {
+      const double larger = (a_1 + std::copysign(std::sqrt(D), a_1)) / 2;
+      z_1 = larger;
+      z_2 = larger != 0 ? (a_2 - 2) / larger : 0;
+    } else {
+      z_1 = Complex(a_1, std::sqrt(-D)) / 2.0;
+      z_2 = std::conj(z_1);
+    }
+    const auto pair = [](const Complex& z) {
+      const Complex root = std::sqrt(z - 2.0) * std::sqrt(z + 2.0);
+      const Complex plus = (z + root) / 2.0;
+      const Complex minus = (z - root) / 2.0;
+      return std::abs(plus) >= std::abs(minus) ? plus : minus;
+    };
+    const Complex l_1 = pair(z_1);
+    const Complex l_2 = pair(z_2);
+    return {l_1, 1.0 / l_1, l_2, 1.0 / l_2};
+  }
+
+  /// The greatest |l|: growth in one period; 1 where the verdict is stable.
+  [[nodiscard]] double growth() const {
+    if (verdict() == Stability::stable) return 1;
+    double most = 1;
+    for (const auto& l : multipliers()) most = std::max(most, std::abs(l));
+    return most;
+  }
+};
+
+/// Those of a linear scene of two degrees of freedom without damping.
+///
+/// Scene  : has period() in seconds and state_matrix(t), 4x4
+template <class Scene>
+[[nodiscard]] PairedMultipliers paired_multipliers(const Scene& scene,
+                                                   const Accuracy& accuracy = {}) {
+  const auto A = [&scene](double t) { return scene.state_matrix(t); };
+  return PairedMultipliers::of(linear_transition<4>(A, 0, scene.period(), accuracy));
+}
+
+}  // namespace kreisel

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <algorithm>
+#include <concepts>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/study/body_states.hpp>
+#include <dynamics/study/tangent.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+template <int n>
+using Duals = Eigen::AutoDiffScalar<Eigen::Matrix<double, n, 1>>;
+using Dual = Duals<1>;
+
+/// In how many directions at a time a field is differentiated. Where the state has no size known
+/// when compiled there is more to do for each evaluation than for another direction.
+template <class Scene>
+inline constexpr int directions = Scene::Vector::RowsAtCompileTime == Eigen::Dynamic ? 4 : 1;
+
+template <class Scene, class S>
+using StateOf = Eigen::Matrix<S, Scene::Vector::RowsAtCompileTime, 1>;
+
+}  // namespace detail
+
+/// A scene whose field takes dual numbers: rates(t, y) on Eigen::Matrix<S, n, 1>, n fixed or
+/// Eigen::Dynamic, for S = double and S = Eigen::AutoDiffScalar.
+template <class Scene>
+concept Differentiable = requires(const Scene& scene, const detail::Dual& t,
+                                  const detail::StateOf<Scene, detail::Dual>& y) {
+  { scene.rates(t, y) } -> std::convertible_to<detail::StateOf<Scene, detail::Dual>>;
+};
+
+/// The linear equations of a scene's neighbouring motions:  eta' = A eta.
+///
+/// The rate is the one that `Observer` sees; eta is written in `In`, on its axes and reduced at its
+/// origin. Matrices of different observers or frames are different types.
+///
+/// Units  : those of the state, radian for the angles that stand for a quaternion
+template <class Observer, class In>
+struct Linearisation {
+  Eigen::VectorXd state;           ///< about which
+  Eigen::MatrixXd A;               ///< state matrix
+  Eigen::VectorXd rate;            ///< of the state, as eta': 0 at an equilibrium
+  std::vector<std::string> names;  ///< of eta
+
+  /// The rate's own rate along the motion. 0 at an equilibrium and in a steady motion, in which
+  /// only cyclic components run; otherwise A holds for the moment only.
+  Eigen::VectorXd unsteadiness;
+};
+
+namespace detail {
+
+/// f(t, y) and its derivatives along t and along the columns of E.
+struct Derivatives {
+  Eigen::VectorXd f;
+  Eigen::VectorXd along_time;
+  Eigen::MatrixXd along;
+};
+
+template <class Scene>
+[[nodiscard]] Derivatives derivatives(const Scene& scene, double t, const typename Scene::Vector& y,
+                                      const Eigen::MatrixXd& E) {
+  static_assert(Differentiable<Scene>,
+                "the scene's rates(t, y) does not take dual numbers: make it a template on the "
+                "number type of t and y");
+  constexpr int at_once = directions<Scene>;
+  using Number = Duals<at_once>;
+  Derivatives d;
+  d.along.resize(y.size(), E.cols());
+  d.along_time.resize(y.size());
+  d.f.resize(y.size());
+  const Eigen::Index columns = E.cols() + 1;
+  for (Eigen::Index begin = 0; begin < columns; begin += at_once) {
+    Number now(t);
+    StateOf<Scene, Number> state(y.size());
+    for (Eigen::Index i = 0; i < y.size(); ++i) state[i] = Number(y[i]);
+    const Eigen::Index count = std::min<Eigen::Index>(at_once, columns - begin);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (begin + k == E.cols()) {
+        now.derivatives()[k] = 1;
+        continue;
+      }
+      for (Eigen::Index i = 0; i < y.size(); ++i) state[i].derivatives()[k] = E(i, begin + k);
+    }
+    const StateOf<Scene, Number> f = scene.rates(now, state);
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      d.f[i] = f[i].value();
+      for (Eigen::Index k = 0; k < count; ++k) {
+        (begin + k == E.cols() ? d.along_time[i] : d.along(i, begin + k)) = f[i].derivatives()[k];
+      }
+    }
+  }
+  return d;
+}
+
+template <class Scene>
+[[nodiscard]] Tangent tangent_of(const Scene& scene, Eigen::Index components,
+                                 std::vector<int> quaternions) {
+  if constexpr (requires { scene.quaternions(); }) {
+    const auto& own = scene.quaternions();
+    quaternions.assign(own.begin(), own.end());
+  } else if constexpr (requires { scene.tree(); }) {
+    quaternions = kreisel::quaternions(scene.tree());
+  }
+  return {static_cast<int>(components), std::move(quaternions)};
+}
+
+template <class Scene>
+[[nodiscard]] std::vector<std::string> names_of(const Scene& scene, const Tangent& tangent) {
+  if constexpr (requires { scene.tree(); }) return direction_names(scene.tree());
+  std::vector<std::string> names;
+  const int components = tangent.dimension() + static_cast<int>(tangent.quaternions().size());
+  auto next = tangent.quaternions().begin();
+  for (int i = 0; i < components; ++i) {
+    if (next != tangent.quaternions().end() && *next == i) {
+      for (const char* axis : {"x", "y", "z"}) names.push_back(std::string("angle about ") + axis);
+      i += 3;
+      ++next;
+    } else if constexpr (requires { scene.names[0]; }) {
+      names.emplace_back(scene.names[std::size_t(i)]);
+    } else {
+      names.push_back("y" + std::to_string(i));
+    }
+  }
+  return names;
+}
+
+/// Of a field given by its derivatives along E, in the coordinates eta:
+/// y' = E v, so that with the rate dE of E  A = P (f_y E - dE),  v' = P (f_t + f_y E v - dE v).
+struct Reduced {
+  Eigen::VectorXd v;
+  Eigen::MatrixXd A;
+  Eigen::VectorXd dv;
+};
+
+[[nodiscard]] inline Reduced reduced(const Tangent& tangent, const Eigen::VectorXd& y,
+                                     const Derivatives& d) {
+  const Eigen::MatrixXd P = tangent.inverse(y);
+  const Eigen::MatrixXd dE = tangent.basis_rate(d.f);
+  Reduced r;
+  r.v = P * d.f;
+  r.A = P * (d.along - dE);
+  r.dv = P * d.along_time + r.A * r.v;
+  return r;
+}
+
+}  // namespace detail
+
+/// The linear equations about the state y at the time t, by dual numbers: exact, no differences.
+///
+/// Scene       : Differentiable. May offer quaternions(), the places in y where one begins, and
+///               names, of the components of y; a BodySystem has both
+/// quaternions : those places, if the scene does not tell
+/// Error       : that of the scene's own formulas. On a guide that takes times of type double alone
+///               the unsteadiness errs by 2^-42 of the accelerations' fifth derivative in time
+/// Cost        : n + 1 evaluations of the field in numbers of two parts; of a BodySystem n/4 in
+///               numbers of five
+/// Throws      : as rates() does: of a BodySystem InvalidInput where a load takes no dual numbers
+template <class Observer, class In, class Scene>
+[[nodiscard]] Linearisation<Observer, In> linearize(const Scene& scene, double t,
+                                                    const typename Scene::Vector& y,
+                                                    std::vector<int> quaternions = {}) {
+  const Tangent tangent = detail::tangent_of(scene, y.size(), std::move(quaternions));
+  const auto d = detail::derivatives(scene, t, y, tangent.basis(y));
+  const detail::Reduced r = detail::reduced(tangent, y, d);
+  return {y, r.A, r.v, detail::names_of(scene, tangent), r.dv};
+}
+
+}  // namespace kreisel

@@ -1,0 +1,191 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/scene/rotor_matrices.hpp>
+#include <dynamics/study/precession.hpp>
+#include <motor/attitude.hpp>
+
+namespace kreisel {
+
+/// A system of bodies with fast rotors, as technical_motion() takes it. A place is the coordinates
+/// of the system, in which the rotors' angles stay what they are, and then the momenta l of the
+/// rotors; displacements and u go by the rates without the rotors', RotorMatrices::rates. An
+/// attitude is displaced by small angles on the body's axes.
+///
+/// Source : paper 000 (11)-(15); (G_R) as RotorMatrices has it
+/// Error  : of loads' damping that of a central difference over 1e-3 m/s and rad/s: none where they
+///          are linear in the velocities
+/// Throws : InvalidInput where a joint is held or driven (make it fixed), a rotor is braked by
+///          friction, or there is no rotor
+/// Cost   : of each evaluation one rotor_matrices(); with loads 2n more, for their damping
+template <class M>
+class TechnicalBodies {
+ public:
+  explicit TechnicalBodies(BodySystem<M> system)
+      : system_(std::move(system)), workspace_(system_.workspace()) {
+    const BodyTree& tree = system_.tree();
+    const auto refuse = [&tree](int body, const char* why) {
+      throw InvalidInput("technical equations: body '" + tree.body(body).name + "' " + why);
+    };
+    for (const detail::Link& link : tree.links()) {
+      if (link.body >= 0 && link.rule != JointRule::forces) refuse(link.body, "is held or driven");
+    }
+    std::vector<bool> spins(static_cast<std::size_t>(tree.rates()), false);
+    for (const detail::RotorLink& rotor : tree.rotors()) {
+      const auto v = static_cast<std::size_t>(rotor.link.v);
+      spins[v] = true;
+      if (!rotor.regulated() && tree.forces()[v].damping != 0) {
+        refuse(rotor.link.body, "is a rotor with friction");
+      }
+    }
+    for (int k = 0; k < tree.rates(); ++k) {
+      if (!spins[static_cast<std::size_t>(k)]) rates_.push_back(k);
+    }
+    if (tree.rotors().empty()) {
+      throw InvalidInput("technical equations: there is no rotor among the bodies");
+    }
+  }
+
+  [[nodiscard]] const BodySystem<M>& system() const { return system_; }
+
+  /// Place and u of a state.
+  [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> start(double t,
+                                                                  const Eigen::VectorXd& y) const {
+    const BodyTree& tree = system_.tree();
+    const RotorMatrices m = rotor_matrices(system_, t, y, workspace_);
+    Eigen::VectorXd place(tree.coordinates() + m.l.size());
+    place << y.head(tree.coordinates()), m.l;
+    return {place, y.tail(tree.rates())(rates_)};
+  }
+
+  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const {
+    const auto n = static_cast<Eigen::Index>(rates_.size());
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
+    const RotorMatrices m = matrices(t, place, zero);
+    GyroForces f{m.A_eff, m.G_R, Eigen::MatrixXd::Zero(n, n), m.Q - m.c};
+    const BodyTree& tree = system_.tree();
+    if (tree.loaded().empty()) {
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const int rate = rates_[static_cast<std::size_t>(k)];
+        f.D(k, k) = tree.forces()[static_cast<std::size_t>(rate)].damping;
+      }
+      return f;
+    }
+    for (Eigen::Index k = 0; k < n; ++k) {
+      // Small, for what loads have of higher order in the velocities is no damping.
+      const double small = 1e-3;
+      const Eigen::VectorXd u = small * Eigen::VectorXd::Unit(n, k);
+      f.D.col(k) = (matrices(t, place, -u).Q - matrices(t, place, u).Q) / (2 * small);
+    }
+    return f;
+  }
+
+  [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
+                                              const Eigen::VectorXd& u) const {
+    const GyroForces f = forces(t, place);
+    const RotorMatrices m = matrices(t, place, u);
+    return f.Q - (m.Q - m.c) - f.D * u;
+  }
+
+  [[nodiscard]] Eigen::VectorXd rate(double t, const Eigen::VectorXd& place,
+                                     const Eigen::VectorXd& u) const {
+    const BodyTree& tree = system_.tree();
+    Eigen::VectorXd result(place.size());
+    const Eigen::VectorXd v = scattered(u);
+    detail::set_coordinate_rates(tree, place.data(), v.data(), result.data());
+    for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+      const detail::RotorLink& rotor = tree.rotors()[k];
+      const auto& asked = tree.body(rotor.link.body).rotor->acceleration;
+      const double torque = tree.forces()[static_cast<std::size_t>(rotor.link.v)].constant;
+      result[tree.coordinates() + static_cast<Eigen::Index>(k)] = !rotor.regulated() ? torque
+                                                                  : asked ? rotor.about * asked(t)
+                                                                          : 0.0;
+    }
+    return result;
+  }
+
+  [[nodiscard]] Eigen::VectorXd moved(const Eigen::VectorXd& place,
+                                      const Eigen::VectorXd& e) const {
+    Eigen::VectorXd result = place;
+    const Eigen::VectorXd v = scattered(e);
+    for (const detail::Link& link : system_.tree().links()) {
+      if (detail::rate_count(link.kind) == 1) result[link.q] += v[link.v];
+      if (detail::rate_count(link.kind) < 3) continue;
+      const Eigen::Quaterniond q(Eigen::Vector4d(place.segment<4>(link.q)));
+      result.segment<4>(link.q) = turned(q, Vector3<double>(v.segment<3>(link.v))).coeffs();
+      if (link.kind == detail::LinkKind::free) {
+        result.segment<3>(link.q + 4) += v.segment<3>(link.v + 3);
+      }
+    }
+    return result;
+  }
+
+  [[nodiscard]] Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
+                                              const Eigen::VectorXd& u,
+                                              const Eigen::VectorXd& e) const {
+    const Eigen::VectorXd w = scattered(u), x = scattered(e);
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(x.size());
+    for (const detail::Link& link : system_.tree().links()) {
+      if (detail::rate_count(link.kind) < 3) continue;
+      const Vector3<double> turn = w.segment<3>(link.v), angles = x.segment<3>(link.v);
+      result.segment<3>(link.v) = angles.cross(turn);
+    }
+    return result(rates_);
+  }
+
+  [[nodiscard]] std::vector<int> blocks() const {
+    const BodyTree& tree = system_.tree();
+    std::vector<int> result;
+    for (int sum = 0; const int size : tree.blocks()) {
+      if (sum == tree.coordinates()) break;
+      result.push_back(size);
+      sum += size;
+    }
+    result.insert(result.end(), tree.rotors().size(), 1);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd scattered(const Eigen::VectorXd& u) const {
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(system_.tree().rates());
+    v(rates_) = u;
+    return v;
+  }
+
+  /// With the rotors at the rates that belong to their momenta.
+  [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& place,
+                                       const Eigen::VectorXd& u) const {
+    const BodyTree& tree = system_.tree();
+    const Eigen::VectorXd l = place.tail(static_cast<Eigen::Index>(tree.rotors().size()));
+    Eigen::VectorXd y(tree.coordinates() + tree.rates());
+    y << place.head(tree.coordinates()), scattered(u);
+    const auto set_rate = [&](std::size_t k, double momentum) {
+      const detail::RotorLink& rotor = tree.rotors()[k];
+      y[tree.coordinates() + rotor.link.v] += momentum / rotor.about;
+    };
+    for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+      set_rate(k, l[static_cast<Eigen::Index>(k)]);
+    }
+    RotorMatrices m = rotor_matrices(system_, t, y, workspace_);
+    // Of a free one the momentum is absolute; what its carrier turns is less for the rate.
+    const Eigen::VectorXd carried = m.l - l;
+    if (carried.isZero(0)) return m;
+    for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+      set_rate(k, -carried[static_cast<Eigen::Index>(k)]);
+    }
+    return rotor_matrices(system_, t, y, workspace_);
+  }
+
+  BodySystem<M> system_;
+  std::vector<int> rates_;
+  mutable BodyWorkspace workspace_;
+};
+
+}  // namespace kreisel
