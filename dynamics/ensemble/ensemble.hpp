@@ -1,0 +1,362 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <dynamics/ensemble/packed_steps.hpp>
+#include <dynamics/ensemble/random.hpp>
+#include <dynamics/ensemble/workers.hpp>
+#include <dynamics/solve/adaptive_runs.hpp>
+#include <dynamics/solve/error_measure.hpp>
+#include <dynamics/solve/report.hpp>
+#include <dynamics/solve/task.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+/// Which members of an ensemble are computed, and by whom.
+struct Sampling {
+  std::size_t count = 0;   ///< of members
+  std::size_t first = 0;   ///< the index of the first; a multiple of the lanes of a pack
+  std::uint64_t seed = 1;  ///< of the random numbers of all members
+  int threads = 0;         ///< 0: as many as the machine runs at once
+
+  /// Whether a finer run beside each tells its error; without it the estimates are NaN, each run is
+  /// held to a tenth of the tolerance in every step, and the finer runs are saved.
+  bool estimates_errors = true;
+
+  /// Called with the share done, in (0, 1], never by two threads at once; false cancels.
+  std::function<bool(double share)> progress = nullptr;
+};
+
+/// A member of an ensemble that has a scene of its own.
+template <class Scene>
+struct Member {
+  Scene scene;
+  typename Scene::State start;
+};
+template <class Scene>
+Member(Scene, typename Scene::State) -> Member<Scene>;
+
+/// The members' motions in the order of their indices, and what they have cost together.
+///
+/// A member's status is `failed`, with the reason, where it could not be made or its run stopped,
+/// and `cancelled` where it was not computed to the end. Its effort is that of the pack it ran in;
+/// invariants are not watched.
+template <class State>
+struct Ensemble {
+  std::vector<Trajectory<State>> members;
+  RunStatus status = RunStatus::complete;  ///< or cancelled
+  std::size_t failed = 0;
+  double run_time = 0;  ///< s
+};
+
+namespace detail {
+
+/// Goes on until the last step covers t; says whether nobody asked to stop.
+template <class Run>
+[[nodiscard]] bool go_on(Run& run, double t, double end, const std::atomic<bool>& stop) {
+  while (!run.covers(t)) {
+    if (stop) return false;
+    run.step_towards(end);
+  }
+  return true;
+}
+
+/// Members side by side through all output times, each beside a finer one, as solve() does with
+/// one; those that are nullptr fill a pack up.
+///
+/// Throws : ComputationFailed where one of them stops; outputs before that are kept
+template <class N, class Scene>
+void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
+            const Task& task, bool estimates_errors, const std::atomic<bool>& stop,
+            const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
+  constexpr double rounding = 2.5;
+  const AdaptiveRuns runs(task);
+  const double end = task.times.back();
+  const double middle = (task.begin + end) / 2;
+  double setting = runs.first();
+  double spent = 0;
+  while (true) {
+    const bool last_try = !estimates_errors || runs.last(setting);
+    const auto run = [&](double relative) {
+      PackedAdvance<Scene, N> made(scene, task.begin, starts, runs.accuracy(relative));
+      made.stop_at(task.jumps);
+      return made;
+    };
+    auto coarse = run(setting);
+    std::optional<PackedAdvance<Scene, N>> fine;
+    if (estimates_errors) fine = run(runs.finer(setting));
+    std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, task.smallest});
+    for (auto* member : members) {
+      if (!member) continue;
+      *member = {};
+      member->report.method = name(Method::verner98);
+      member->report.tolerance = task.tolerance;
+      member->report.status = RunStatus::cancelled;
+      if (!fine) member->report.error_estimate = std::numeric_limits<double>::quiet_NaN();
+    }
+    double worst = 0;
+    for (const double t : task.times) {
+      if (!go_on(coarse, t, end, stop)) return;
+      const auto states = coarse.at(t);
+      auto better = states;
+      if (fine) {
+        const bool first_half = (t < middle) == (end > task.begin);
+        if (!go_on(*fine, t, first_half ? middle : end, stop)) return;
+        better = fine->at(t);
+      }
+      for (std::size_t k = 0; fine && k < members.size(); ++k) {
+        if (!members[k]) continue;
+        double& estimate = members[k]->report.error_estimate;
+        const double off = distance[k](scene.to_vector(states[k]), scene.to_vector(better[k]));
+        estimate = std::max(estimate, error_of_pair(off, rounding, coarse.effort().steps));
+        worst = std::max(worst, estimate);
+      }
+      if (worst > task.tolerance && !last_try) break;
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        if (!members[k]) continue;
+        members[k]->times.push_back(t);
+        members[k]->states.push_back(states[k]);
+      }
+    }
+    spent += coarse.effort().evaluations + (fine ? fine->effort().evaluations : 0);
+    if (worst > task.tolerance && !last_try) {
+      setting = runs.tightened(setting, task.tolerance / (3 * worst));
+      continue;
+    }
+    for (auto* member : members) {
+      if (!member) continue;
+      RunReport& report = member->report;
+      report.status = RunStatus::complete;
+      report.effort = coarse.effort();
+      report.all_evaluations = spent;
+      report.tolerance_kept = report.error_estimate <= task.tolerance;
+    }
+    return;
+  }
+}
+
+/// The members of a group, all of one scene.
+template <class Scene, class N>
+class GroupOfOneScene {
+ public:
+  using State = typename Scene::State;
+
+  explicit GroupOfOneScene(const Scene& scene) : scene_(scene) {}
+
+  void put(std::size_t k, const State& start) { starts_[k] = start; }
+  void copy(std::size_t from, std::size_t to) { starts_[to] = starts_[from]; }
+
+  template <class Follow>
+  [[nodiscard]] bool together(const Follow& follow) const {
+    if constexpr (takes_packs<Scene, N>) follow(scene_, starts_);
+    return takes_packs<Scene, N>;
+  }
+  template <class Follow>
+  void alone(std::size_t k, const Follow& follow) const {
+    follow(scene_, std::array{starts_[k]});
+  }
+
+ private:
+  const Scene& scene_;
+  std::array<State, std::size_t(lanes_of<N>)> starts_;
+};
+
+/// Whether scenes of this kind can become one of packs.
+template <class Scene, class N>
+inline constexpr bool lies_side_by_side = false;
+template <class Scene, class N>
+requires is_pack<N>
+inline constexpr bool lies_side_by_side<Scene, N> =
+    requires(const std::array<const Scene*, std::size_t(N::lanes)>& scenes) {
+  Scene::template side_by_side<N>(scenes);
+};
+
+/// The members of a group, each of a scene of its own.
+template <class Scene, class N>
+class GroupOfScenes {
+ public:
+  using State = typename Scene::State;
+
+  void put(std::size_t k, Member<Scene> member) { members_[k].emplace(std::move(member)); }
+  void copy(std::size_t from, std::size_t to) { members_[to] = members_[from]; }
+
+  template <class Follow>
+  [[nodiscard]] bool together(const Follow& follow) const {
+    if constexpr (lies_side_by_side<Scene, N>) {
+      std::array<const Scene*, std::size_t(lanes_of<N>)> scenes;
+      std::array<State, std::size_t(lanes_of<N>)> starts;
+      for (std::size_t k = 0; k < members_.size(); ++k) {
+        scenes[k] = &members_[k]->scene;
+        starts[k] = members_[k]->start;
+      }
+      const auto packed = Scene::template side_by_side<N>(scenes);
+      if (packed) follow(*packed, starts);
+      return packed.has_value();
+    } else {
+      return false;
+    }
+  }
+  template <class Follow>
+  void alone(std::size_t k, const Follow& follow) const {
+    follow(members_[k]->scene, std::array{members_[k]->start});
+  }
+
+ private:
+  std::array<std::optional<Member<Scene>>, std::size_t(lanes_of<N>)> members_;
+};
+
+template <class State>
+void fail(Trajectory<State>& member, const std::exception& error) {
+  member.report.status = RunStatus::failed;
+  member.report.message = error.what();
+}
+
+/// Members of an ensemble from `index` on, as many as N has lanes and the ensemble still has.
+template <class N, class Group, class Make>
+void run_group(Group group, const Make& make, std::size_t index, const Task& task,
+               const Sampling& sampling, const std::atomic<bool>& stop,
+               std::span<Trajectory<typename Group::State>> members) {
+  using State = typename Group::State;
+  constexpr std::size_t lanes{lanes_of<N>};
+  const auto begin = std::chrono::steady_clock::now();
+  std::array<Trajectory<State>*, lanes> made{};
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    try {
+      MemberRandom random(sampling.seed, index + k);
+      group.put(k, make(index + k, random));
+      made[k] = &members[k];
+    } catch (const std::exception& error) {
+      fail(members[k], error);
+    }
+  }
+  const auto* first = std::find_if(made.begin(), made.end(), [](auto* m) { return m != nullptr; });
+  if (first == made.end()) return;
+  for (std::size_t k = 0; k < lanes; ++k) {
+    if (!made[k]) group.copy(static_cast<std::size_t>(first - made.begin()), k);
+  }
+  const auto all_together = [&] {
+    try {
+      return group.together([&](const auto& scene, const auto& starts) {
+        follow<N>(scene, starts, task, sampling.estimates_errors, stop, made);
+      });
+    } catch (const std::exception&) {
+      return false;  // alone it will tell whom it was
+    }
+  };
+  if (!all_together()) {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      if (!made[k]) continue;
+      try {
+        group.alone(k, [&](const auto& scene, const auto& starts) {
+          follow<double>(scene, starts, task, sampling.estimates_errors, stop, std::array{made[k]});
+        });
+      } catch (const std::exception& error) {
+        fail(*made[k], error);
+      }
+    }
+  }
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  for (auto& member : members) {
+    member.report.run_time = taken.count() / static_cast<double>(members.size());
+  }
+}
+
+inline void check(const Sampling& sampling, const Task& task, int lanes) {
+  check(task);
+  if (task.method != Method::automatic && task.method != Method::verner98) {
+    refuse_task("an ensemble runs by verner98, not by ", name(task.method));
+  }
+  if (task.progress) refuse_task("an ensemble tells its progress by Sampling::progress");
+  if (sampling.threads < 0) refuse_task("threads = ", sampling.threads, " must be 0 or above");
+  if (sampling.first % static_cast<std::size_t>(lanes) != 0) {
+    refuse_task("the first member, ", sampling.first, ", begins no pack of ", lanes);
+  }
+}
+
+template <class N, class Group, class Make>
+[[nodiscard]] Ensemble<typename Group::State> run_ensemble(const Group& group, const Make& make,
+                                                           const Task& task,
+                                                           const Sampling& sampling) {
+  constexpr std::size_t lanes{lanes_of<N>};
+  check(sampling, task, lanes_of<N>);
+  const auto begin = std::chrono::steady_clock::now();
+  Ensemble<typename Group::State> result;
+  result.members.resize(sampling.count);
+  for (auto& member : result.members) member.report.status = RunStatus::cancelled;
+  const bool all_done =
+      share_out((sampling.count + lanes - 1) / lanes, sampling.threads, sampling.progress,
+                [&](std::size_t i, const std::atomic<bool>& stop) {
+                  const std::size_t from = i * lanes;
+                  const std::size_t count = std::min(lanes, sampling.count - from);
+                  run_group<N>(group, make, sampling.first + from, task, sampling, stop,
+                               std::span(result.members).subspan(from, count));
+                });
+  if (!all_done) result.status = RunStatus::cancelled;
+  for (const auto& member : result.members) {
+    if (member.report.status == RunStatus::failed) ++result.failed;
+  }
+  result.run_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace detail
+
+/// Many motions of one scene, from starts that are drawn at random or made from the index: a
+/// Monte-Carlo run.
+///
+///   const auto result = ensemble(top, {.count = 10000}, [](std::size_t, MemberRandom& random) {
+///     return EulerTop::State{.angular_velocity = {random.normal(0, 0.01), 0, 100}};
+///   }, {.times = {60}});
+///
+/// Members run side by side, as many as a pack has lanes, where the scene's rates calculate with
+/// packs: index / lanes says with whom. Results are therefore the same to the last bit for any
+/// number of threads and for any ranges of indices the ensemble is divided into; another width of
+/// packs changes them within the tolerance. A pack that one of its members stops is run again one
+/// by one, so that a member fails for reasons of its own only.
+///
+/// Steps are explicit (ExplicitSteps): stiff members take many, and fail at task.most_evaluations.
+///
+/// N      : the pack; or double, for members one by one
+/// make   : callable (index, MemberRandom&) -> State, from several threads at once; what it throws
+///          makes the member fail
+/// Error  : of each member as task.tolerance asks, estimated as solve() does
+/// Throws : InvalidInput for a task or sampling that makes no sense; what sampling.progress throws
+template <class N = Pack, class Scene, class Make>
+[[nodiscard]] Ensemble<typename Scene::State> ensemble(const Scene& scene, const Sampling& sampling,
+                                                       const Make& make, const Task& task) {
+  using Taken = std::conditional_t<detail::takes_packs<Scene, N>, N, double>;
+  return detail::run_ensemble<Taken>(detail::GroupOfOneScene<Scene, Taken>(scene), make, task,
+                                     sampling);
+}
+
+/// The same with members that each have a scene of its own: other moments of inertia, other loads.
+///
+/// They share packs too where the scene can lie side by side with others of its kind: EulerTop; and
+/// CardanGyro in a frame at rest, with a free or regulated rotor, if all of a pack are symmetric or
+/// none is and all have one friction of the rotor. Others run one by one.
+///
+/// make   : callable (index, MemberRandom&) -> Member<Scene>
+template <class N = Pack, class Make>
+[[nodiscard]] auto ensemble(const Sampling& sampling, const Make& make, const Task& task) {
+  using Made = std::invoke_result_t<const Make&, std::size_t, MemberRandom&>;
+  using Scene = decltype(Made::scene);
+  using Taken = std::conditional_t<detail::lies_side_by_side<Scene, N>, N, double>;
+  return detail::run_ensemble<Taken>(detail::GroupOfScenes<Scene, Taken>(), make, task, sampling);
+}
+
+}  // namespace kreisel

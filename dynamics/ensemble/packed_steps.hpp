@@ -1,0 +1,125 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <dynamics/ensemble/pack.hpp>
+#include <dynamics/step/advance.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+/// The vector field of a scene on as many members as a pack has lanes: component after component,
+/// lane after lane in each.
+template <class Scene, class N>
+struct PackedField {
+  static constexpr int components = int(Scene::Vector::RowsAtCompileTime);
+  using Vector = Eigen::Matrix<double, components * N::lanes, 1>;
+
+  const Scene* scene;
+
+  void operator()(double t, const Vector& y, Vector& rate) const {
+    Eigen::Matrix<N, components, 1> state;
+    for (int i = 0; i < components; ++i) state[i] = component<N>(y, i);
+    const Eigen::Matrix<N, components, 1> rates = scene->rates(N(t), state);
+    for (int i = 0; i < components; ++i) rates[i].store(rate.data() + i * N::lanes);
+  }
+};
+
+/// Whether a scene's rates calculate with packs.
+template <class Scene, class N>
+inline constexpr bool takes_packs = false;
+template <class Scene, class N>
+requires(is_pack<N>&& int(Scene::Vector::RowsAtCompileTime) >
+         0) inline constexpr bool takes_packs<Scene, N> =
+    requires(const Scene& scene, const N& t,
+             const Eigen::Matrix<N, int(Scene::Vector::RowsAtCompileTime), 1>& y) {
+  scene.rates(t, y);
+};
+
+}  // namespace detail
+
+/// As many motions of a scene as N has lanes, integrated step by step with common steps: the one
+/// that errs the most in proportion to its own size sets their length, so that each is held to the
+/// accuracy that it would be held to alone. What one of them is stopped by stops them all.
+///
+/// N      : a pack; or double, for one motion of any scene
+/// Cost   : no memory is asked for while steps go on
+/// Throws : as Advance does; ComputationFailed also where rounding in one's field keeps the accuracy
+///          from being met, which alone it would be forgiven for
+template <class Scene, class N = Pack>
+class PackedAdvance {
+  using Field = detail::PackedField<Scene, N>;
+  using Vector = typename Field::Vector;
+
+ public:
+  using States = std::array<typename Scene::State, std::size_t(N::lanes)>;
+
+  PackedAdvance(const Scene& scene, double t, const States& states, const Accuracy& accuracy = {})
+      : scene_(&scene),
+        steps_({&scene}, t, side_by_side(scene, states), accuracy, detail::blocks_of(scene)) {}
+  PackedAdvance(Scene&&, double, const States&, const Accuracy& = {}) = delete;
+
+  /// The states at the time `end`, before or after the present one.
+  States to(double end) { return apart(steps_.advance_to(end)); }
+
+  /// One step towards `end`, whether a time lies within it, and the states there.
+  void step_towards(double end) { steps_.step_towards(end); }
+  [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
+  [[nodiscard]] States at(double time) { return apart(steps_.at(time)); }
+
+  /// Announces times at which the scene's guide or loads jump.
+  void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
+
+  /// Of all together, who take the same steps.
+  [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+
+ private:
+  [[nodiscard]] static Vector side_by_side(const Scene& scene, const States& states) {
+    Vector y;
+    for (int k = 0; k < N::lanes; ++k) {
+      const typename Scene::Vector own = scene.to_vector(states[std::size_t(k)]);
+      for (int i = 0; i < Field::components; ++i) y[i * N::lanes + k] = own[i];
+    }
+    return y;
+  }
+
+  [[nodiscard]] States apart(const Vector& y) const {
+    States states;
+    for (int k = 0; k < N::lanes; ++k) {
+      typename Scene::Vector own;
+      for (int i = 0; i < Field::components; ++i) own[i] = y[i * N::lanes + k];
+      states[std::size_t(k)] = scene_->from_vector(own);
+    }
+    return states;
+  }
+
+  const Scene* scene_;
+  ExplicitSteps<Vector, Field, Verner98, N> steps_;
+};
+
+template <class Scene>
+class PackedAdvance<Scene, double> {
+ public:
+  using States = std::array<typename Scene::State, 1>;
+
+  PackedAdvance(const Scene& scene, double t, const States& states, const Accuracy& accuracy = {})
+      : steps_(scene, t, states[0], accuracy) {}
+  PackedAdvance(Scene&&, double, const States&, const Accuracy& = {}) = delete;
+
+  States to(double end) { return {steps_.to(end)}; }
+  void step_towards(double end) { steps_.step_towards(end); }
+  [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
+  [[nodiscard]] States at(double time) { return {steps_.at(time)}; }
+  void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
+  [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+
+ private:
+  Advance<Scene> steps_;
+};
+
+}  // namespace kreisel

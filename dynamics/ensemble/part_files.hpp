@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/ensemble/pack.hpp>
+#include <dynamics/file/atomic_file.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+/// Members of an ensemble from `first` on.
+struct MemberRange {
+  std::size_t first;
+  std::size_t count;
+};
+
+/// The results of an ensemble, a row of text for each member, in parts that each have a file: what
+/// is there when a program ends, or one of several dies, need not be computed again. Several
+/// programs may write different parts of one folder.
+///
+/// A file says of which ensemble it is and appears whole or not at all.
+class PartFiles {
+ public:
+  /// How many members a part has: whole packs of any width.
+  static constexpr std::size_t members = 256;
+  static_assert(members % Pack::lanes == 0);
+
+  /// `what` names seed, scene, task and all else that the rows depend on, in one line.
+  ///
+  /// Throws : InvalidInput where the folder cannot be made
+  PartFiles(std::filesystem::path folder, std::string what, std::size_t count)
+      : folder_(std::move(folder)), what_(std::move(what)), count_(count) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw InvalidInput(folder_.string() + ": " + error.message());
+  }
+
+  [[nodiscard]] std::size_t size() const { return (count_ + members - 1) / members; }
+
+  [[nodiscard]] MemberRange range(std::size_t part) const {
+    return {part * members, std::min(members, count_ - part * members)};
+  }
+
+  [[nodiscard]] bool has(std::size_t part) const { return std::filesystem::exists(place(part)); }
+
+  /// The parts that have no file yet.
+  [[nodiscard]] std::vector<std::size_t> missing() const {
+    std::vector<std::size_t> parts;
+    for (std::size_t part = 0; part < size(); ++part) {
+      if (!has(part)) parts.push_back(part);
+    }
+    return parts;
+  }
+
+  /// Throws : ComputationFailed, InvalidInput where the file cannot be written
+  void write(std::size_t part, const std::vector<std::string>& rows) const {
+    AtomicFile file(place(part));
+    file.stream() << heading() << '\n';
+    for (const std::string& row : rows) file.stream() << row << '\n';
+    file.commit();
+  }
+
+  /// Throws : InvalidInput for a file that cannot be read or is of another ensemble
+  [[nodiscard]] std::vector<std::string> read(std::size_t part) const {
+    std::ifstream file(place(part));
+    std::string line;
+    if (!std::getline(file, line)) throw InvalidInput(place(part).string() + ": cannot be read");
+    if (line != heading()) {
+      throw InvalidInput(place(part).string() + ": is of another ensemble: " + line);
+    }
+    std::vector<std::string> rows;
+    while (std::getline(file, line)) rows.push_back(line);
+    if (file.bad() || rows.size() != range(part).count) {
+      throw InvalidInput(place(part).string() + ": has not a row for each member");
+    }
+    return rows;
+  }
+
+ private:
+  [[nodiscard]] std::filesystem::path place(std::size_t part) const {
+    return folder_ / ("members-" + std::to_string(part * members) + ".csv");
+  }
+
+  [[nodiscard]] std::string heading() const {
+    return "# " + what_ + ", lanes " + std::to_string(Pack::lanes) + ", members " +
+           std::to_string(count_);
+  }
+
+  std::filesystem::path folder_;
+  std::string what_;
+  std::size_t count_;
+};
+
+}  // namespace kreisel
