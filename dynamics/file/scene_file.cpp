@@ -1,0 +1,746 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include <dynamics/file/motion_log.hpp>
+#include <dynamics/file/scene_file.hpp>
+#include <dynamics/inertia.hpp>
+#include <motor/error.hpp>
+
+#include "scene_section.hpp"
+
+namespace kreisel {
+
+namespace {
+
+using detail::Mistakes;
+using detail::Range;
+using detail::Section;
+
+constexpr std::size_t most_outputs = 10'000'000;
+
+Vector3<double> three(const std::vector<double>& x) { return {x[0], x[1], x[2]}; }
+
+/// What a check of the library found, without its name for the thing.
+std::string reason(const InvalidInput& error) {
+  const std::string text = error.what();
+  const std::size_t colon = text.find(": ");
+  return colon == std::string::npos ? text : text.substr(colon + 2);
+}
+
+/// A quaternion [w, x, y, z] of norm 1, but for what rounding to a few digits takes.
+std::optional<Eigen::Quaterniond> quaternion(Section& section, std::string_view key) {
+  const auto values = section.numbers(key, 4);
+  if (!values) return std::nullopt;
+  const Eigen::Quaterniond q((*values)[0], (*values)[1], (*values)[2], (*values)[3]);
+  if (!(std::abs(q.norm() - 1) <= 1e-3)) {
+    section.refuse(
+        key, "is a quaternion [w, x, y, z] of norm " + std::to_string(q.norm()) + ", not of 1");
+    return std::nullopt;
+  }
+  return q.normalized();
+}
+
+class SceneReader {
+ public:
+  SceneReader(const toml::table& root, const std::filesystem::path& path,
+              const SolveRequest& request, Mistakes& mistakes)
+      : root_(root, "", mistakes), path_(path), request_(request), mistakes_(mistakes) {}
+
+  SceneFile read() {
+    scene_.title = root_.text("title").value_or("");
+    read_solve();
+    read_guide();
+    read_gravity();
+    read_bodies();
+    read_report();
+    root_.finish();
+    mistakes_.throw_any();
+    return std::move(scene_);
+  }
+
+ private:
+  void read_solve() {
+    auto solve = root_.section("solve");
+    if (!solve) {
+      if (!root_.has("solve") && !request_.t_end) {
+        root_.refuse_all("the table [solve] with its key 't_end' is missing");
+      }
+      set_times({}, {});
+      return;
+    }
+    if (request_.t_end) {
+      [[maybe_unused]] const auto overruled = solve->number("t_end", Range::positive);
+      scene_.t_end = *request_.t_end;
+    } else {
+      scene_.t_end = solve->required_number("t_end", Range::positive);
+    }
+    if (const auto tolerance = solve->number("tolerance")) {
+      if (*tolerance >= 1e-15 && *tolerance <= 1e-2) {
+        scene_.tolerance = *tolerance;
+      } else {
+        solve->refuse("tolerance", "lies outside [1e-15, 1e-2], what double precision can promise");
+      }
+    }
+    scene_.tolerance = request_.tolerance.value_or(scene_.tolerance);
+    const std::string method = solve->choice(
+        "method",
+        {"auto", "automatic", "closed form", "verner98", "gauss16", "radau13", "splitting"});
+    scene_.method = request_.method.value_or(*method_named(method));
+    const std::string model = solve->choice("model", {"exact", "precession", "linear", "foeppl"});
+    if (model != "exact") {
+      solve->refuse("model", "'" + model + "' is not offered for this scene; 'exact' is");
+    }
+    const auto step = solve->number("output_step", Range::positive);
+    const auto times = solve->numbers("output_times");
+    if (step && times) {
+      solve->refuse("output_times", "is given beside 'output_step'; one of them says when");
+    }
+    if (step && scene_.t_end / *step > most_outputs) {
+      solve->refuse("output_step", "asks for more than ten million rows");
+    }
+    if (times) check_times(*solve, *times);
+    solve->finish();
+    if (mistakes_.none()) set_times(step, times);
+  }
+
+  void check_times(Section& solve, const std::vector<double>& times) const {
+    if (times.empty()) solve.refuse("output_times", "is empty");
+    double before = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (times[i] < 0) {
+        solve.refuse("output_times", "begins before t = 0");
+        return;
+      }
+      if (i > 0 && !(times[i] > before)) {
+        solve.refuse("output_times", "does not increase at number " + std::to_string(i + 1));
+        return;
+      }
+      before = times[i];
+    }
+    if (!times.empty() && !request_.t_end && times.back() > scene_.t_end) {
+      solve.refuse("output_times", "goes on after t_end");
+    }
+  }
+
+  void set_times(const std::optional<double>& given_step,
+                 const std::optional<std::vector<double>>& given) {
+    if (scene_.t_end == 0) scene_.t_end = request_.t_end.value_or(1);
+    const double end = scene_.t_end;
+    if (given) {
+      std::copy_if(given->begin(), given->end(), std::back_inserter(scene_.output_times),
+                   [end](double t) { return t <= end; });
+      return;
+    }
+    const double step = given_step.value_or(end / 500);
+    const auto whole = static_cast<std::size_t>(end / step * (1 + 1e-12));
+    for (std::size_t i = 0; i <= whole; ++i) {
+      scene_.output_times.push_back(std::min(static_cast<double>(i) * step, end));
+    }
+    const bool reached = end - scene_.output_times.back() <= 1e-9 * step;
+    if (reached) {
+      scene_.output_times.back() = end;
+    } else {
+      scene_.output_times.push_back(end);
+    }
+  }
+
+  void read_guide() {
+    if (!root_.has("guide")) {
+      scene_.guide.emplace_back(scene_guide::Resting{});
+      return;
+    }
+    if (auto guide = root_.section("guide")) read_links(*guide, 0);
+    if (scene_.guide.empty()) scene_.guide.emplace_back(scene_guide::Resting{});
+  }
+
+  void read_links(Section& guide, int depth) {
+    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic",
+                                         "earth",    "table",    "chain"};
+    const std::string kind =
+        depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
+    if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
+        guide.find("kind")->as_string()->get() != kind) {
+      // Of an unknown kind nothing can be said about the other keys.
+      if (guide.has("kind") || depth > 0) guide.ignore_rest();
+    }
+    if (kind == "inertial") scene_.guide.emplace_back(scene_guide::Resting{});
+    if (kind == "rotating") {
+      scene_.guide.emplace_back(scene_guide::Rotating{
+          guide.required_vector("angular_velocity"),
+          guide.vector("origin_acceleration").value_or(Vector3<double>::Zero())});
+    }
+    if (kind == "harmonic") {
+      if (!guide.has("angular_velocity") && !guide.has("origin_acceleration")) {
+        guide.refuse_missing("angular_velocity");
+      }
+      scene_guide::Harmonic link;
+      link.angular_velocity = read_series(guide, "angular_velocity");
+      link.origin_acceleration = read_series(guide, "origin_acceleration");
+      check_length(guide, link);
+      scene_.guide.emplace_back(std::move(link));
+    }
+    if (kind == "earth") read_earth(guide);
+    if (kind == "table") read_table(guide);
+    if (kind == "chain") {
+      constexpr int deepest = 8;
+      if (!guide.has("links")) guide.refuse_missing("links");
+      std::vector<Section> links = guide.sections("links");
+      if (guide.has("links") && links.empty() && guide.find("links")->is_array()) {
+        guide.refuse("links", "is empty");
+      }
+      if (depth == deepest) {
+        guide.refuse("links", "is a chain in a chain, nine deep");
+        links.clear();
+      }
+      for (Section& link : links) read_links(link, depth + 1);
+    }
+    guide.finish();
+  }
+
+  static HarmonicSeries<double> read_series(Section& guide, std::string_view key) {
+    HarmonicSeries<double> series;
+    auto section = guide.section(key);
+    if (!section) return series;
+    series.constant = section->vector("constant").value_or(Vector3<double>::Zero());
+    for (Section& term : section->sections("terms")) {
+      const Vector3<double> amplitude = term.required_vector("amplitude");
+      const double frequency = term.required_number("frequency");
+      series.terms.push_back({amplitude, frequency, term.angle("phase").value_or(0)});
+      term.finish();
+    }
+    section->finish();
+    return series;
+  }
+
+  /// HarmonicFrame keeps a piece of 1 kB for each 1/(2 Omega).
+  void check_length(Section& guide, const scene_guide::Harmonic& link) const {
+    double turning = link.angular_velocity.constant.norm();
+    double frequency = 0;
+    for (const auto* const series : {&link.angular_velocity, &link.origin_acceleration}) {
+      for (const auto& term : series->terms) {
+        if (series == &link.angular_velocity) turning += term.amplitude.norm();
+        frequency = std::max(frequency, std::abs(term.frequency));
+      }
+    }
+    constexpr double most_pieces = 1e6;
+    if (2 * (turning / 2 + frequency) * scene_.t_end > most_pieces) {
+      guide.refuse("kind",
+                   "'harmonic' turns too fast for so long a run: over half a million radian");
+    }
+  }
+
+  void read_earth(Section& guide) {
+    scene_guide::Earth link;
+    link.site.latitude = guide.required_number("latitude_deg");
+    link.site.height = guide.required_number("height");
+    link.site.azimuth = guide.required_number("azimuth_deg");
+    link.site.rotation_rate = guide.number("rate").value_or(link.site.rotation_rate);
+    if (!scene_.guide.empty()) {
+      guide.refuse("kind",
+                   "'earth' must be the first link: the earth moves against no frame but "
+                   "the inertial one");
+    }
+    const toml::node* const gravity = guide.find("gravity");
+    if (gravity != nullptr && gravity->is_number()) {
+      link.gravity = guide.number("gravity", Range::positive);
+      if (link.gravity) site_gravity_ = scene_gravity::AtSite{*link.gravity};
+    } else if (gravity != nullptr && guide.choice("gravity", {"normal", "none"}) == "normal") {
+      site_gravity_ = scene_gravity::Ellipsoid{};
+    }
+    try {
+      check(link.site);
+    } catch (const InvalidInput& error) {
+      const std::string text = error.what();
+      const char* const key = text.starts_with("latitude")  ? "latitude_deg"
+                              : text.starts_with("azimuth") ? "azimuth_deg"
+                              : text.starts_with("height")  ? "height"
+                                                            : "rate";
+      guide.refuse(key, text.substr(text.find("= ") + 2));
+    }
+    scene_.guide.emplace_back(std::move(link));
+  }
+
+  void read_table(Section& guide) {
+    const std::string name = guide.required_text("file");
+    if (name.empty()) {
+      if (guide.has("file") && guide.find("file")->is_string()) guide.refuse("file", "is empty");
+      return;
+    }
+    const std::filesystem::path file = path_.parent_path() / name;
+    try {
+      MotionLog<double> log = read_motion_log(file);
+      const TabulatedFrame<> checked(log);
+      if (checked.begin() > 0 || checked.end() < scene_.t_end) {
+        guide.refuse("file", "'" + name + "' goes from t = " + std::to_string(checked.begin()) +
+                                 " s to " + std::to_string(checked.end()) +
+                                 " s and does not cover the run, 0 to " +
+                                 std::to_string(scene_.t_end) + " s");
+      }
+      scene_.guide.emplace_back(scene_guide::Table{file, std::move(log)});
+    } catch (const InvalidInput& error) {
+      guide.refuse("file", error.what());
+    }
+  }
+
+  void read_gravity() {
+    scene_.gravity = scene_gravity::None{};
+    if (!root_.has("gravity")) {
+      scene_.gravity = site_gravity_;
+      return;
+    }
+    auto gravity = root_.section("gravity");
+    if (!gravity) return;
+    const std::string kind = gravity->choice("kind", {"none", "uniform", "inertial", "earth"});
+    if (gravity->has("kind") && gravity->text("kind").value_or("") != kind) gravity->ignore_rest();
+    if (kind == "uniform") {
+      scene_.gravity = UniformGravity<Guide>{gravity->required_vector("vector")};
+    }
+    if (kind == "inertial") {
+      scene_.gravity = UniformGravity<Inertial>{gravity->required_vector("vector")};
+    }
+    const bool on_earth =
+        !scene_.guide.empty() && std::holds_alternative<scene_guide::Earth>(scene_.guide.front());
+    if (kind == "earth") {
+      scene_.gravity = scene_gravity::Ellipsoid{};
+      if (!on_earth) {
+        gravity->refuse("kind",
+                        "'earth' needs a guide of kind 'earth', or a chain that begins "
+                        "with one");
+      }
+    }
+    const bool number = std::holds_alternative<scene_gravity::AtSite>(site_gravity_);
+    if (number && kind != "none") {
+      gravity->refuse("kind", "'" + kind +
+                                  "' gives gravity a second time; guide.gravity is a "
+                                  "number already");
+    }
+    gravity->finish();
+  }
+
+  void read_bodies() {
+    if (!root_.has("body")) {
+      root_.refuse_all("no [[body]] is given");
+      return;
+    }
+    std::vector<Section> bodies = root_.sections("body");
+    if (bodies.empty() && root_.find("body")->is_array()) root_.refuse("body", "is empty");
+    std::vector<std::string> names;
+    for (const Section& body : bodies) {
+      names.push_back(Section(body).peek("name"));
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (!names[i].empty()) bodies[i].rename("body '" + names[i] + "'");
+      read_body(bodies[i], i, names);
+      bodies[i].finish();
+    }
+  }
+
+  /// What a joint needs besides its kind.
+  struct JointShape {
+    std::size_t coordinates;
+    std::size_t rates;
+  };
+
+  static JointShape shape(JointKind kind) {
+    switch (kind) {
+      case JointKind::fixed: return {0, 0};
+      case JointKind::universal: return {2, 2};
+      case JointKind::spherical: return {4, 3};
+      case JointKind::free: return {7, 6};
+      default: return {1, 1};
+    }
+  }
+
+  void read_body(Section& section, std::size_t i, const std::vector<std::string>& names) {
+    BodyDescription body;
+    body.name = section.required_text("name");
+    check_name(section, i, names);
+    body.parent = section.text("parent").value_or("guide");
+    check_parent(section, body.parent, i, names);
+    body.joint = read_joint(section);
+    read_inertia(section, body);
+    read_forces(section, body);
+    const std::string drive = section.choice("drive", {"none", "constant-rate"});
+    const bool driven = drive == "constant-rate";
+    const bool held = section.flag("hold");
+    if (driven && body.joint.kind != JointKind::revolute) {
+      section.refuse("drive", "is for a revolute joint");
+    }
+    if (driven && held) section.refuse("hold", "and 'drive' exclude each other");
+    if (driven) body.rule = JointRule::constant_rate;
+    if (held) body.rule = JointRule::held;
+    JointStart start = read_start(section, body);
+    const bool turns =
+        std::any_of(start.rates.begin(), start.rates.end(), [](double rate) { return rate != 0; });
+    if (held && turns) section.refuse("hold", "locks a joint whose initial rate is not 0");
+    read_loads(section, body);
+    read_rotor(section, body, start);
+    scene_.bodies.push_back(std::move(body));
+    scene_.start.push_back(std::move(start));
+  }
+
+  static void check_name(Section& section, std::size_t i, const std::vector<std::string>& names) {
+    const std::string& name = names[i];
+    if (name.empty()) {
+      if (section.has("name") && section.find("name")->is_string()) {
+        section.refuse("name", "is empty");
+      }
+      return;
+    }
+    if (name == "guide") section.refuse("name", "'guide' is reserved for the guide frame");
+    const auto end = names.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(names.begin(), end, name) != end) {
+      section.refuse("name", "is used by an earlier body; a body has one joint to one parent");
+    }
+  }
+
+  void check_parent(Section& section, const std::string& parent, std::size_t i,
+                    const std::vector<std::string>& names) const {
+    if (parent == "guide") return;
+    const auto here = names.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto found = std::find(names.begin(), here, parent);
+    if (found != here) {
+      const auto k = static_cast<std::size_t>(found - names.begin());
+      if (scene_.bodies[k].rotor) {
+        section.refuse("parent", "'" + parent + "' is a rotor, which can carry nothing");
+      }
+      return;
+    }
+    if (parent == names[i]) {
+      section.refuse("parent", "is the body itself");
+    } else if (std::find(here, names.end(), parent) != names.end()) {
+      section.refuse("parent", "'" + parent + "' comes later; parents come before children");
+    } else {
+      std::vector<std::string> known(names.begin(), here);
+      known.emplace_back("guide");
+      section.refuse("parent", "'" + parent + "' is no body" + detail::did_you_mean(parent, known));
+    }
+  }
+
+  static Joint read_joint(Section& body) {
+    Joint joint;
+    auto section = body.required_section("joint");
+    if (!section) return joint;
+    const std::string kind = section->required_choice(
+        "kind", {"fixed", "revolute", "prismatic", "universal", "spherical", "free"});
+    const auto axis = [&section](std::string_view key) {
+      const Vector3<double> a = section->required_vector(key);
+      if (!(a.norm() > 0)) section->refuse(key, "is 0 and has no direction");
+      return a;
+    };
+    if (kind == "revolute") joint.kind = JointKind::revolute;
+    if (kind == "prismatic") joint.kind = JointKind::prismatic;
+    if (kind == "universal") joint.kind = JointKind::universal;
+    if (kind == "spherical") joint.kind = JointKind::spherical;
+    if (kind == "free") joint.kind = JointKind::free;
+    const bool has_axis = kind == "revolute" || kind == "prismatic" || kind == "universal";
+    if (has_axis) joint.axis = axis("axis");
+    if (kind == "universal") {
+      joint.second_axis = axis("second_axis");
+      if (!(joint.axis.normalized().cross(joint.second_axis.normalized()).norm() > 1e-12)) {
+        section->refuse("second_axis", "is parallel to 'axis'");
+      }
+    }
+    joint.position = section->vector("position").value_or(Vector3<double>::Zero());
+    joint.orientation =
+        quaternion(*section, "orientation").value_or(Eigen::Quaterniond::Identity());
+    if (section->text("kind").value_or("") != kind) section->ignore_rest();
+    section->finish();
+    return joint;
+  }
+
+  static void read_inertia(Section& section, BodyDescription& body) {
+    const double mass = section.required_number("mass", Range::not_negative);
+    const Vector3<double> centre = section.vector("centre").value_or(Vector3<double>::Zero());
+    if (!section.has("inertia")) section.refuse_missing("inertia");
+    const auto numbers = section.numbers("inertia");
+    if (!numbers) return;
+    if (numbers->size() != 3 && numbers->size() != 6) {
+      section.refuse("inertia", "must be 3 numbers, or 6 (xx, yy, zz, xy, xz, yz), not " +
+                                    std::to_string(numbers->size()));
+      return;
+    }
+    std::vector<double> t = *numbers;
+    t.resize(6, 0);
+    const Symmetric3<double> tensor{t[0], t[1], t[2], t[3], t[4], t[5]};
+    try {
+      body.inertia =
+          InertiaTensor<Body>::about_centre(mass, centre, tensor.matrix(), Mass::zero_allowed);
+    } catch (const InvalidInput& error) {
+      section.refuse("inertia", reason(error));
+    }
+  }
+
+  static void read_forces(Section& section, BodyDescription& body) {
+    const std::size_t n = shape(body.joint.kind).rates;
+    const bool asked = section.has("spring") || section.has("damping") || section.has("force");
+    if (!asked) return;
+    std::vector<JointForce> forces(n);
+    const auto set = [&](double JointForce::*part, const std::optional<std::vector<double>>& from) {
+      for (std::size_t k = 0; from && k < n; ++k) {
+        forces[k].*part = (*from)[from->size() == 1 ? 0 : k];
+      }
+    };
+    const auto values = [n](Section& from, const std::string& key) {
+      return n == 2 ? from.numbers(key, 2) : from.single(key);
+    };
+    if (n == 0 || n == 6) {
+      for (const char* const key : {"spring", "damping", "force"}) {
+        if (section.has(key)) section.refuse(key, "has no single coordinate in this kind of joint");
+      }
+      return;
+    }
+    if (n == 3) {
+      for (const char* const key : {"spring", "force"}) {
+        if (section.has(key)) {
+          section.refuse(key, "needs a single coordinate, which a spherical joint has not");
+        }
+      }
+    } else {
+      if (auto spring = section.section("spring")) {
+        set(&JointForce::stiffness, values(*spring, "stiffness"));
+        if (!spring->has("stiffness")) spring->refuse_missing("stiffness");
+        const bool slides = body.joint.kind == JointKind::prismatic;
+        set(&JointForce::rest, slides ? values(*spring, "rest") : spring->angles("rest", n));
+        spring->finish();
+      }
+      set(&JointForce::constant, values(section, "force"));
+    }
+    const auto damping = values(section, "damping");
+    if (damping && *std::min_element(damping->begin(), damping->end()) < 0) {
+      section.refuse("damping", "must not be below 0");
+    }
+    set(&JointForce::damping, damping);
+    body.forces = std::move(forces);
+  }
+
+  static JointStart read_start(Section& body_section, const BodyDescription& body) {
+    const Joint& joint = body.joint;
+    const JointShape counts = shape(joint.kind);
+    JointStart start{std::vector<double>(counts.coordinates), std::vector<double>(counts.rates)};
+    if (counts.coordinates >= 4) start.coordinates[3] = 1;
+    auto initial = body_section.section("initial");
+    if (!initial) return start;
+    const auto set = [](std::vector<double>& to, const std::optional<std::vector<double>>& from) {
+      if (from) to = *from;
+    };
+    if (joint.kind == JointKind::revolute || joint.kind == JointKind::universal) {
+      set(start.coordinates, initial->angles("angle", counts.coordinates));
+      set(start.rates, initial->angles("rate", counts.rates));
+    }
+    if (joint.kind == JointKind::prismatic) {
+      set(start.coordinates, initial->single("displacement"));
+      set(start.rates, initial->single("rate"));
+    }
+    if (counts.coordinates >= 4) {
+      if (const auto q = quaternion(*initial, "attitude")) {
+        // The file's attitude is against the parent, the coordinate against the joint's.
+        const Eigen::Quaterniond own = joint.orientation.conjugate() * *q;
+        std::copy_n(own.coeffs().data(), 4, start.coordinates.begin());
+      }
+      const auto rate = initial->angles("angular_velocity", 3);
+      if (rate) std::copy(rate->begin(), rate->end(), start.rates.begin());
+    }
+    if (joint.kind == JointKind::free) {
+      if (const auto place = initial->numbers("position", 3)) {
+        const Vector3<double> own = three(*place) - joint.position;
+        std::copy_n(own.data(), 3, start.coordinates.begin() + 4);
+      }
+      const auto velocity = initial->numbers("velocity", 3);
+      if (velocity) std::copy(velocity->begin(), velocity->end(), start.rates.begin() + 3);
+    }
+    initial->finish();
+    return start;
+  }
+
+  static void read_rotor(Section& section, BodyDescription& body, JointStart& start) {
+    auto rotor = section.section("rotor");
+    if (!rotor) return;
+    const std::string mode = rotor->required_choice("mode", {"free", "regulated", "torque"});
+    const auto speed = rotor->angle("speed");
+    const auto torque = rotor->number("torque");
+    rotor->finish();
+    if (body.joint.kind != JointKind::revolute) {
+      section.refuse("rotor", "is for a revolute joint");
+      return;
+    }
+    for (const char* const key : {"drive", "hold", "spring"}) {
+      const bool off = std::string_view(key) == "hold" && !section.flag(key);
+      if (section.has(key) && !off) section.refuse(key, "does not go with a rotor");
+    }
+    const double rate = start.rates.front();
+    if (speed && rate != 0 && *speed != rate) rotor->refuse("speed", "differs from initial.rate");
+    if (!speed && rate == 0 && mode != "torque") rotor->refuse_missing("speed");
+    if (speed) start.rates.front() = *speed;
+    if (torque && *torque != 0 && mode != "torque") {
+      rotor->refuse("torque", "is for mode = 'torque'");
+    }
+    if (!torque && mode == "torque") rotor->refuse_missing("torque");
+    if (check_balance(section, body)) set_rotor(body, mode, torque.value_or(0));
+  }
+
+  static void set_rotor(BodyDescription& body, const std::string& mode, double torque) {
+    if (!body.loads.empty()) {
+      // A load may depend on the rotor's angle, so that it moves as any other body does.
+      if (mode == "regulated") body.rule = JointRule::constant_rate;
+      if (body.forces.empty()) body.forces.resize(1);
+      body.forces.front().constant += torque;
+      return;
+    }
+    const bool turned = std::any_of(body.forces.begin(), body.forces.end(), [](const auto& f) {
+      return f.damping != 0 || f.constant != 0;
+    });
+    body.rotor = Rotor{};
+    if (mode == "regulated") body.rotor->mode = RotorMode::regulated;
+    if (mode == "torque" || (mode == "free" && turned)) body.rotor->mode = RotorMode::torque;
+    body.rotor->torque = torque;
+  }
+
+  /// Whether a rotor's mass lies evenly about its axis.
+  static bool check_balance(Section& section, const BodyDescription& body) {
+    constexpr double slack = 32 * std::numeric_limits<double>::epsilon();  // as BodyTree has it
+    const Inertia<double>& T = body.inertia.value;
+    const Vector3<double> axis = body.joint.orientation.conjugate() * body.joint.axis.normalized();
+    const Matrix3<double> tensor = T.tensor.matrix();
+    const double trace = tensor.trace();
+    const double about = axis.dot(tensor * axis);
+    const double across = (trace - about) / 2;
+    const Matrix3<double> even =
+        across * Matrix3<double>::Identity() + (about - across) * axis * axis.transpose();
+    const auto refuse = [&section](const char* why) {
+      section.refuse("rotor", std::string(why) + "; leave 'rotor' out and it is an ordinary body");
+      return false;
+    };
+    if (T.first_moment.cross(axis).norm() > slack * std::sqrt(T.mass * trace)) {
+      return refuse("is unbalanced: its centre of mass lies off the axis");
+    }
+    if ((tensor - even).norm() > slack * trace) return refuse("is not symmetric about its axis");
+    return about > slack * trace || refuse("has no moment of inertia about its axis");
+  }
+
+  static void read_loads(Section& section, BodyDescription& body) {
+    const toml::node* const node = section.find("load");
+    if (node == nullptr) return;
+    std::vector<Section> loads;
+    if (node->is_array()) {
+      loads = section.sections("load");
+    } else if (auto load = section.section("load")) {
+      loads.push_back(*load);
+    }
+    for (Section& load : loads) {
+      if (!load.has("force") && !load.has("torque")) load.refuse_missing("force");
+      const Vector3<double> zero = Vector3<double>::Zero();
+      const Vector3<double> force = load.vector("force").value_or(zero);
+      const Vector3<double> torque = load.vector("torque").value_or(zero);
+      const Vector3<double> point = load.vector("point").value_or(zero);
+      const std::string axes = load.choice("axes", {"body", "guide", "inertial"});
+      load.finish();
+      if (axes == "body") body.loads.emplace_back(ConstantLoad<Body>{force, torque, point});
+      if (axes == "guide") body.loads.emplace_back(ConstantLoad<Guide>{force, torque, point});
+      if (axes == "inertial") body.loads.emplace_back(ConstantLoad<Inertial>{force, torque, point});
+    }
+  }
+
+  void read_report() {
+    auto report = root_.section("report");
+    if (!report) return;
+    scene_.reactions = report->flag("reactions");
+    scene_.terms = report->flag("terms");
+    report->finish();
+  }
+
+  Section root_;
+  const std::filesystem::path& path_;
+  const SolveRequest& request_;
+  Mistakes& mistakes_;
+  SceneFile scene_;
+  scene_gravity::Field site_gravity_ = scene_gravity::None{};  ///< what the guide itself asks for
+};
+
+/// Deeper keys than a scene can have would be taken apart one call in another.
+void refuse_depth(std::string_view text, Mistakes& mistakes) {
+  constexpr int deepest = 64;
+  toml::source_region where{{1, 1}, {1, 1}, nullptr};
+  int brackets = 0;
+  int dots = 0;
+  bool in_key = true;
+  char quote = 0;
+  for (const char c : text) {
+    ++where.begin.column;
+    if (c == '\n') {
+      where.begin = {where.begin.line + 1, 1};
+      dots = 0;
+      in_key = true;
+      quote = 0;
+    } else if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '#') {
+      quote = '\n';  // up to the end of the line
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '=') {
+      in_key = false;
+    } else if (c == '.') {
+      ++dots;
+    } else if (c == ',' || c == '{') {
+      dots = 0;
+      in_key = true;
+    }
+    if (quote == 0 && (c == '[' || c == '{')) ++brackets;
+    if (quote == 0 && (c == ']' || c == '}')) --brackets;
+    if (brackets > deepest || (in_key && dots > deepest)) {
+      mistakes.add(where, "", "is nested more than 64 deep; no scene is");
+      mistakes.throw_any();
+    }
+  }
+}
+
+}  // namespace
+
+bool SceneFile::rests() const {
+  return std::all_of(guide.begin(), guide.end(), [](const scene_guide::Link& link) {
+    return std::holds_alternative<scene_guide::Resting>(link);
+  });
+}
+
+std::optional<Method> method_named(std::string_view word) {
+  if (word == "auto") return Method::automatic;
+  for (const Method method : {Method::automatic, Method::closed_form, Method::verner98,
+                              Method::gauss16, Method::radau13, Method::splitting}) {
+    if (word == name(method)) return method;
+  }
+  return std::nullopt;
+}
+
+SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
+                      const SolveRequest& request) {
+  Mistakes mistakes(path.string());
+  refuse_depth(text, mistakes);
+  toml::table root;
+  try {
+    root = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    mistakes.add(error.source(), "", "is no TOML: " + std::string(error.description()));
+    mistakes.throw_any();
+  }
+  return SceneReader(root, path, request, mistakes).read();
+}
+
+SceneFile read_scene(const std::filesystem::path& path, const SolveRequest& request) {
+  constexpr std::uintmax_t largest = 64U << 20U;
+  std::error_code error;
+  const bool is_folder = std::filesystem::is_directory(path, error);
+  std::ifstream file(path, std::ios::binary);
+  if (!file || is_folder) throw InvalidInput(path.string() + ": cannot be read");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > largest) throw InvalidInput(path.string() + ": is larger than 64 MB");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return parse_scene(text, path, request);
+}
+
+}  // namespace kreisel

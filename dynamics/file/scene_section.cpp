@@ -1,0 +1,334 @@
+#include "scene_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include <dynamics/file/scene_file.hpp>
+
+namespace kreisel::detail {
+
+namespace {
+
+constexpr double degree = 0.017453292519943295;
+
+/// How many letters have to be put in, taken out, changed or swapped with their neighbour.
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] = std::min(
+          {d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0U : 1U)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+std::string kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table: return "a table";
+    case toml::node_type::array: return "a list";
+    case toml::node_type::string: return "a text";
+    case toml::node_type::integer: return "a whole number";
+    case toml::node_type::floating_point: return "a number";
+    case toml::node_type::boolean: return "true or false";
+    default: return "a date or a time";
+  }
+}
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text.precision(10);
+  text << value;
+  return text.str();
+}
+
+/// A text of the file in a message: one line, and not too long.
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string result = "'";
+  for (const char c : text.substr(0, longest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    result += byte < 0x20 || byte == 0x7f ? '?' : c;
+  }
+  return result + (text.size() > longest ? "...'" : "'");
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string result;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) result += i + 1 == words.size() ? " or " : ", ";
+    result += "'" + words[i] + "'";
+  }
+  return result;
+}
+
+}  // namespace
+
+void Mistakes::add(const toml::source_region& where, std::string_view key,
+                   std::string_view reason) {
+  std::string text;
+  if (!key.empty()) text = std::string(key) + ": ";
+  list_.push_back({where.begin, text + std::string(reason)});
+}
+
+void Mistakes::throw_any() const {
+  if (list_.empty()) return;
+  std::vector<Mistake> sorted = list_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
+    return a.where.line != b.where.line ? a.where.line < b.where.line
+                                        : a.where.column < b.where.column;
+  });
+  std::ostringstream all;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    // The root has no place of its own.
+    const auto line = std::max(sorted[i].where.line, toml::source_index(1));
+    const auto column = std::max(sorted[i].where.column, toml::source_index(1));
+    all << (i > 0 ? "\n" : "") << file_ << ':' << line << ':' << column << ": " << sorted[i].text;
+  }
+  throw SceneMistakes(all.str());
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words) {
+  constexpr std::size_t longest = 64;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::string nearest;
+  if (word.size() > longest) return {};
+  for (const std::string& candidate : words) {
+    const std::size_t distance = edits(word, candidate);
+    if (distance < least && distance < word.size()) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest.empty() ? std::string() : " (did you mean '" + nearest + "'?)";
+}
+
+std::string Section::path_to(std::string_view key) const {
+  std::string shown_key(key);
+  for (char& c : shown_key) {
+    if (static_cast<unsigned char>(c) < 0x20) c = '?';
+  }
+  return path_.empty() ? shown_key : path_ + "." + shown_key;
+}
+
+const toml::node* Section::find(std::string_view key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  return table_->get(key);
+}
+
+bool Section::has(std::string_view key) { return find(key) != nullptr; }
+
+void Section::refuse(std::string_view key, std::string_view reason) {
+  const toml::node* const node = table_->get(key);
+  mistakes_->add(node != nullptr ? node->source() : table_->source(), path_to(key), reason);
+}
+
+void Section::refuse_all(std::string_view reason) {
+  mistakes_->add(table_->source(), path_, reason);
+}
+
+void Section::refuse_missing(std::string_view key) { refuse(key, "is missing"); }
+
+std::optional<double> Section::number_in(const toml::node& node, const std::string& key,
+                                         Range range) {
+  const auto refuse_it = [&](const std::string& reason) {
+    mistakes_->add(node.source(), key, reason);
+    return std::nullopt;
+  };
+  double value = 0;
+  if (const auto* const whole = node.as_integer()) {
+    value = static_cast<double>(whole->get());
+  } else if (const auto* const real = node.as_floating_point()) {
+    value = real->get();
+  } else {
+    return refuse_it("must be a number, not " + kind_of(node));
+  }
+  if (!std::isfinite(value)) {
+    return refuse_it("is " + std::string(std::isnan(value) ? "NaN" : "infinite") +
+                     ", not a finite number");
+  }
+  if (range == Range::positive && !(value > 0)) {
+    return refuse_it(shown(value) + " must be above 0");
+  }
+  if (range == Range::not_negative && !(value >= 0)) {
+    return refuse_it(shown(value) + " must not be below 0");
+  }
+  return value;
+}
+
+std::optional<double> Section::number(std::string_view key, Range range) {
+  const toml::node* const node = find(key);
+  return node == nullptr ? std::nullopt : number_in(*node, path_to(key), range);
+}
+
+double Section::required_number(std::string_view key, Range range) {
+  if (!has(key)) refuse_missing(key);
+  return number(key, range).value_or(1);
+}
+
+std::optional<double> Section::angle(const std::string& key) {
+  const std::string in_degrees = key + "_deg";
+  if (!has(in_degrees)) return number(key);
+  if (has(key)) refuse(in_degrees, "is given in radian too, as '" + key + "'");
+  const auto value = number(in_degrees);
+  return value ? std::optional(*value * degree) : std::nullopt;
+}
+
+std::optional<std::vector<double>> Section::numbers_in(const toml::node& node,
+                                                       const std::string& key) {
+  const toml::array* const list = node.as_array();
+  if (list == nullptr) {
+    mistakes_->add(node.source(), key, "must be a list of numbers, not " + kind_of(node));
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  bool good = true;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const auto value = number_in(*list->get(i), key + "[" + std::to_string(i) + "]", Range::any);
+    good = good && value;
+    values.push_back(value.value_or(0));
+  }
+  return good ? std::optional(values) : std::nullopt;
+}
+
+std::optional<std::vector<double>> Section::numbers(std::string_view key) {
+  const toml::node* const node = find(key);
+  return node == nullptr ? std::nullopt : numbers_in(*node, path_to(key));
+}
+
+std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t count) {
+  auto values = numbers(key);
+  if (values && values->size() != count) {
+    refuse(key,
+           "must be " + std::to_string(count) + " numbers, not " + std::to_string(values->size()));
+    return std::nullopt;
+  }
+  return values;
+}
+
+std::optional<std::vector<double>> Section::angles(const std::string& key, std::size_t count) {
+  if (count == 1) {
+    const auto value = angle(key);
+    return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
+  }
+  const std::string in_degrees = key + "_deg";
+  if (!has(in_degrees)) return numbers(key, count);
+  if (has(key)) refuse(in_degrees, "is given in radian too, as '" + key + "'");
+  auto values = numbers(in_degrees, count);
+  if (values) std::for_each(values->begin(), values->end(), [](double& x) { x *= degree; });
+  return values;
+}
+
+std::optional<Vector3<double>> Section::vector(std::string_view key) {
+  const auto values = numbers(key, 3);
+  if (!values) return std::nullopt;
+  return Vector3<double>((*values)[0], (*values)[1], (*values)[2]);
+}
+
+Vector3<double> Section::required_vector(std::string_view key) {
+  if (!has(key)) refuse_missing(key);
+  return vector(key).value_or(Vector3<double>::UnitX());
+}
+
+std::optional<std::string> Section::text(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const auto* const value = node->as_string();
+  if (value == nullptr) {
+    refuse(key, "must be a text, not " + kind_of(*node));
+    return std::nullopt;
+  }
+  return value->get();
+}
+
+std::optional<std::vector<double>> Section::single(std::string_view key) {
+  const auto value = number(key);
+  return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
+}
+
+std::string Section::peek(std::string_view key) const {
+  const auto* const node = table_->get_as<std::string>(key);
+  return node == nullptr ? std::string() : node->get();
+}
+
+std::string Section::required_text(std::string_view key) {
+  if (!has(key)) refuse_missing(key);
+  return text(key).value_or("");
+}
+
+bool Section::flag(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return false;
+  const auto* const value = node->as_boolean();
+  if (value == nullptr) refuse(key, "must be true or false, not " + kind_of(*node));
+  return value != nullptr && value->get();
+}
+
+std::string Section::choice(std::string_view key, const std::vector<std::string>& words) {
+  const auto word = text(key);
+  if (!word) return words.front();
+  if (std::find(words.begin(), words.end(), *word) != words.end()) return *word;
+  refuse(key, in_quotes(*word) + " is none of " + listed(words) + did_you_mean(*word, words));
+  return words.front();
+}
+
+std::string Section::required_choice(std::string_view key, const std::vector<std::string>& words) {
+  if (!has(key)) refuse_missing(key);
+  return choice(key, words);
+}
+
+std::optional<Section> Section::section(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::table* const table = node->as_table();
+  if (table == nullptr) {
+    refuse(key, "must be a table, not " + kind_of(*node));
+    return std::nullopt;
+  }
+  return Section(*table, path_to(key), *mistakes_);
+}
+
+std::optional<Section> Section::required_section(std::string_view key) {
+  if (!has(key)) refuse_missing(key);
+  return section(key);
+}
+
+std::vector<Section> Section::sections(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return {};
+  const toml::array* const list = node->as_array();
+  if (list == nullptr) {
+    refuse(key, "must be a list of tables, not " + kind_of(*node));
+    return {};
+  }
+  std::vector<Section> result;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string path = path_to(key) + "[" + std::to_string(i) + "]";
+    const toml::table* const table = list->get(i)->as_table();
+    if (table == nullptr) {
+      mistakes_->add(list->get(i)->source(), path,
+                     "must be a table, not " + kind_of(*list->get(i)));
+    } else {
+      result.emplace_back(*table, path, *mistakes_);
+    }
+  }
+  return result;
+}
+
+void Section::finish() {
+  if (ignores_) return;
+  for (const auto& [key, value] : *table_) {
+    if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+    mistakes_->add(key.source(), path_to(key.str()),
+                   "is no key here" + did_you_mean(key.str(), known_));
+  }
+}
+
+}  // namespace kreisel::detail

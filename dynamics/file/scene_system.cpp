@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include <dynamics/file/scene_system.hpp>
+#include <dynamics/guide/earth_frame.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/earth_gravitation.hpp>
+
+namespace kreisel {
+
+namespace {
+
+struct Outer;  // the frame that all links up to one make
+
+using Motion = FrameMotion<Guide, Inertial>;
+
+/// Steps that end at t_end may ask a rounding later.
+constexpr double past_the_end = 1 + 1e-12;
+
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+SceneGuide make_link(const scene_guide::Link& link, double t_end) {
+  return std::visit(
+      Overloaded{[](const scene_guide::Resting&) -> SceneGuide { return RestingFrame<>{}; },
+                 [](const scene_guide::Rotating& kind) -> SceneGuide {
+                   return RotatingFrame<>{kind.angular_velocity, kind.origin_acceleration};
+                 },
+                 [t_end](const scene_guide::Harmonic& kind) -> SceneGuide {
+                   return HarmonicFrame<>(kind.angular_velocity, kind.origin_acceleration, 0,
+                                          t_end * past_the_end);
+                 },
+                 [](const scene_guide::Earth& kind) -> SceneGuide {
+                   // The centrifugal part at the origin is in the number.
+                   if (kind.gravity) return RotatingFrame<>{earth_rotation(kind.site)};
+                   return earth_frame(kind.site);
+                 },
+                 [](const scene_guide::Table& kind) -> SceneGuide {
+                   const auto frame = std::make_shared<const TabulatedFrame<>>(kind.log);
+                   return [frame](double t) {
+                     return (*frame)(
+                         t > frame->end() && t <= frame->end() * past_the_end ? frame->end() : t);
+                   };
+                 }},
+      link);
+}
+
+/// Weight in a gravity that is uniform on the axes of the first link of a chain.
+struct SiteWeight {
+  static constexpr bool ignores_spin = true;
+
+  SceneGuide site;
+  double magnitude;
+
+  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {
+    const Vector3<double> g(magnitude, 0, 0);
+    return UniformGravity<Inertial>{site(s.t).X.value.rotation * g}(s);
+  }
+};
+
+}  // namespace
+
+SceneGuide make_guide(const SceneFile& scene) {
+  std::vector<SceneGuide> links;
+  for (const scene_guide::Link& link : scene.guide) links.push_back(make_link(link, scene.t_end));
+  if (links.size() == 1) return links.front();
+  return [links](double t) {
+    Motion whole = links.front()(t);
+    for (std::size_t i = 1; i < links.size(); ++i) {
+      const FrameMotion<Outer, Inertial> outer{{whole.X.value}, {whole.V.value}, {whole.dV.value}};
+      const Motion own = links[i](t);
+      whole = outer * FrameMotion<Guide, Outer>{{own.X.value}, {own.V.value}, {own.dV.value}};
+    }
+    return whole;
+  };
+}
+
+SceneBodies bodies_in_gravity(const SceneFile& scene) {
+  SceneBodies result{scene.bodies, {}};
+  const auto add_to_all = [&result](const auto& load) {
+    for (BodyDescription& body : result.bodies) {
+      if (body.inertia.value.mass > 0) body.loads.emplace_back(load);
+    }
+  };
+  std::visit(
+      Overloaded{
+          [](const scene_gravity::None&) {},
+          [&result](const UniformGravity<Guide>& g) { result.gravity = g; },
+          [&result](const UniformGravity<Inertial>& g) { result.gravity = g; },
+          [&](const scene_gravity::Ellipsoid&) { add_to_all(EarthGravitation{}); },
+          [&](const scene_gravity::AtSite& site) {
+            const Vector3<double> g(site.magnitude, 0, 0);
+            if (scene.guide.size() == 1) {
+              result.gravity = UniformGravity<Guide>{g};
+            } else {
+              add_to_all(SiteWeight{make_link(scene.guide.front(), scene.t_end), site.magnitude});
+            }
+          }},
+      scene.gravity);
+  return result;
+}
+
+}  // namespace kreisel
