@@ -14,6 +14,7 @@
 
 #include <dynamics/guide/normal_gravity.hpp>
 
+#include "../shared/progress.hpp"
 #include "request.hpp"
 
 namespace {
@@ -28,46 +29,18 @@ volatile std::sig_atomic_t interrupted = 0;
 
 extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
-/// A line on the terminal, from the half second on; silent in a pipe.
-class Progress {
- public:
-  explicit Progress(std::size_t total) : total_(total), shown_(isatty(STDERR_FILENO) != 0) {}
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  ~Progress() {
-    if (drawn_) fmt::print(stderr, "\r\033[K");
-  }
-
-  void report(std::size_t done) {
-    if (!shown_) return;
-    const double elapsed = seconds_since(start_);
-    if (elapsed < next_) return;
-    next_ = elapsed + 0.1;
-    drawn_ = true;
-    const double share = static_cast<double>(done) / static_cast<double>(total_);
-    const auto bars = static_cast<std::size_t>(30 * share);
-    fmt::print(stderr, "\r{:30} {:3.0f} %  {} of {}, {:.0f} s left\033[K", std::string(bars, '#'),
-               100 * share, done, total_, elapsed / share - elapsed);
-  }
-
- private:
-  std::size_t total_;
-  bool shown_;
-  bool drawn_ = false;
-  double next_ = 0.5;
-  Clock::time_point start_ = Clock::now();
-};
-
 int run(const Request& request) {
   const Clock::time_point start = Clock::now();
   std::vector<Row> rows;
   rows.reserve(request.sites.size());
   {
-    Progress progress(request.sites.size());
+    Progress progress;
     for (const Site& site : request.sites) {
       if (interrupted != 0) break;
       rows.push_back(compute(request, site));
-      progress.report(rows.size());
+      const std::size_t all = request.sites.size();
+      progress.report(static_cast<double>(rows.size()) / static_cast<double>(all),
+                      [&] { return fmt::format("{} of {}", rows.size(), all); });
     }
   }
   const double run_time_s = seconds_since(start);

@@ -3,27 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <sstream>
 #include <string>
 
 #include <dynamics/file/atomic_file.hpp>
 #include <motor/error.hpp>
 
+#include "../shared/gnuplot.hpp"
 #include "request.hpp"
 
-namespace {
+using gnuplot::quoted;
 
-/// A string of gnuplot's, in which nothing has a meaning.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c;
-  }
-  return result + "'";
-}
+namespace {
 
 double abscissa(const Request& request, const Row& row) {
   const auto& [latitude, azimuth, height, rate] = row.site.place;
@@ -130,27 +121,13 @@ std::string script(const Request& request, const std::vector<Row>& rows, const s
   return s.str();
 }
 
-bool installed(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (std::filesystem::exists(std::filesystem::path(folder) / program)) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 void draw(const Request& request, const std::vector<Row>& rows) {
-  if (!installed("gnuplot")) {
-    throw kreisel::ComputationFailed("--plot: gnuplot is not installed");
-  }
+  gnuplot::require_installed();
   kreisel::AtomicFile picture(*request.plot);
   const bool svg = request.plot->extension() == ".svg";
   const std::string text = script(request, rows, picture.draft().string(), svg);
-  std::FILE* const gnuplot = popen("gnuplot", "w");
-  if (gnuplot == nullptr) throw kreisel::ComputationFailed("--plot: gnuplot does not start");
-  const bool sent = std::fwrite(text.data(), 1, text.size(), gnuplot) == text.size();
-  if (pclose(gnuplot) != 0 || !sent) throw kreisel::ComputationFailed("--plot: gnuplot failed");
+  gnuplot::run(text);
   picture.commit();
 }

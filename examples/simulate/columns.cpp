@@ -1,0 +1,111 @@
+#include "columns.hpp"
+
+using kreisel::BodyTree;
+using kreisel::JointKind;
+
+namespace {
+
+/// Names of coordinates and rates of a joint.
+std::vector<const char*> quantities(JointKind kind) {
+  switch (kind) {
+    case JointKind::fixed: return {};
+    case JointKind::revolute: return {"angle", "rate"};
+    case JointKind::prismatic: return {"displacement", "rate"};
+    case JointKind::universal: return {"angle 1", "angle 2", "rate 1", "rate 2"};
+    case JointKind::spherical: return {"qw", "qx", "qy", "qz", "wx", "wy", "wz"};
+    case JointKind::free:
+      return {"qw", "qx", "qy", "qz", "x", "y", "z", "wx", "wy", "wz", "vx", "vy", "vz"};
+  }
+  return {};
+}
+
+int count(const BodyTree& tree) { return static_cast<int>(tree.bodies().size()); }
+
+bool turns_freely(const BodyTree& tree, int body) { return tree.place(body).q_count >= 4; }
+
+}  // namespace
+
+std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
+  std::vector<std::string> names{"t"};
+  for (const auto& body : tree.bodies()) {
+    for (const char* const quantity : quantities(body.joint.kind)) {
+      names.push_back(body.name + "." + quantity);
+    }
+  }
+  if (!reactions) return names;
+  for (const auto& body : tree.bodies()) {
+    for (const char* const part :
+         {"force x", "force y", "force z", "torque x", "torque y", "torque z", "drive torque"}) {
+      names.push_back(body.name + "." + part);
+    }
+  }
+  return names;
+}
+
+Eigen::Quaterniond attitude(const BodyTree& tree, int body, const JointState& state) {
+  const double* const q = state.coordinates.data() + tree.place(body).q;
+  return (tree.body(body).joint.orientation * Eigen::Quaterniond(q[3], q[0], q[1], q[2]))
+      .normalized();
+}
+
+Eigen::Vector3d place(const BodyTree& tree, int body, const JointState& state) {
+  return tree.body(body).joint.position + state.coordinates.segment<3>(tree.place(body).q + 4);
+}
+
+double drive_torque(const BodyTree& tree, int body, const kreisel::JointReactions& reactions) {
+  const kreisel::BodyDescription& b = tree.body(body);
+  const bool regulated = b.rotor && b.rotor->mode == kreisel::RotorMode::regulated;
+  const bool driven = b.rule == kreisel::JointRule::constant_rate || regulated;
+  return driven ? reactions.drive[tree.place(body).v] : 0;
+}
+
+std::vector<double> row(const Model& model, double t, const JointState& state, bool reactions) {
+  const BodyTree& tree = model.tree();
+  std::vector<double> values{t};
+  const auto append = [&values](const auto& vector) {
+    values.insert(values.end(), vector.data(), vector.data() + vector.size());
+  };
+  for (int i = 0; i < count(tree); ++i) {
+    const auto [q, q_count, v, v_count] = tree.place(i);
+    if (turns_freely(tree, i)) {
+      const Eigen::Quaterniond a = attitude(tree, i, state);
+      append(Eigen::Vector4d(a.w(), a.x(), a.y(), a.z()));
+      if (q_count == 7) append(place(tree, i, state));
+    } else {
+      append(state.coordinates.segment(q, q_count).eval());
+    }
+    append(state.rates.segment(v, v_count).eval());
+  }
+  if (!reactions) return values;
+  const kreisel::JointReactions carried = model.reactions(t, state);
+  for (int i = 0; i < count(tree); ++i) {
+    const auto& [force, torque] = carried.on_body[static_cast<std::size_t>(i)].value;
+    append(force);
+    append(torque);
+    values.push_back(drive_torque(tree, i, carried));
+  }
+  return values;
+}
+
+JointState state_of(const BodyTree& tree, const std::vector<double>& row) {
+  JointState state{Eigen::VectorXd(tree.coordinates()), Eigen::VectorXd(tree.rates())};
+  const double* next = row.data() + 1;
+  for (int i = 0; i < count(tree); ++i) {
+    const auto [q, q_count, v, v_count] = tree.place(i);
+    if (turns_freely(tree, i)) {
+      const kreisel::Joint& joint = tree.body(i).joint;
+      const Eigen::Quaterniond a(next[0], next[1], next[2], next[3]);
+      state.coordinates.segment<4>(q) = (joint.orientation.conjugate() * a).coeffs();
+      if (q_count == 7) {
+        state.coordinates.segment<3>(q + 4) =
+            Eigen::Map<const Eigen::Vector3d>(next + 4) - joint.position;
+      }
+    } else {
+      std::copy_n(next, q_count, state.coordinates.data() + q);
+    }
+    next += q_count;
+    std::copy_n(next, v_count, state.rates.data() + v);
+    next += v_count;
+  }
+  return state;
+}

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model.hpp"
+
+/// The columns of a trajectory: t, coordinates and rates of every joint, and on demand what it
+/// carries and what its drive needs. Attitudes (w, x, y, z) and places are against the parent.
+std::vector<std::string> columns(const kreisel::BodyTree& tree, bool reactions);
+
+/// The numbers of a row, in the order of the columns.
+std::vector<double> row(const Model& model, double t, const JointState& state, bool reactions);
+
+/// The state in a row.
+JointState state_of(const kreisel::BodyTree& tree, const std::vector<double>& row);
+
+/// Attitude and place of a body against its parent.
+Eigen::Quaterniond attitude(const kreisel::BodyTree& tree, int body, const JointState& state);
+Eigen::Vector3d place(const kreisel::BodyTree& tree, int body, const JointState& state);
+
+/// The torque of what keeps the rate of a joint, 0 where nothing does.
+double drive_torque(const kreisel::BodyTree& tree, int body,
+                    const kreisel::JointReactions& reactions);

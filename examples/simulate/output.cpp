@@ -1,0 +1,250 @@
+#include "output.hpp"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <dynamics/solve/report.hpp>
+
+#include "columns.hpp"
+
+using kreisel::JointKind;
+using nlohmann::ordered_json;
+
+namespace {
+
+const kreisel::RunReport& report(const Result& result) { return result.run.report; }
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+int bodies(const Result& result) { return static_cast<int>(result.scene.bodies.size()); }
+
+template <class Kind>
+bool has_link(const kreisel::SceneFile& scene) {
+  return std::any_of(scene.guide.begin(), scene.guide.end(),
+                     [](const auto& link) { return std::holds_alternative<Kind>(link); });
+}
+
+template <class Test>
+bool any_body(const kreisel::SceneFile& scene, const Test& test) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), test);
+}
+
+template <class Test>
+bool any_force(const kreisel::SceneFile& scene, const Test& test) {
+  return any_body(scene, [&test](const kreisel::BodyDescription& body) {
+    return std::any_of(body.forces.begin(), body.forces.end(), test);
+  });
+}
+
+bool has_springs(const kreisel::SceneFile& scene) {
+  return any_force(scene, [](const kreisel::JointForce& f) { return f.stiffness != 0; });
+}
+
+bool has_dampers(const kreisel::SceneFile& scene) {
+  return any_force(scene, [](const kreisel::JointForce& f) { return f.damping != 0; });
+}
+
+std::string gravity_name(const kreisel::SceneFile& scene) {
+  static constexpr const char* names[] = {
+      "", "uniform on guide axes", "uniform on inertial axes",
+      "gravitation of the WGS84 ellipsoid at every body's centre of mass",
+      "the effective gravity at the site, its centrifugal part included"};
+  return names[scene.gravity.index()];
+}
+
+ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// What JSON has no number for is null.
+ordered_json json(double x) { return std::isfinite(x) ? ordered_json(x) : ordered_json(); }
+
+ordered_json json(const kreisel::Motor<>& force) {
+  return {{"force", json(force.resultant)}, {"torque", json(force.moment)}};
+}
+
+ordered_json json(const std::vector<Term>& terms) {
+  ordered_json list = ordered_json::array();
+  for (const Term& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
+  return list;
+}
+
+ordered_json joint(const Result& result, int body, const JointState& state,
+                   const kreisel::JointReactions& reactions) {
+  const kreisel::BodyTree& tree = result.model.tree();
+  const auto [q, q_count, v, v_count] = tree.place(body);
+  const auto pair = [](const Eigen::VectorXd& x, int begin) {
+    return ordered_json{x[begin], x[begin + 1]};
+  };
+  switch (tree.body(body).joint.kind) {
+    case JointKind::fixed: return ordered_json::object();
+    case JointKind::universal:
+      return {{"coordinate", pair(state.coordinates, q)}, {"rate", pair(state.rates, v)}};
+    case JointKind::spherical:
+    case JointKind::free: break;
+    default:
+      return {{"coordinate", state.coordinates[q]},
+              {"rate", state.rates[v]},
+              {"drive_torque", drive_torque(tree, body, reactions)}};
+  }
+  const Eigen::Quaterniond a = attitude(tree, body, state);
+  ordered_json values{{"attitude", {a.w(), a.x(), a.y(), a.z()}},
+                      {"angular_velocity", json(state.rates.segment<3>(v))}};
+  if (q_count == 7) {
+    values["position"] = json(place(tree, body, state));
+    values["velocity"] = json(state.rates.segment<3>(v + 3));
+  }
+  return values;
+}
+
+ordered_json final_state(const Result& result) {
+  const double t = result.run.times.back();
+  const JointState& state = result.run.states.back();
+  const kreisel::JointReactions reactions = result.model.reactions(t, state);
+  ordered_json joints = ordered_json::object();
+  ordered_json carried = ordered_json::object();
+  ordered_json parts = ordered_json::object();
+  for (int i = 0; i < bodies(result); ++i) {
+    const std::string& name = result.scene.bodies[at(i)].name;
+    joints[name] = joint(result, i, state, reactions);
+    carried[name] = json(reactions.on_body[at(i)].value);
+    if (!result.terms) continue;
+    const auto terms = result.model.terms(t, state, i);
+    parts[name] = {{"relative", json(terms.relative.value)},
+                   {"guide", json(terms.guide.value)},
+                   {"coriolis", json(terms.coriolis.value)}};
+  }
+  ordered_json final{{"t", t}, {"joints", joints}};
+  if (result.reactions) final["reactions"] = carried;
+  if (result.terms) final["terms"] = parts;
+  return final;
+}
+
+std::string list(const ordered_json& numbers) {
+  if (numbers.is_number()) return fmt::format("{:.15g}", numbers.get<double>());
+  std::string text;
+  for (const auto& x : numbers) {
+    text += fmt::format("{}{:.15g}", text.empty() ? "" : ", ", x.get<double>());
+  }
+  return "(" + text + ")";
+}
+
+void print_table(const char* title, const ordered_json& table) {
+  fmt::print("\n{}\n", title);
+  for (const auto& [body, values] : table.items()) {
+    for (const auto& [quantity, numbers] : values.items()) {
+      if (numbers.is_object()) {
+        for (const auto& [part, vector] : numbers.items()) {
+          fmt::print("  {:20} {:17} {}\n", body, fmt::format("{} {}", quantity, part),
+                     list(vector));
+        }
+      } else {
+        fmt::print("  {:20} {:17} {}\n", body, quantity, list(numbers));
+      }
+    }
+  }
+}
+
+void print_terms(const char* title, const std::vector<Term>& terms) {
+  fmt::print("\n{}\n", title);
+  for (const Term& term : terms) fmt::print("  {:30} {}\n", term.name, term.reason);
+}
+
+}  // namespace
+
+std::vector<Term> terms_kept(const kreisel::SceneFile& scene) {
+  std::vector<Term> terms{{"relative motion", "the law of every body, exact in all angles"}};
+  const auto add = [&terms](bool is_there, const char* name, const std::string& reason) {
+    if (is_there) terms.push_back({name, reason});
+  };
+  const bool moves = !scene.rests();
+  add(moves, "guide motion", "the guide moves; its velocity and acceleration motors, exact");
+  add(moves, "Coriolis terms", "the bodies move against a guide that moves");
+  add(scene.gravity.index() != 0, "gravity", gravity_name(scene));
+  add(has_springs(scene), "springs", "as the file gives them");
+  add(has_dampers(scene), "dampers", "as the file gives them");
+  add(any_force(scene, [](const auto& f) { return f.constant != 0; }), "constant joint forces",
+      "as the file gives them");
+  add(any_body(scene, [](const auto& b) { return !b.loads.empty(); }), "loads",
+      "as the file gives them");
+  add(any_body(scene, [](const auto& b) { return b.rotor.has_value(); }), "gyroscopic torques",
+      "of the rotors");
+  return terms;
+}
+
+std::vector<Term> terms_dropped(const kreisel::SceneFile& scene) {
+  std::vector<Term> terms;
+  const auto add = [&terms](bool is_dropped, const char* name, const char* reason) {
+    if (is_dropped) terms.push_back({name, reason});
+  };
+  const auto of_rotor = [](kreisel::RotorMode mode) {
+    return [mode](const kreisel::BodyDescription& b) { return b.rotor && b.rotor->mode == mode; };
+  };
+  using kreisel::RotorMode;
+  add(scene.rests(), "guide motion", "exactly 0: the guide is inertial");
+  add(scene.rests(), "Coriolis terms", "exactly 0: the guide is inertial");
+  add(scene.gravity.index() == 0, "gravity", "none is given");
+  add(scene.gravity.index() == 3, "gravity gradient over a body",
+      "gravitation is taken at the centre of mass");
+  add(scene.gravity.index() == 4, "gravity gradient",
+      "the gravity at the site is the same for all bodies");
+  add(!has_springs(scene), "springs", "exactly 0: none is given");
+  add(!has_dampers(scene), "dampers", "exactly 0: none is given");
+  add(any_body(scene, of_rotor(RotorMode::free)), "spin of free rotors as an unknown",
+      "its cyclic momentum is constant");
+  add(any_body(scene, of_rotor(RotorMode::regulated)), "spin of regulated rotors as an unknown",
+      "its rate is given");
+  add(any_body(scene, [](const auto& b) { return b.rule == kreisel::JointRule::held; }),
+      "motion in held joints", "they are locked");
+  add(has_link<kreisel::scene_guide::Table>(scene), "motion faster than the table's samples",
+      "a spline runs through the samples");
+  return terms;
+}
+
+void print_json(const Result& result) {
+  const kreisel::RunReport& r = report(result);
+  ordered_json invariants = ordered_json::array();
+  for (const auto& [name, start, largest] : r.invariants) {
+    invariants.push_back(
+        {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
+  }
+  const ordered_json summary{{"title", result.scene.title},
+                             {"method", r.method},
+                             {"model", "exact"},
+                             {"steps", r.effort.steps},
+                             {"rejected", r.effort.rejected},
+                             {"evaluations", r.effort.evaluations},
+                             {"all_evaluations", r.all_evaluations},
+                             {"run_time_s", r.run_time},
+                             {"tolerance", r.tolerance},
+                             {"error_estimate", json(r.error_estimate)},
+                             {"tolerance_kept", r.tolerance_kept},
+                             {"invariants", invariants},
+                             {"terms_kept", json(terms_kept(result.scene))},
+                             {"terms_dropped", json(terms_dropped(result.scene))},
+                             {"final", final_state(result)}};
+  fmt::print("{}\n", summary.dump(2));
+}
+
+void print_summary(const Result& result) {
+  const kreisel::RunReport& r = report(result);
+  if (!result.scene.title.empty()) fmt::print("{}\n\n", result.scene.title);
+  fmt::print("method    {}, model exact\n", r.method);
+  fmt::print(
+      "steps     {:.0f}, {:.0f} rejected, {:.0f} evaluations ({:.0f} with those for the "
+      "estimate), {:.3g} s\n",
+      r.effort.steps, r.effort.rejected, r.effort.evaluations, r.all_evaluations, r.run_time);
+  fmt::print("error     {:.1e} estimated, {:.1e} asked for{}\n", r.error_estimate, r.tolerance,
+             r.tolerance_kept ? "" : ": NOT REACHED");
+  for (const auto& [name, start, largest] : r.invariants) {
+    fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", name, start, largest);
+  }
+  const ordered_json final = final_state(result);
+  print_table(fmt::format("joints at t = {:.15g} s", final["t"].get<double>()).c_str(),
+              final["joints"]);
+  if (result.reactions) print_table("reactions, N and N m", final["reactions"]);
+  if (result.terms) print_table("terms of the law, N and N m", final["terms"]);
+  print_terms("terms kept", terms_kept(result.scene));
+  print_terms("terms dropped", terms_dropped(result.scene));
+}

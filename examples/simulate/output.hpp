@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model.hpp"
+
+/// A run that came to its end.
+struct Result {
+  const kreisel::SceneFile& scene;
+  const Model& model;
+  const kreisel::Trajectory<JointState>& run;
+  bool reactions;
+  bool terms;
+};
+
+/// A thing that the equations hold, or leave out, and why.
+struct Term {
+  std::string name;
+  std::string reason;
+};
+
+std::vector<Term> terms_kept(const kreisel::SceneFile& scene);
+std::vector<Term> terms_dropped(const kreisel::SceneFile& scene);
+
+void print_summary(const Result& result);
+void print_json(const Result& result);
+
+/// Coordinates, rates, energy, reactions and the path of the last body's axis, each as SVG and PNG.
+///
+/// Throws : kreisel::ComputationFailed where gnuplot is not installed or fails
+void draw(const Result& result, const std::filesystem::path& folder);

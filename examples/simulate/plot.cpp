@@ -1,0 +1,405 @@
+#include <fmt/core.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include <dynamics/file/atomic_file.hpp>
+#include <motor/error.hpp>
+
+#include "../shared/gnuplot.hpp"
+#include "columns.hpp"
+#include "output.hpp"
+
+using gnuplot::quoted;
+using kreisel::JointKind;
+
+namespace {
+
+/// A picture cannot show more.
+constexpr std::size_t most_points = 4000;
+
+/// Okabe and Ito's colours, told apart by all eyes; and dashes, told apart without colours.
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};
+constexpr const char* dashes[] = {"solid", "(14,5)", "(4,4)", "(14,4,3,4)"};
+
+using Series = std::vector<double>;
+
+struct Curve {
+  std::string name;
+  Series values;
+};
+
+struct Panel {
+  std::string title;
+  std::string unit;
+  std::vector<Curve> curves;
+};
+
+/// The output times and states that a picture shows.
+class Samples {
+ public:
+  explicit Samples(const Result& result) : result_(result) {
+    const std::size_t n = result.run.times.size();
+    const std::size_t stride = std::max<std::size_t>(1, n / most_points);
+    for (std::size_t i = 0; i < n; i += stride) chosen_.push_back(i);
+    if (chosen_.back() != n - 1) chosen_.push_back(n - 1);
+  }
+
+  /// What `value` gives of each time and state.
+  template <class Value>
+  [[nodiscard]] Series of(const Value& value) const {
+    Series series;
+    for (const std::size_t i : chosen_) {
+      series.push_back(value(result_.run.times[i], result_.run.states[i]));
+    }
+    return series;
+  }
+
+  template <class Value>
+  [[nodiscard]] auto all(const Value& value) const {
+    std::vector<decltype(value(0.0, JointState{}))> list;
+    for (const std::size_t i : chosen_) {
+      list.push_back(value(result_.run.times[i], result_.run.states[i]));
+    }
+    return list;
+  }
+
+ private:
+  const Result& result_;
+  std::vector<std::size_t> chosen_;
+};
+
+/// Curves of the columns of a row that begin at `first`.
+std::vector<Curve> curves(const std::vector<std::vector<double>>& rows, std::size_t first,
+                          const std::vector<std::string>& names) {
+  std::vector<Curve> result;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    Curve curve{names[k], {}};
+    for (const auto& row : rows) curve.values.push_back(row[first + k]);
+    result.push_back(std::move(curve));
+  }
+  return result;
+}
+
+const std::vector<std::string> xyz{"x", "y", "z"};
+
+struct Panels {
+  std::vector<Panel> coordinates;
+  std::vector<Panel> rates;
+  std::vector<Panel> reactions;
+};
+
+Panels panels(const Result& result, const std::vector<std::vector<double>>& rows) {
+  Panels all;
+  std::size_t at = 1;
+  const auto take = [&rows, &at](std::vector<Panel>& to, const std::string& title, const char* unit,
+                                 const std::vector<std::string>& names) {
+    to.push_back({title, unit, curves(rows, at, names)});
+    at += names.size();
+  };
+  for (const auto& body : result.scene.bodies) {
+    const std::string& name = body.name;
+    switch (body.joint.kind) {
+      case JointKind::fixed: break;
+      case JointKind::revolute:
+        take(all.coordinates, name + ", angle", "rad", {""});
+        take(all.rates, name + ", rate", "rad/s", {""});
+        break;
+      case JointKind::prismatic:
+        take(all.coordinates, name + ", displacement", "m", {""});
+        take(all.rates, name + ", rate", "m/s", {""});
+        break;
+      case JointKind::universal:
+        take(all.coordinates, name + ", angles", "rad", {"first", "second"});
+        take(all.rates, name + ", rates", "rad/s", {"first", "second"});
+        break;
+      case JointKind::spherical:
+        take(all.coordinates, name + ", attitude (quaternion)", "1", {"w", "x", "y", "z"});
+        take(all.rates, name + ", angular velocity on body axes", "rad/s", xyz);
+        break;
+      case JointKind::free:
+        take(all.coordinates, name + ", attitude (quaternion)", "1", {"w", "x", "y", "z"});
+        take(all.coordinates, name + ", position", "m", xyz);
+        take(all.rates, name + ", angular velocity on body axes", "rad/s", xyz);
+        take(all.rates, name + ", velocity", "m/s", xyz);
+        break;
+    }
+  }
+  if (!result.reactions) return all;
+  for (const auto& body : result.scene.bodies) {
+    take(all.reactions, "force on " + body.name + ", body axes", "N", xyz);
+    take(all.reactions, "torque on " + body.name + ", body axes", "N m", xyz);
+    ++at;  // the drive's torque is part of it
+  }
+  return all;
+}
+
+std::vector<Panel> drifts(const Result& result, const Samples& samples) {
+  std::vector<Panel> panels;
+  const auto values = samples.all(
+      [&result](double t, const JointState& state) { return result.model.conserved(t, state); });
+  for (std::size_t k = 0; k < values.front().size(); ++k) {
+    const std::string& name = values.front()[k].first;
+    Panel panel{name + ", change since the start", "", {{"", {}}}};
+    const bool turns =
+        name.find("angular") != std::string::npos || name.find("cyclic") != std::string::npos;
+    panel.unit = name.starts_with("energy") ? "J" : turns ? "kg m²/s" : "kg m/s";
+    for (const auto& now : values) {
+      panel.curves.front().values.push_back(now[k].second - values.front()[k].second);
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+void write_block(std::ostream& s, const char* name, const std::vector<Series>& series) {
+  s << '$' << name << " << END\n";
+  for (std::size_t i = 0; i < series.front().size(); ++i) {
+    for (const Series& column : series) fmt::print(s, "{:.9g} ", column[i]);
+    s << '\n';
+  }
+  s << "END\n";
+}
+
+const std::string style =
+    "set termoption noenhanced\nset grid xtics ytics lt 1 lc rgb '#dddddd'\n"
+    "set border 31 lc rgb '#555555'\n"
+    "set tics tc rgb '#333333'\n";
+
+/// All of what does not change at all, with room about it.
+std::string y_range(const Panel& panel) {
+  double least = panel.curves.front().values.front();
+  double most = least;
+  for (const Curve& curve : panel.curves) {
+    const auto [low, high] = std::minmax_element(curve.values.begin(), curve.values.end());
+    least = std::min(least, *low);
+    most = std::max(most, *high);
+  }
+  if (least < most) return "set yrange [*:*]\n";
+  const double room = least == 0 ? 1 : std::abs(least) / 2;
+  return fmt::format("set yrange [{:.9g}:{:.9g}]\n", least - room, most + room);
+}
+
+/// Panels over time, one below the other.
+std::string over_time(const std::string& title, const Series& times,
+                      const std::vector<Panel>& panels) {
+  std::ostringstream s;
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    std::vector<Series> block{times};
+    for (const Curve& curve : panels[p].curves) block.push_back(curve.values);
+    write_block(s, ("panel" + std::to_string(p)).c_str(), block);
+  }
+  s << style << "set xzeroaxis lc rgb '#888888'\nset autoscale xfix\n"
+    << "set offsets 0, 0, graph 0.08, graph 0.08\n"
+    << "set format y '%.5g'\n";
+  const bool has_key = std::any_of(panels.begin(), panels.end(),
+                                   [](const Panel& panel) { return panel.curves.size() > 1; });
+  fmt::print(s,
+             "set multiplot layout {},1 title {} margins char 13, char {}, char 4, char 4 "
+             "spacing char 0, char 3\n",
+             panels.size(), quoted(title), has_key ? 14 : 3);
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    const Panel& panel = panels[p];
+    s << "set title " << quoted(panel.title) << " offset 0,-0.6\nset ylabel "
+      << quoted("[" + panel.unit + "]") << "\n"
+      << (p + 1 == panels.size() ? "set xlabel 't [s]'\nset format x '%g'\n"
+                                 : "unset xlabel\nset format x ''\n")
+      << (panel.curves.size() > 1 ? "set key outside right top samplen 2\n" : "unset key\n")
+      << y_range(panel) << "plot ";
+    for (std::size_t k = 0; k < panel.curves.size(); ++k) {
+      fmt::print(s, "{}$panel{} using 1:{} with lines lw 2 dt {} lc rgb '{}' title {}",
+                 k > 0 ? ", " : "", p, k + 2, dashes[k], colours[k], quoted(panel.curves[k].name));
+    }
+    s << '\n';
+  }
+  s << "unset multiplot\nunset output\n";
+  return s.str();
+}
+
+/// The direction in the last body whose path is drawn, on body axes.
+Eigen::Vector3d axis(const kreisel::BodyDescription& body) {
+  const auto& joint = body.joint;
+  const auto on_body = [&joint](const Eigen::Vector3d& a) {
+    return Eigen::Vector3d(joint.orientation.normalized().conjugate() * a.normalized());
+  };
+  switch (joint.kind) {
+    case JointKind::revolute:
+    case JointKind::prismatic: return on_body(joint.axis);
+    case JointKind::universal: return on_body(joint.second_axis);
+    default: return Eigen::Vector3d::UnitZ();
+  }
+}
+
+/// Directions on the unit sphere, the guide's axes; empty where nothing turns.
+std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, std::string& what) {
+  const int last = static_cast<int>(result.scene.bodies.size()) - 1;
+  const auto& body = result.scene.bodies.back();
+  const auto directions = [&](const Eigen::Vector3d& on_body) {
+    return samples.all([&](double t, const JointState& state) {
+      return Eigen::Vector3d(result.model.pose(t, state, last).rotation * on_body);
+    });
+  };
+  const auto moves = [](const std::vector<Eigen::Vector3d>& way) {
+    return std::any_of(way.begin(), way.end(),
+                       [&way](const auto& n) { return (n - way.front()).norm() > 1e-9; });
+  };
+  const Eigen::Vector3d centre = body.inertia.value.first_moment;
+  const bool has_one_axis =
+      body.joint.kind == JointKind::revolute || body.joint.kind == JointKind::prismatic;
+  what = "axis of " + body.name;
+  auto way = directions(axis(body));
+  if (centre.norm() == 0 || (has_one_axis && moves(way))) {
+    return moves(way) ? way : std::vector<Eigen::Vector3d>();
+  }
+  what = "from the joint of " + body.name + " to its centre of mass";
+  way = directions(centre.normalized());
+  return moves(way) ? way : std::vector<Eigen::Vector3d>();
+}
+
+/// Ranges of equal length that hold the points.
+std::string square_range(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Vector2d least = points.front();
+  Eigen::Vector2d most = points.front();
+  for (const auto& p : points) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  const Eigen::Vector2d middle = (least + most) / 2;
+  const double half = 0.55 * (most - least).maxCoeff();
+  return fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]\n", middle.x() - half,
+                     middle.x() + half, middle.y() - half, middle.y() + half);
+}
+
+/// The whole sphere from the side on which the path lies, and the path from above.
+std::string on_sphere(const std::string& title, const std::string& what,
+                      const std::vector<Eigen::Vector3d>& way) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& n : way) mean += n;
+  if (mean.norm() < 1e-3 * static_cast<double>(way.size())) mean = way.front();
+  mean.normalize();
+  int across = 0;
+  mean.cwiseAbs().minCoeff(&across);
+  const Eigen::Vector3d aside = (Eigen::Vector3d::Unit(across) - mean[across] * mean).normalized();
+  const Eigen::Vector3d up = mean.cross(aside);
+  // The camera stands off the mean direction, lest the path be seen from above alone.
+  const Eigen::Vector3d eye = (mean - 0.45 * up + 0.3 * aside).normalized();
+  const Eigen::Vector3d right = (aside - aside.dot(eye) * eye).normalized();
+  const Eigen::Vector3d above = eye.cross(right);
+
+  std::ostringstream s;
+  const auto project = [&](const Eigen::Vector3d& p, bool front) {
+    if ((p.dot(eye) >= 0) == front) {
+      fmt::print(s, "{:.9g} {:.9g}\n", p.dot(right), p.dot(above));
+    } else {
+      s << '\n';
+    }
+  };
+  s << "$grid << END\n";
+  const double degree = std::acos(-1.0) / 180;
+  const auto point = [degree](int longitude, int latitude) {
+    const double l = longitude * degree;
+    const double b = latitude * degree;
+    return Eigen::Vector3d(std::cos(b) * std::cos(l), std::cos(b) * std::sin(l), std::sin(b));
+  };
+  for (int l = 0; l < 360; l += 30) {
+    for (int b = -90; b <= 90; b += 3) project(point(l, b), true);
+    s << '\n';
+  }
+  for (int b = -60; b <= 60; b += 30) {
+    for (int l = 0; l <= 360; l += 3) project(point(l, b), true);
+    s << '\n';
+  }
+  s << "END\n$front << END\n";
+  for (const auto& n : way) project(n, true);
+  s << "END\n$back << END\n0 0\n\n";
+  for (const auto& n : way) project(n, false);
+  s << "END\n$near << END\n";
+  std::vector<Eigen::Vector2d> near(way.size());
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    near[i] = {way[i].dot(aside), way[i].dot(up)};
+    fmt::print(s, "{:.12g} {:.12g}\n", near[i].x(), near[i].y());
+  }
+  s << "END\n";
+  const auto ends = [&s](const char* name, const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                         const Eigen::Vector3d& b) {
+    fmt::print(s, "${} << END\n{:.12g} {:.12g}\nEND\n", name, p.dot(a), p.dot(b));
+  };
+  ends("start", way.front(), right, above);
+  ends("end", way.back(), right, above);
+  ends("nearstart", way.front(), aside, up);
+  ends("nearend", way.back(), aside, up);
+  static constexpr const char* names[] = {"x", "y", "z"};
+  const std::string marks =
+      " with points pt 6 ps 1.3 lw 2 lc rgb '#d55e00' title 'start', ${}end with points pt 8 ps "
+      "1.3 lw 2 lc rgb '#009e73' title 'end'\n";
+  s << style << "set key outside bottom center horizontal\n";
+  fmt::print(s, "set multiplot layout 1,2 title {}\n", quoted(title + ": " + what));
+  s << "set size ratio -1\nunset border\nunset tics\nunset grid\nset title 'on the unit sphere, "
+       "guide axes'\nset xrange [-1.15:1.15]\nset yrange [-1.15:1.15]\n"
+    << "set object 1 circle at 0,0 size 1 fs empty border lc rgb '#888888'\n";
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d unit = 1.1 * Eigen::Vector3d::Unit(k);
+    if (unit.dot(eye) > 0) {
+      fmt::print(s, "set label {} '{}' at {:.4g},{:.4g} center tc rgb '#555555'\n", k + 1, names[k],
+                 unit.dot(right), unit.dot(above));
+    }
+  }
+  s << "plot $grid with lines lc rgb '#cccccc' notitle, $back with lines dt (3,3) lc rgb "
+       "'#8fbfdd' notitle, $front with lines lw 2 lc rgb '#0072b2' title 'path', $start"
+    << fmt::format(fmt::runtime(marks), "");
+  s << "unset object 1\nunset label\nset border 31 lc rgb '#555555'\nset tics tc rgb '#333333'\n"
+       "set grid xtics ytics lt 1 lc rgb '#dddddd'\nunset key\nset title 'seen "
+       "along its mean direction'\n"
+       "set format '%.4g'\nset xtics rotate by -30 autofreq\n"
+    << square_range(near);
+  fmt::print(s, "set xlabel 'towards {} [rad for small angles]'\nset ylabel 'across'\n",
+             names[across]);
+  s << "plot $near with lines lw 1.5 lc rgb '#0072b2' title 'path', $nearstart"
+    << fmt::format(fmt::runtime(marks), "near");
+  s << "unset multiplot\nunset output\n";
+  return s.str();
+}
+
+void draw_one(const std::filesystem::path& place, std::size_t height, const std::string& script) {
+  for (const bool svg : {true, false}) {
+    kreisel::AtomicFile picture(place.string() + (svg ? ".svg" : ".png"));
+    const std::string terminal =
+        svg ? fmt::format("set terminal svg size 800,{} font 'Helvetica,14' background 'white'\n",
+                          height)
+            : fmt::format("set terminal pngcairo size 800,{} font 'Helvetica,11'\n", height);
+    gnuplot::run(
+        fmt::format("{}set output {}\n{}", terminal, quoted(picture.draft().string()), script));
+    picture.commit();
+  }
+}
+
+}  // namespace
+
+void draw(const Result& result, const std::filesystem::path& folder) {
+  gnuplot::require_installed();
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw kreisel::InvalidInput("--plot " + folder.string() + ": " + error.message());
+  const Samples samples(result);
+  const Series times = samples.of([](double t, const JointState&) { return t; });
+  const auto rows = samples.all([&result](double t, const JointState& state) {
+    return row(result.model, t, state, result.reactions);
+  });
+  const std::string& title = result.scene.title;
+  const auto over = [&](const char* name, const char* what, const std::vector<Panel>& panels) {
+    if (panels.empty()) return;
+    draw_one(folder / name, 110 + 170 * panels.size(),
+             over_time(title.empty() ? what : title + ": " + what, times, panels));
+  };
+  const Panels all = panels(result, rows);
+  over("coordinates", "coordinates", all.coordinates);
+  over("rates", "rates", all.rates);
+  over("reactions", "reactions", all.reactions);
+  over("invariants", "what should not change", drifts(result, samples));
+  std::string what;
+  const auto way = path(result, samples, what);
+  if (!way.empty()) draw_one(folder / "axis", 500, on_sphere(title, what, way));
+}

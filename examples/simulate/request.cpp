@@ -1,0 +1,97 @@
+#include "request.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include <motor/error.hpp>
+
+using kreisel::InvalidInput;
+
+namespace {
+
+/// Throws : InvalidInput unless the whole text is a finite number
+double number(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
+    throw InvalidInput(fmt::format("{} = '{}' is not a finite number", option, text));
+  }
+  return value;
+}
+
+void check(const Request& request) {
+  const auto& [t_end, tolerance, method] = request.solve;
+  if (t_end && !(*t_end > 0)) throw InvalidInput("--t-end must be above 0");
+  if (tolerance && !(*tolerance >= 1e-15 && *tolerance <= 1e-2)) {
+    throw InvalidInput("--tolerance lies outside [1e-15, 1e-2]");
+  }
+  if (request.resume && !request.csv) throw InvalidInput("--resume needs --csv");
+}
+
+}  // namespace
+
+std::optional<Request> read_request(int argc, char** argv) {
+  CLI::App app(
+      "Computes the motion that a scene file describes, to a tolerance of the global error.\n"
+      "SI units and radians.\n");
+  app.name("simulate");
+  Request request;
+  std::string scene;
+  std::string csv;
+  std::string plot;
+  const auto value = [&app](const std::string& option, std::optional<double>& target,
+                            const std::string& help) {
+    app.add_option_function<std::string>(
+           option, [&target, option](const std::string& text) { target = number(option, text); },
+           help)
+        ->type_name("NUMBER")
+        ->group("Instead of the scene's");
+  };
+  app.add_option("scene", scene, "the scene file, TOML")->required()->type_name("SCENE.toml");
+  value("--t-end", request.solve.t_end, "s");
+  value("--tolerance", request.solve.tolerance, "of the global error");
+  app.add_option_function<std::string>(
+         "--method",
+         [&request](const std::string& word) {
+           request.solve.method = kreisel::method_named(word);
+           if (!request.solve.method) {
+             throw InvalidInput("--method = '" + word +
+                                "' is none of auto, closed form, verner98, gauss16, radau13, "
+                                "splitting");
+           }
+         },
+         "auto, closed form, verner98, gauss16, radau13, splitting")
+      ->type_name("NAME")
+      ->group("Instead of the scene's");
+  app.add_flag("--reactions", request.reactions, "what every joint carries")->group("Output");
+  app.add_flag("--terms", request.terms, "relative, guide and Coriolis part of every body")
+      ->group("Output");
+  app.add_flag("--json", request.json, "one JSON object on standard output")->group("Output");
+  app.add_option("--csv", csv, "the trajectory, written while it is computed")
+      ->type_name("FILE")
+      ->group("Output");
+  app.add_flag("--resume", request.resume,
+               "go on from the last row of the --csv file. The rest is computed with other steps, "
+               "so that it agrees with an uninterrupted run to the tolerance, not to the bit")
+      ->group("Output");
+  app.add_option("--plot", plot, "pictures of the run, SVG and PNG, by gnuplot")
+      ->type_name("FOLDER")
+      ->group("Output");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app.help());
+    return {};
+  } catch (const CLI::ParseError& error) {
+    throw InvalidInput(error.what());
+  }
+  request.scene = scene;
+  if (!csv.empty()) request.csv = csv;
+  if (!plot.empty()) request.plot = plot;
+  check(request);
+  return request;
+}

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <dynamics/file/scene_file.hpp>
+
+/// What the command line of simulate asks for.
+struct Request {
+  std::filesystem::path scene;
+  kreisel::SolveRequest solve;
+  bool reactions = false;
+  bool terms = false;
+  bool json = false;
+  bool resume = false;
+  std::optional<std::filesystem::path> csv;
+  std::optional<std::filesystem::path> plot;  ///< a folder
+};
+
+/// Nothing where only help was asked for.
+///
+/// Throws : kreisel::InvalidInput
+std::optional<Request> read_request(int argc, char** argv);
