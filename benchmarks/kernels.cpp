@@ -1,13 +1,16 @@
 // What one operation of the motor calculus costs, beside the same operation on
 // bare arrays or in the representation that was not chosen.
 
+#include <Eigen/LU>
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <complex>
 #include <random>
 
 #include <dynamics/inertia.hpp>
 #include <dynamics/law/relative.hpp>
+#include <dynamics/step/factors.hpp>
 #include <motor/displacement.hpp>
 #include <motor/frame.hpp>
 #include <motor/motor.hpp>
@@ -109,5 +112,37 @@ KERNEL(equation_of_motion_form_5,
 KERNEL(relative_acceleration,
        relative_acceleration<Body>(InertiaTensor<Body>{in.inertia[i]}, Force<Body>{in.b[i]},
                                    V{in.a[i]}, F{in.b[i]}, Rate<Guide, F>{in.a[i]}));
+
+// --- Factors of small systems, as the stiff integrator takes them --------------------------------
+
+void factors(benchmark::State& state) {
+  const auto n = static_cast<Eigen::Index>(state.range(0));
+  const Eigen::MatrixXcd A = Eigen::MatrixXcd::Random(n, n);
+  const Eigen::VectorXcd b = Eigen::VectorXcd::Random(n);
+  detail::Factors<std::complex<double>> lu;
+  Eigen::VectorXcd x;
+  for (auto _ : state) {
+    lu.matrix = A;
+    lu.compute();
+    x = b;
+    lu.solve(x);
+    benchmark::DoNotOptimize(x);
+  }
+}
+BENCHMARK(factors)->Arg(6)->Arg(13)->Arg(50)->Arg(200);
+
+void factors_by_eigen(benchmark::State& state) {
+  const auto n = static_cast<Eigen::Index>(state.range(0));
+  const Eigen::MatrixXcd A = Eigen::MatrixXcd::Random(n, n);
+  const Eigen::VectorXcd b = Eigen::VectorXcd::Random(n);
+  Eigen::PartialPivLU<Eigen::MatrixXcd> lu;
+  Eigen::VectorXcd x;
+  for (auto _ : state) {
+    lu.compute(A);
+    x = lu.solve(b);
+    benchmark::DoNotOptimize(x);
+  }
+}
+BENCHMARK(factors_by_eigen)->Arg(6)->Arg(13)->Arg(50)->Arg(200);
 
 BENCHMARK_MAIN();

@@ -1,0 +1,18 @@
+// Runs every form a thousand times and has callgrind write down what each has cost:
+// tests/dynamics/scene/pruning_cost.sh. Each dump's description names case and form.
+
+#include <valgrind/callgrind.h>
+
+#include "cases.hpp"
+
+int main() {
+  for (const pruning::Case& c : pruning::all_cases()) {
+    for (const pruning::Form& form : c.forms) {
+      const std::string name = c.name + ": " + form.name;
+      form.run(1);  // what happens once: looking up the sine
+      CALLGRIND_ZERO_STATS;
+      form.run(1000);
+      CALLGRIND_DUMP_STATS_AT(name.c_str());
+    }
+  }
+}

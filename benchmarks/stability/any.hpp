@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+
+#include <dynamics/guide/motion.hpp>
+#include <dynamics/scene/load.hpp>
+
+namespace stability {
+
+/// Any guide and any load: solve() is then compiled for one scene, not for each pair of them.
+struct AnyGuide {
+  std::function<kreisel::FrameMotion<kreisel::Guide, kreisel::Inertial>(double)> motion;
+
+  [[nodiscard]] kreisel::FrameMotion<kreisel::Guide, kreisel::Inertial> operator()(
+      const double& t) const {
+    return motion(t);
+  }
+};
+
+struct AnyLoad {
+  std::function<kreisel::Force<kreisel::Body>(const kreisel::Situation<>&)> force;
+
+  [[nodiscard]] kreisel::Force<kreisel::Body> operator()(const kreisel::Situation<>& s) const {
+    return force(s);
+  }
+};
+
+[[nodiscard]] inline AnyLoad no_load() {
+  return {[](const kreisel::Situation<>&) { return kreisel::Force<kreisel::Body>{}; }};
+}
+
+}  // namespace stability

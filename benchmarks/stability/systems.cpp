@@ -1,0 +1,194 @@
+// Trees of bodies: masses far apart, bodies without mass, axes that coincide, stiff joints.
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/body_system.hpp>
+
+#include "trial.hpp"
+
+namespace stability {
+
+namespace {
+
+using namespace kreisel;
+using System = BodySystem<RestingFrame<>>;
+using State = System::State;
+
+/// A point of mass m at the end of a rod of length l in a joint about y, hung from `parent`.
+BodyDescription bob(const std::string& name, const std::string& parent, double mass, double length,
+                    double above = 0) {
+  return {
+      .name = name,
+      .parent = parent,
+      .joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}, .position = {0, 0, -above}},
+      .inertia = InertiaTensor<Body>::about_centre(mass, {0, 0, -length}, Matrix3<double>::Zero())};
+}
+
+const UniformGravity<Guide> gravity{{0, 0, -9.81}};
+
+/// A pendulum whose bob carries another of next to no mass, which swings as it may: the first must
+/// not notice.
+void mass_ratios(const Recorder& out) {
+  const exact::PendulumMotion motion(9.81, 0.5, 0);
+  for (const double mass : {1e-6, 1e-9, 1e-12, 1e-15}) {
+    const System system({}, {bob("heavy", "guide", 1, 1), bob("light", "heavy", mass, 0.3, 1)},
+                        gravity);
+    State start = system.rest();
+    start.coordinates << 0.5, 0.2;
+    const std::string what = fmt::format("a bob of {:g} on one of 1 kg", mass);
+    out.begin(what, "verner98");
+    const auto run = solve(system, start, {.times = every(0.5, 5), .tolerance = 1e-9});
+    double worst = 0;
+    for (std::size_t i = 0; i < run.times.size(); ++i) {
+      worst =
+          std::max(worst, std::abs(run.states[i].coordinates[0] - motion.at(run.times[i]).angle));
+    }
+    const bool done = run.report.status == RunStatus::complete;
+    // What the light one does to the heavy one is of the order of its mass.
+    expect_below(out, what, "verner98", done ? worst : double(NAN),
+                 run.report.error_estimate + 50 * mass, run.report.message);
+  }
+}
+
+void heavy_end(const Recorder& out) {
+  // A heavy bob on a light one: two rods in line are one pendulum as long as both in the limit.
+  for (const double mass : {1e3, 1e6, 1e9}) {
+    const System system(
+        {}, {bob("light", "guide", 1e-3, 0.5), bob("heavy", "light", mass, 0.5, 0.5)}, gravity);
+    State start = system.rest();
+    start.coordinates << 0.3, 0;
+    const std::string what = fmt::format("{:g} kg on 1e-3 kg", mass);
+    out.begin(what, "verner98");
+    const auto a =
+        solve(system, start, {.times = {0.2}, .tolerance = 1e-6, .most_evaluations = 1e6});
+    const auto b =
+        solve(system, start, {.times = {0.2}, .tolerance = 1e-9, .most_evaluations = 1e6});
+    Row row;
+    row.variant = what;
+    row.method = "verner98";
+    row.estimate = a.report.error_estimate;
+    row.evaluations = a.report.all_evaluations;
+    row.steps = a.report.effort.steps;
+    if (a.states.empty() || b.states.empty()) {
+      row.note = a.report.message;
+      row.verdict = says_something(row.note) ? Verdict::refused : Verdict::failed;
+    } else {
+      kreisel::detail::ErrorMeasure<System> distance(system, 1e-3);
+      row.error = distance(System::to_vector(a.states[0]), System::to_vector(b.states[0]));
+      row.verdict =
+          row.error <= row.estimate + b.report.error_estimate ? Verdict::accurate : Verdict::failed;
+      row.note = "against a run at 1e-9";
+    }
+    out.add(row);
+  }
+}
+
+void singular_trees(const Recorder& out) {
+  const auto rates = [](const System& system, const State& state) {
+    (void)system.rates(0, System::to_vector(state));
+  };
+  BodyDescription massless{.name = "ghost",
+                           .parent = "guide",
+                           .joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}}};
+  expect_refusal(out, "an end body without mass", "BodySystem",
+                 [&] {
+                   const System system({}, {massless}, gravity);
+                   rates(system, system.rest());
+                 },
+                 {"ghost"});
+  // Without mass in the middle: legal, it is its child that has some.
+  {
+    const System system({}, {massless, bob("bob", "ghost", 1, 1)}, gravity);
+    State start = system.rest();
+    start.coordinates << 0.2, 0.3;
+    expect_refusal(out, "two joints of one axis through one point, nothing between", "BodySystem",
+                   [&] { rates(system, start); });
+  }
+  {
+    BodyDescription crossed = massless;
+    crossed.joint.axis = {1, 0, 0};
+    const System system({}, {crossed, bob("bob", "ghost", 1, 1)}, gravity);
+    State start = system.rest();
+    start.coordinates << 0.2, 0.3;
+    out.begin("a ring without mass", "BodySystem");
+    const Eigen::VectorXd rate = system.rates(0, System::to_vector(start));
+    // A point on a sphere:
+    //   alpha'' = -g sin(alpha)/(l cos(beta)),  beta'' = -g cos(alpha) sin(beta)/l
+    const double alpha = -9.81 * std::sin(0.2) / std::cos(0.3);
+    const double beta = -9.81 * std::cos(0.2) * std::sin(0.3);
+    expect_below(out, "a ring without mass", "BodySystem",
+                 std::max(std::abs(rate[2] - alpha), std::abs(rate[3] - beta)), 1e-13);
+    start.coordinates << 0.2, std::acos(-1.0) / 2;
+    expect_refusal(out, "a ring without mass at gimbal lock", "BodySystem",
+                   [&] { rates(system, start); });
+  }
+  // No freedom at all.
+  {
+    const System system({}, {}, gravity);
+    out.begin("no bodies", "BodySystem");
+    const auto run = solve(system, system.rest(), {.times = {1.0}});
+    expect_below(out, "no bodies", "verner98", double(run.states.size() == 1 ? 0 : 1), 0.5,
+                 run.report.message);
+  }
+  {
+    BodyDescription fixed = bob("block", "guide", 1, 1);
+    fixed.joint.kind = JointKind::fixed;
+    const System system({}, {fixed}, gravity);
+    out.begin("a body that cannot move", "BodySystem");
+    const auto run = solve(system, system.rest(), {.times = {1.0}});
+    expect_below(out, "a body that cannot move", "verner98", double(run.states.size() == 1 ? 0 : 1),
+                 0.5, run.report.message);
+  }
+}
+
+/// What a stiff joint makes of a pendulum against one that is held: 1/k apart.
+void rigid_limit(const Recorder& out) {
+  const auto swing = [&](double stiffness) {
+    std::vector<BodyDescription> bodies{bob("upper", "guide", 1, 1),
+                                        bob("lower", "upper", 0.5, 1, 1)};
+    if (stiffness == 0) {
+      bodies[1].rule = JointRule::held;
+    } else {
+      bodies[1].forces = {{stiffness, 0, 2 * std::sqrt(stiffness), 0}};
+    }
+    const System system({}, bodies, gravity);
+    State start = system.rest();
+    start.coordinates << 0.5, 0;
+    return solve(system, start, {.times = {1.0}, .tolerance = 1e-9, .most_evaluations = 3e6});
+  };
+  out.begin("held", "verner98");
+  const auto held = swing(0);
+  for (const double stiffness : {1e3, 1e4, 1e6, 1e9}) {
+    const std::string what = fmt::format("{:g} N m/rad against held", stiffness);
+    out.begin(what, "automatic");
+    const auto elastic = swing(stiffness);
+    if (elastic.states.empty()) {
+      Row row;
+      row.variant = what;
+      row.method = "automatic";
+      row.note = elastic.report.message;
+      row.verdict = says_something(row.note) ? Verdict::refused : Verdict::failed;
+      out.add(row);
+      continue;
+    }
+    expect_below(out, what, "automatic",
+                 std::abs(elastic.states[0].coordinates[0] - held.states[0].coordinates[0]),
+                 30 / stiffness + held.report.error_estimate + elastic.report.error_estimate);
+  }
+}
+
+}  // namespace
+
+void systems(std::vector<Case>& cases) {
+  cases.push_back({"mass-ratios", "bobs of 1e-15 of the mass of what carries them", &mass_ratios});
+  cases.push_back({"heavy-end", "1e12 of the mass at the end", &heavy_end});
+  cases.push_back(
+      {"singular-trees", "bodies without mass, no freedom, gimbal lock", &singular_trees});
+  cases.push_back({"rigid-limit", "stiff joints against joints that are held", &rigid_limit});
+}
+
+}  // namespace stability

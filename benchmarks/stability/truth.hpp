@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include <dynamics/scene/euler_top.hpp>
+
+namespace stability {
+
+/// A top whose weight, if any, pulls along body z, in 50 digits: its states at the times given.
+///
+/// It shares no formula with the library (tests/support/top_truth.hpp).
+std::vector<kreisel::EulerTop::State> top_in_50_digits(const kreisel::EulerTop& top,
+                                                       const kreisel::EulerTop::State& start,
+                                                       const std::vector<double>& times);
+
+/// A symmetric top free of torque in 50 digits, by two rotations: however far ahead.
+kreisel::EulerTop::State symmetric_in_50_digits(const kreisel::EulerTop& top,
+                                                const kreisel::EulerTop::State& start, double time);
+
+}  // namespace stability
