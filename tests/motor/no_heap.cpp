@@ -2,9 +2,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,70 +10,14 @@
 #include <motor/print.hpp>
 
 #include <support/everything.hpp>
+#include <support/heap.hpp>
 
-/// No function of motor/ or of the laws asks for memory. Counted: every operator new, and every
-/// malloc, calloc, realloc, aligned_alloc and posix_memalign called from this file, which is where
-/// header-only code is; the linker passes them through here (--wrap).
-
-namespace {
-
-std::size_t requests = 0;
-
-}  // namespace
-
-extern "C" {
-
-void* __real_malloc(std::size_t);
-void* __real_calloc(std::size_t, std::size_t);
-void* __real_realloc(void*, std::size_t);
-void* __real_aligned_alloc(std::size_t, std::size_t);
-int __real_posix_memalign(void**, std::size_t, std::size_t);
-
-void* __wrap_malloc(std::size_t size) {
-  ++requests;
-  return __real_malloc(size);
-}
-void* __wrap_calloc(std::size_t count, std::size_t size) {
-  ++requests;
-  return __real_calloc(count, size);
-}
-void* __wrap_realloc(void* old, std::size_t size) {
-  ++requests;
-  return __real_realloc(old, size);
-}
-void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++requests;
-  return __real_aligned_alloc(alignment, size);
-}
-int __wrap_posix_memalign(void** result, std::size_t alignment, std::size_t size) {
-  ++requests;
-  return __real_posix_memalign(result, alignment, size);
-}
-}
-
-// Not inline, or the compiler sees through delete to free and finds no malloc at the other end.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++requests;
-  if (void* memory = __real_malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+/// No function of motor/ or of the laws asks for memory.
 
 using namespace kreisel;
+using test::heap::requests_of;
 
 namespace {
-
-/// How often the action asks for memory.
-template <class Action>
-std::size_t requests_of(const Action& action) {
-  const std::size_t before = requests;
-  action();
-  return requests - before;
-}
 
 /// Keeps the compiler from leaving out what nobody reads.
 template <class T>

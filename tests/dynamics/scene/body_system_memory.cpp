@@ -3,8 +3,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -12,69 +10,17 @@
 #include <dynamics/scene/body_system.hpp>
 #include <dynamics/step/advance.hpp>
 
+#include <support/heap.hpp>
+
 /// Once workspace and results are made, nothing that a system computes asks for memory, and the
-/// workspace grows linearly. Counted: every operator new, and every malloc and the like called from
-/// this file, which is where header-only code is; the linker passes them through here (--wrap).
-
-namespace {
-
-std::size_t requests = 0;
-std::size_t bytes = 0;
-
-void note(std::size_t size) {
-  ++requests;
-  bytes += size;
-}
-
-}  // namespace
-
-extern "C" {
-
-void* __real_malloc(std::size_t);
-void* __real_calloc(std::size_t, std::size_t);
-void* __real_realloc(void*, std::size_t);
-void* __real_aligned_alloc(std::size_t, std::size_t);
-int __real_posix_memalign(void**, std::size_t, std::size_t);
-
-void* __wrap_malloc(std::size_t size) {
-  note(size);
-  return __real_malloc(size);
-}
-void* __wrap_calloc(std::size_t count, std::size_t size) {
-  note(count * size);
-  return __real_calloc(count, size);
-}
-void* __wrap_realloc(void* old, std::size_t size) {
-  note(size);
-  return __real_realloc(old, size);
-}
-void* __wrap_aligned_alloc(std::size_t alignment, std::size_t size) {
-  note(size);
-  return __real_aligned_alloc(alignment, size);
-}
-int __wrap_posix_memalign(void** result, std::size_t alignment, std::size_t size) {
-  note(size);
-  return __real_posix_memalign(result, alignment, size);
-}
-}
-
-// Not inline, or the compiler sees through delete to free and finds no malloc at the other end.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  note(size);
-  if (void* memory = __real_malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+/// workspace grows linearly.
 
 using namespace kreisel;
+using namespace kreisel::test::heap;
 
 namespace {
 
-/// Every joint kind in turn, with springs, dampers and loads.
+/// Every joint kind in turn, with springs, dampers, loads and rotors.
 BodySystem<RotatingFrame<>> chain(int n) {
   std::vector<BodyDescription> bodies;
   for (int i = 0; i < n; ++i) {
@@ -91,6 +37,15 @@ BodySystem<RotatingFrame<>> chain(int n) {
     b.loads.emplace_back(ConstantLoad<Inertial>{.force = {1, 2, 3}});
     b.loads.emplace_back(ViscousDrag<>{.torque_per_rate = 0.1});
     bodies.push_back(b);
+    if (i % 6 != 0) continue;
+    BodyDescription rotor;
+    rotor.name = "rotor " + std::to_string(i);
+    rotor.parent = b.name;
+    rotor.joint = {.kind = JointKind::revolute, .axis = {0, 0, 1}};
+    rotor.inertia = InertiaTensor<Body>::about_centre(
+        1, {0, 0, 0}, Vector3<double>(0.1, 0.1, 0.15).asDiagonal().toDenseMatrix());
+    rotor.rotor = Rotor{.mode = static_cast<RotorMode>(i / 6 % 3)};
+    bodies.push_back(rotor);
   }
   return {{.angular_velocity = {0, 0, 1}}, bodies, UniformGravity<Guide>{{0, 0, -9}}};
 }

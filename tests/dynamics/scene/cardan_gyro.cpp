@@ -533,7 +533,9 @@ BOOST_AUTO_TEST_CASE(is_told_of_each_kind) {
   same(kept(CardanGyro(symmetric, springs, rest, RegulatedRotor{})), {"energy of rings"});
   same(kept(CardanGyro(unsymmetric, {}, rest, RegulatedRotor{})), {"alpha momentum"});
   same(kept(CardanGyro(symmetric, brakes, turntable)), {"rotor momentum"});
-  same(kept(CardanGyro(unsymmetric, {}, turntable)), {});
+  same(kept(CardanGyro(unsymmetric, {}, turntable)), {"Jacobi integral"});
+  same(kept(CardanGyro(symmetric, springs, turntable)), {"Jacobi integral", "rotor momentum"});
+  same(kept(CardanGyro(unsymmetric, {}, turntable, RegulatedRotor{})), {});
 }
 
 // On any base: the momentum's rate in space is what the case gives; the kinetic energy's is the

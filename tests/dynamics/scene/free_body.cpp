@@ -10,6 +10,7 @@
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/law/vector_form.hpp>
+#include <dynamics/scene/body_system.hpp>
 #include <dynamics/scene/free_body.hpp>
 #include <dynamics/scene/oblate_gravitation.hpp>
 #include <dynamics/step/advance.hpp>
@@ -194,6 +195,38 @@ BOOST_DATA_TEST_CASE(has_a_potential, data::xrange(20u), seed) {
   }
   const OblateGravitation<> sphere{.j2 = 0};
   BOOST_TEST(near(sphere(p).norm(), 3.986004418e14 / p.squaredNorm(), 10.0, 8));
+}
+
+// Fields of gravity take a wheel for all the same however it is turned: the wheel as a rotor moves
+// its carrier as an ordinary body does. Of other loads nothing is known.
+BOOST_AUTO_TEST_CASE(gravitation_may_act_on_a_rotor) {
+  const auto satellite = [](auto load, bool rotor) {
+    BodyDescription carrier;
+    carrier.name = "carrier";
+    carrier.joint.kind = JointKind::free;
+    carrier.inertia = lopsided_body();
+    BodyDescription wheel;
+    wheel.name = "wheel";
+    wheel.parent = "carrier";
+    wheel.joint = {.kind = JointKind::revolute, .axis = {0, 0, 1}, .position = {0.1, 0, 0.2}};
+    wheel.inertia = InertiaTensor<Body>::about_centre(
+        1, {0, 0, 0.05}, Vector3<double>(0.1, 0.1, 0.2).asDiagonal().toDenseMatrix());
+    wheel.loads = {load};
+    if (rotor) wheel.rotor = Rotor{};
+    return BodySystem<RestingFrame<>>({}, {carrier, wheel});
+  };
+  Eigen::VectorXd y(15);
+  y << 0.1, -0.2, 0.3, 0.9, 6.5e6, 1e6, 2e6, 0.4, 0.1, -0.2, 0.3, 1, 2, 3, 70;
+  const auto compare = [&](auto load) {
+    const Eigen::VectorXd as_body = satellite(load, false).rates(0, y);
+    const Eigen::VectorXd off = satellite(load, true).rates(0, y) - as_body;
+    BOOST_TEST(off.norm() <= 1e-13 * as_body.tail(7).norm());
+  };
+  compare(UniformGravity<Guide>{{1, 2, -9}});
+  compare(UniformGravity<Inertial>{{1, 2, -9}});
+  compare(OblateGravitation<>{});
+  BOOST_CHECK_THROW((void)satellite(ConstantLoad<Guide>{.torque = {0, 0, 1}}, true), InvalidInput);
+  BOOST_CHECK_THROW((void)satellite(UniformGravity<Body>{{1, 2, -9}}, true), InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -156,4 +156,10 @@ BOOST_AUTO_TEST_CASE(that_touch_without_crossing_are_none) {
   BOOST_TEST(!advance_to_event(steps, square, 10).has_value());
 }
 
+BOOST_AUTO_TEST_CASE(are_refused_where_their_function_is_no_number) {
+  auto steps = turning();
+  const auto ends = [](double t, const State& y) { return t > 1 ? std::sqrt(-1.0) : y[1] + 2; };
+  BOOST_CHECK_THROW((void)advance_to_event(steps, ends, 10), ComputationFailed);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -220,4 +220,12 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(with(1e16, 1, 0.1).advance_to(1e16 + 100), ComputationFailed);
 }
 
+BOOST_AUTO_TEST_CASE(give_up_when_told) {
+  GaussSteps steps(circle, 0.0, State<2>(1, 0), 0.125);
+  steps.give_up_after(1000);
+  BOOST_CHECK_THROW(steps.advance_to(1e9), ComputationFailed);
+  BOOST_TEST(steps.effort().evaluations < 1300);
+  BOOST_TEST(near(steps.y()[0], std::cos(steps.t()), 1.0, 64));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

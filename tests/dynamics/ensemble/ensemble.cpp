@@ -1,0 +1,307 @@
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <dynamics/ensemble/ensemble.hpp>
+#include <dynamics/scene/axisymmetric_body.hpp>
+#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/scene/euler_top.hpp>
+
+using namespace kreisel;
+
+namespace {
+
+using Gyro = CardanGyro<RestingFrame<>>;
+
+const EulerTop top({0.002, 0.002, 0.003}, {0, 0, 0.05});
+const Task task{.times = {0.1, 0.2}};
+
+EulerTop::State scattered(std::size_t /*index*/, MemberRandom& random) {
+  const double tilt = random.normal(0.5, 0.1);
+  const Vector3<double> w(random.normal(), random.normal(), random.normal(100, 5));
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vector3<double>::UnitX())), w};
+}
+
+const CardanMoments moments{.rotor = {0.005, 0.005, 0.008},
+                            .inner_ring = {0.002, 0.0015, 0.0028},
+                            .outer_ring = {0.006, 0.0045, 0.005}};
+
+Member<Gyro> scattered_gyro(std::size_t /*index*/, MemberRandom& random) {
+  CardanMoments own = moments;
+  own.rotor.z() *= random.normal(1, 0.01);
+  return {Gyro(own, {}, {}),
+          {.beta = random.normal(0.5, 0.1), .beta_rate = random.normal(), .phi_rate = 50}};
+}
+
+/// All numbers of a result, bit for bit comparable.
+template <class Scene>
+std::vector<double> numbers(const Ensemble<typename Scene::State>& result) {
+  std::vector<double> all;
+  for (const auto& member : result.members) {
+    all.insert(all.end(), member.times.begin(), member.times.end());
+    for (const auto& state : member.states) {
+      const auto y = Scene::to_vector(state);
+      all.insert(all.end(), y.begin(), y.end());
+    }
+    all.push_back(member.report.error_estimate);
+    all.push_back(member.report.effort.evaluations);
+  }
+  return all;
+}
+
+template <class S>
+struct OfScene {
+  using Scene = S;
+};
+
+double differ(const EulerTop::State& a, const EulerTop::State& b) {
+  return std::max(a.attitude.angularDistance(b.attitude),
+                  (a.angular_velocity - b.angular_velocity).norm() / b.angular_velocity.norm());
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(an_ensemble)
+
+BOOST_AUTO_TEST_CASE(is_the_same_to_the_last_bit_for_any_number_of_threads) {
+  const auto with = [](int threads) {
+    const auto result = ensemble(top, {.count = 37, .threads = threads}, scattered, task);
+    BOOST_TEST((result.status == RunStatus::complete));
+    BOOST_TEST(result.failed == 0U);
+    return numbers<EulerTop>(result);
+  };
+  const auto once = with(1);
+  BOOST_TEST(once.size() == 37U * (2 + 2 * 7 + 2));
+  BOOST_TEST((with(2) == once));
+  BOOST_TEST((with(3) == once));
+  const auto gyros = [](int threads) {
+    return numbers<Gyro>(ensemble({.count = 19, .threads = threads}, scattered_gyro, task));
+  };
+  const auto gyros_once = gyros(1);
+  BOOST_TEST((gyros(2) == gyros_once));
+  BOOST_TEST((gyros(3) == gyros_once));
+}
+
+BOOST_AUTO_TEST_CASE(is_the_same_in_parts) {
+  const auto part = [](std::size_t first, std::size_t count) {
+    return numbers<EulerTop>(ensemble(top, {.count = count, .first = first}, scattered, task));
+  };
+  auto parts = part(0, 16);
+  const auto rest = part(16, 11);
+  parts.insert(parts.end(), rest.begin(), rest.end());
+  BOOST_TEST((parts == part(0, 27)));
+}
+
+// Each is within its own estimate of the truth; that of a run alone held to 1e-14 counts as it.
+BOOST_AUTO_TEST_CASE(goes_where_each_member_goes_alone) {
+  for (const double tolerance : {1e-6, 1e-10}) {
+    const Task asked{.times = {0.1, 0.2}, .tolerance = tolerance};
+    const auto result = ensemble(top, {.count = 24, .seed = 3}, scattered, asked);
+    const auto alone = ensemble<double>(top, {.count = 24, .seed = 3}, scattered, asked);
+    for (std::size_t i = 0; i < result.members.size(); ++i) {
+      const auto& [times, states, report] = result.members[i];
+      BOOST_REQUIRE(times.size() == 2U);
+      MemberRandom random(3, i);
+      Advance truth(top, 0, scattered(i, random), {1e-15});
+      double off = 0, off_alone = 0;
+      for (std::size_t k = 0; k < 2; ++k) {
+        const EulerTop::State state = truth.to(times[k]);
+        off = std::max(off, differ(states[k], state));
+        off_alone = std::max(off_alone, differ(alone.members[i].states[k], state));
+      }
+      BOOST_TEST(report.tolerance_kept);
+      BOOST_TEST(report.error_estimate <= tolerance);
+      BOOST_TEST(off <= report.error_estimate);
+      BOOST_TEST(off_alone <= alone.members[i].report.error_estimate);
+      // The estimate is one: not far above the error of the worst lane, which sets the steps.
+      BOOST_TEST(report.error_estimate > 0);
+    }
+  }
+}
+
+// Scenes of one kind with other moments of inertia lie side by side in a pack. Each keeps to its own
+// estimate, whether it does or not; moments mixed up between lanes would turn each another way.
+BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
+  static_assert(detail::lies_side_by_side<Gyro, Pack>);
+  static_assert(detail::lies_side_by_side<EulerTop, Pack>);
+  static_assert(!detail::lies_side_by_side<CardanGyro<RestingFrame<>, DrivenRotor<>>, Pack>);
+  const auto with_blades = [](std::size_t index, MemberRandom& random) {
+    const auto factor = [&random] { return random.uniform(0.9, 1); };
+    CardanMoments own = moments;
+    own.rotor *= factor();
+    // Members 8 to 15 are not symmetric, 16 to 23 are by turns.
+    if (index / 8 == 1 || (index / 8 == 2 && index % 2 == 0)) own.rotor.x() *= 0.98;
+    own.inner_ring *= factor();
+    own.outer_ring *= factor();
+    const CardanBearings bearings{.outer = {factor(), 0.01 * factor(), 0.1 * factor()},
+                                  .inner = {factor(), 0.01 * factor(), 0.2 * factor()}};
+    return Member{Gyro(own, bearings, {}, {.friction = index < 24 ? 0.001 : 0.001 * factor()}),
+                  Gyro::State{.beta = random.normal(0.5, 0.1), .beta_rate = 1, .phi_rate = 50}};
+  };
+  const auto tops = [](std::size_t /*index*/, MemberRandom& random) {
+    const auto factor = [&random] { return random.uniform(0.9, 1); };
+    return Member{EulerTop({0.002 * factor(), 0.002 * factor(), 0.003 * factor()},
+                           {0.01 * factor(), 0, 0.05 * factor()}, {0, 0, 0.1 * factor()}),
+                  EulerTop::State{.angular_velocity = {1, 0, 50 * factor()}}};
+  };
+  const auto check = [](const auto& make, auto scene) {
+    using Scene = typename decltype(scene)::Scene;
+    const auto result = ensemble({.count = 30, .seed = 3}, make, task);
+    for (std::size_t i = 0; i < result.members.size(); ++i) {
+      const auto& [times, states, report] = result.members[i];
+      BOOST_REQUIRE((report.status == RunStatus::complete));
+      MemberRandom random(3, i);
+      const auto own = make(i, random);
+      Advance truth(own.scene, 0, own.start, {1e-15});
+      detail::ErrorMeasure<Scene> distance(task.smallest);
+      for (std::size_t k = 0; k < times.size(); ++k) {
+        BOOST_TEST(distance(Scene::to_vector(states[k]), Scene::to_vector(truth.to(times[k]))) <=
+                   report.error_estimate);
+      }
+      BOOST_TEST(report.error_estimate <= task.tolerance);
+    }
+    // A pack has one course of steps.
+    BOOST_TEST(result.members[0].report.effort.evaluations ==
+               result.members[Pack::lanes - 1].report.effort.evaluations);
+  };
+  check(with_blades, OfScene<Gyro>());
+  check(tops, OfScene<EulerTop>());
+}
+
+BOOST_AUTO_TEST_CASE(takes_other_members_with_another_seed) {
+  const auto with = [](std::uint64_t seed) {
+    return numbers<EulerTop>(ensemble(top, {.count = 8, .seed = seed}, scattered, task));
+  };
+  BOOST_TEST((with(1) == with(1)));
+  BOOST_TEST((with(1) != with(2)));
+}
+
+// One that cannot be made, and one that runs into gimbal lock: with massless rings nothing resists
+// alpha at beta = 90 degrees.
+BOOST_AUTO_TEST_CASE(keeps_what_a_member_failed_by) {
+  const Gyro gyro({.rotor = moments.rotor}, {}, {});
+  const auto make = [](std::size_t index, MemberRandom& random) {
+    if (index == 5) throw InvalidInput("member 5 is not made");
+    const double beta = index == 9 ? std::acos(0.0) : random.uniform(0, 1);
+    return Gyro::State{.beta = beta, .phi_rate = 10};
+  };
+  const auto result = ensemble(gyro, {.count = 17, .threads = 2}, make, task);
+  BOOST_TEST((result.status == RunStatus::complete));
+  BOOST_TEST(result.failed == 2U);
+  for (std::size_t i = 0; i < 17; ++i) {
+    const RunReport& report = result.members[i].report;
+    if (i == 5) {
+      BOOST_TEST((report.status == RunStatus::failed));
+      BOOST_TEST(report.message == "member 5 is not made");
+    } else if (i == 9) {
+      BOOST_TEST((report.status == RunStatus::failed));
+      BOOST_TEST(report.message.find("gimbal lock") != std::string::npos);
+    } else {
+      BOOST_TEST((report.status == RunStatus::complete));
+      BOOST_TEST(report.tolerance_kept);
+      BOOST_TEST(result.members[i].states.size() == 2U);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
+  for (const int threads : {1, 3}) {
+    Sampling sampling{.count = 400, .threads = threads};
+    double last = 0;
+    bool grows = true;
+    sampling.progress = [&](double share) {
+      grows = grows && share > last;
+      last = share;
+      return share < 0.25;
+    };
+    const auto result = ensemble(top, sampling, scattered, task);
+    BOOST_TEST((result.status == RunStatus::cancelled));
+    BOOST_TEST(grows);
+    BOOST_TEST(last >= 0.25);
+    const auto all = ensemble(top, {.count = 400}, scattered, task);
+    std::size_t complete = 0;
+    for (std::size_t i = 0; i < 400; ++i) {
+      const auto& member = result.members[i];
+      if (member.report.status != RunStatus::complete) {
+        BOOST_TEST((member.report.status == RunStatus::cancelled));
+        continue;
+      }
+      ++complete;
+      BOOST_TEST(differ(member.states.back(), all.members[i].states.back()) == 0);
+    }
+    BOOST_TEST(complete >= 100U);
+    BOOST_TEST(complete < 400U);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(tells_its_progress_up_to_the_end) {
+  Sampling sampling{.count = 50, .threads = 2};
+  std::vector<double> shares;
+  sampling.progress = [&](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  const auto result = ensemble(top, sampling, scattered, task);
+  BOOST_TEST((result.status == RunStatus::complete));
+  BOOST_TEST(shares.size() == std::size_t((50 + Pack::lanes - 1) / Pack::lanes));
+  BOOST_TEST(shares.back() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(hands_on_what_the_progress_callback_throws) {
+  for (const int threads : {1, 3}) {
+    Sampling sampling{.count = 50, .threads = threads};
+    sampling.progress = [](double) -> bool { throw std::runtime_error("enough"); };
+    BOOST_CHECK_THROW(static_cast<void>(ensemble(top, sampling, scattered, task)),
+                      std::runtime_error);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(without_estimates_takes_half_the_work) {
+  Sampling sampling{.count = 16};
+  const auto with = ensemble(top, sampling, scattered, task);
+  sampling.estimates_errors = false;
+  const auto without = ensemble(top, sampling, scattered, task);
+  for (std::size_t i = 0; i < 16; ++i) {
+    BOOST_TEST(std::isnan(without.members[i].report.error_estimate));
+    BOOST_TEST(!without.members[i].report.tolerance_kept);
+    BOOST_TEST(without.members[i].report.all_evaluations <
+               0.5 * with.members[i].report.all_evaluations);
+    BOOST_TEST(differ(with.members[i].states.back(), without.members[i].states.back()) == 0);
+  }
+}
+
+// Its rates take doubles alone.
+BOOST_AUTO_TEST_CASE(runs_other_scenes_one_by_one) {
+  using Body = AxisymmetricBody<RestingFrame<>>;
+  static_assert(detail::takes_packs<EulerTop, Pack>);
+  static_assert(!detail::takes_packs<Body, Pack>);
+  const Body body(1, 0, 0.002, 0.003, {0, 0, 0}, {});
+  const auto make = [](std::size_t, MemberRandom& random) {
+    return Body::State{.angular_velocity = {random.normal(), 0, 10}};
+  };
+  const auto result = ensemble(body, {.count = 3, .seed = 4}, make, task);
+  for (std::size_t i = 0; i < 3; ++i) {
+    MemberRandom random(4, i);
+    const auto w = make(i, random).angular_velocity;
+    const auto& u = result.members[i].states.back().angular_velocity;
+    // Resal's axes do not spin, and the momentum turns against them at C/A of its third part.
+    BOOST_TEST(std::abs(u.head<2>().norm() - w.head<2>().norm()) < 1e-9);
+    BOOST_TEST(std::abs(u.z() - w.z()) < 1e-9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(refuses_what_makes_no_sense) {
+  const auto run = [](const Sampling& sampling, const Task& asked) {
+    static_cast<void>(ensemble(top, sampling, scattered, asked));
+  };
+  BOOST_CHECK_THROW(run({.count = 2}, {.times = {}}), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2, .first = 1}, task), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2, .threads = -1}, task), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2}, {.times = {1}, .method = Method::radau13}), InvalidInput);
+  BOOST_TEST(ensemble(top, {.count = 0}, scattered, task).members.empty());
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,399 @@
+// What a scene file says, against the objects of the library that it means.
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <string>
+
+#include <dynamics/file/motion_log.hpp>
+#include <dynamics/file/scene_system.hpp>
+#include <dynamics/guide/chain.hpp>
+#include <dynamics/guide/earth_frame.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/body_system.hpp>
+
+#include <support/scratch.hpp>
+
+using namespace kreisel;
+
+namespace {
+
+const std::string body = R"(
+[[body]]
+name = "a"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 2
+inertia = [1, 1, 1]
+)";
+const std::string site = "kind = \"earth\"\nlatitude_deg = 50\nheight = 100\nazimuth_deg = 30\n";
+const std::string run = "[solve]\nt_end = 4\n";
+
+SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
+
+std::string mistakes(const std::string& text) {
+  try {
+    (void)scene(text);
+  } catch (const SceneMistakes& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+/// The joint and all else of a body with one inertia.
+std::string one_body(const std::string& rest) {
+  return "[[body]]\nname = \"a\"\nmass = 2\ninertia = [1, 1, 1]\n" + rest + "\n" + run;
+}
+
+template <class M>
+void check_same(const SceneGuide& guide, const M& motion) {
+  for (const double t : {0.0, 0.7, 3.999, 4.0}) {
+    const auto a = guide(t);
+    const FrameMotion<Guide, Inertial> b = motion(t);
+    BOOST_TEST((a.X.value.rotation == b.X.value.rotation));
+    BOOST_TEST((a.X.value.translation == b.X.value.translation));
+    BOOST_TEST((a.V.value.resultant == b.V.value.resultant));
+    BOOST_TEST((a.V.value.moment == b.V.value.moment));
+    BOOST_TEST((a.dV.value.resultant == b.dV.value.resultant));
+    BOOST_TEST((a.dV.value.moment == b.dV.value.moment));
+  }
+}
+
+SceneGuide guide(const std::string& text) { return make_guide(scene(text + body + run)); }
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(guides_of_a_scene_file)
+
+BOOST_AUTO_TEST_CASE(rest_by_default) {
+  BOOST_TEST(scene(body + run).rests());
+  BOOST_TEST(scene("[guide]\nkind = \"inertial\"\n" + body + run).rests());
+  check_same(guide(""), RestingFrame<>{});
+}
+
+BOOST_AUTO_TEST_CASE(rotate_as_the_library_has_it) {
+  const std::string text =
+      "[guide]\nkind = \"rotating\"\nangular_velocity = [1, 2, 3]\norigin_acceleration = [4, 5, "
+      "6]\n";
+  BOOST_TEST(!scene(text + body + run).rests());
+  check_same(guide(text), RotatingFrame<>{{1, 2, 3}, {4, 5, 6}});
+}
+
+BOOST_AUTO_TEST_CASE(oscillate_as_the_library_has_it) {
+  const SceneGuide read = guide(R"([guide]
+kind = "harmonic"
+angular_velocity = { constant = [0.1, 0, 0], terms = [
+  { amplitude = [0, 0.2, 0], frequency = 3, phase_deg = 180 } ] }
+origin_acceleration = { terms = [ { amplitude = [1, 0, 2], frequency = 2, phase = 0.5 } ] }
+)");
+  const double half_turn = 180 * 0.017453292519943295;
+  check_same(read, HarmonicFrame<>({{0.1, 0, 0}, {{{0, 0.2, 0}, 3, half_turn}}},
+                                   {{0, 0, 0}, {{{1, 0, 2}, 2, 0.5}}}, 0, 4 * (1 + 1e-12)));
+}
+
+BOOST_AUTO_TEST_CASE(ride_on_the_earth_as_the_library_has_it) {
+  check_same(guide("[guide]\n" + site), earth_frame({50, 30, 100}));
+  check_same(guide("[guide]\n" + site + "rate = 0.5e-4\n"), earth_frame({50, 30, 100, 0.5e-4}));
+  // A gravity given as a number holds the centrifugal part.
+  check_same(guide("[guide]\n" + site + "gravity = 9.81\n"),
+             RotatingFrame<>{earth_rotation(EarthSite<>{50, 30, 100})});
+}
+
+BOOST_AUTO_TEST_CASE(follow_a_log_beside_the_scene) {
+  const test::Scratch folder;
+  std::string log = "t,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 10; ++i) {
+    const double angle = 0.1 * i;
+    log += std::to_string(0.5 * i) + "," + std::to_string(std::cos(angle)) + "," +
+           std::to_string(std::sin(angle)) + ",0,0\n";
+  }
+  const auto file = folder.write("log.csv", log);
+  const std::string text = "[guide]\nkind = \"table\"\nfile = \"log.csv\"\n" + body + run;
+  const SceneFile read = parse_scene(text, folder.path() / "scene.toml");
+  check_same(make_guide(read), TabulatedFrame<>(read_motion_log(file)));
+  // It ends at 5 s.
+  BOOST_CHECK_THROW((void)parse_scene(text, folder.path() / "scene.toml", {.t_end = 5.1}),
+                    SceneMistakes);
+}
+
+BOOST_AUTO_TEST_CASE(chain_as_the_library_has_it) {
+  struct Earth;
+  struct Ship;
+  const SceneGuide read = guide("[guide]\nkind = \"chain\"\n[[guide.links]]\n" + site + R"(
+[[guide.links]]
+kind = "rotating"
+angular_velocity = [0, 0.1, 0]
+[[guide.links]]
+kind = "rotating"
+angular_velocity = [0.2, 0, 0]
+origin_acceleration = [0, 0, 1]
+)");
+  check_same(read, Chain(earth_frame<Earth, Inertial>({50, 30, 100}),
+                         RotatingFrame<Ship, Earth>{{0, 0.1, 0}},
+                         RotatingFrame<Guide, Ship>{{0.2, 0, 0}, {0, 0, 1}}));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(gravity_of_a_scene_file)
+
+Eigen::VectorXd acceleration(const std::string& text) {
+  const SceneFile read = scene(text);
+  SceneBodies bodies = bodies_in_gravity(read);
+  const BodySystem system(make_guide(read), std::move(bodies.bodies), bodies.gravity);
+  auto state = system.rest();
+  BodyWorkspace w = system.workspace();
+  Eigen::VectorXd result;
+  system.accelerations(0.3, system.to_vector(state), {}, result, w);
+  return result;
+}
+
+const std::string arm = R"(
+[[body]]
+name = "arm"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1
+centre = [0, 0.5, 0]
+inertia = [0.1, 0.1, 0.1]
+)";
+const double lever = 0.5 / (0.1 + 0.25);  // m a / Theta
+
+BOOST_AUTO_TEST_CASE(is_none_unless_asked_for) {
+  BOOST_TEST(acceleration(arm + run)[0] == 0);
+  BOOST_TEST(std::abs(acceleration("[guide]\n" + site + arm + run)[0]) < 0.05);
+  BOOST_TEST(std::abs(acceleration("[guide]\n" + site + "gravity = \"none\"\n" + arm + run)[0]) <
+             0.05);
+}
+
+BOOST_AUTO_TEST_CASE(points_where_it_is_told) {
+  const auto uniform = [](const char* kind) {
+    return std::string("[gravity]\nkind = \"") + kind + "\"\nvector = [9, 0, 0]\n" + arm + run;
+  };
+  BOOST_TEST(std::abs(acceleration(uniform("uniform"))[0] + 9 * lever) < 1e-14);
+  BOOST_TEST(std::abs(acceleration(uniform("inertial"))[0] + 9 * lever) < 1e-14);
+  // A guide that has turned by 0.3 rad about z: the inertial field has turned back.
+  const std::string turning = "[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 1]\n";
+  BOOST_TEST(std::abs(acceleration(turning + uniform("uniform"))[0] + 9 * lever) < 1e-14);
+  BOOST_TEST(std::abs(acceleration(turning + uniform("inertial"))[0] + 9 * lever * std::cos(0.3)) <
+             1e-14);
+}
+
+// Both ways to say it give the effective gravity, but for its gradient over half a metre and the
+// earth's turning: 1.5e-6 m/s^2 and 0.5 u^2.
+BOOST_AUTO_TEST_CASE(on_earth_is_the_effective_one) {
+  const double g = normal_gravity({50, 30, 100}).magnitude;
+  for (const std::string& text :
+       {"[guide]\n" + site + "gravity = \"normal\"\n" + arm + run,
+        "[guide]\n" + site + "[gravity]\nkind = \"earth\"\n" + arm + run}) {
+    BOOST_TEST(std::abs(acceleration(text)[0] + g * lever) < 2e-6);
+  }
+  const std::string number = "[guide]\n" + site + "gravity = 9.5\n";
+  BOOST_TEST(std::abs(acceleration(number + arm + run)[0] + 9.5 * lever) < 1e-8);
+  // Along a chain it stays on the axes of the earth.
+  const std::string chain = "[guide]\nkind = \"chain\"\n[[guide.links]]\n" + site +
+                            "gravity = 9.5\n[[guide.links]]\nkind = \"rotating\"\n"
+                            "angular_velocity = [0, 0, 1]\n";
+  BOOST_TEST(std::abs(acceleration(chain + arm + run)[0] + 9.5 * lever * std::cos(0.3)) < 1e-4);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(bodies_of_a_scene_file)
+
+BOOST_AUTO_TEST_CASE(have_their_inertia_about_the_origin) {
+  const auto read = scene(
+      "[[body]]\nname = \"a\"\njoint = { kind = \"fixed\" }\nmass = 2\ncentre = [0, 0, 3]\n"
+      "inertia = [1, 1.2, 1.4, 0.1, 0.2, 0.3]\n" +
+      run);
+  const auto& T = read.bodies.at(0).inertia.value;
+  BOOST_TEST(T.mass == 2);
+  BOOST_TEST((T.first_moment == Vector3<double>(0, 0, 6)));
+  const Matrix3<double> expected =
+      (Matrix3<double>() << 19, 0.1, 0.2, 0.1, 19.2, 0.3, 0.2, 0.3, 1.4).finished();
+  BOOST_TEST((T.tensor.matrix() - expected).norm() < 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(have_springs_dampers_and_forces) {
+  const auto revolute =
+      scene(one_body("joint = { kind = \"revolute\", axis = [0, 1, 0] }\n"
+                     "spring = { stiffness = 3, rest_deg = 90 }\n"
+                     "damping = 4\nforce = 5"));
+  const JointForce& f = revolute.bodies.at(0).forces.at(0);
+  BOOST_TEST(f.stiffness == 3);
+  BOOST_TEST(f.rest == 90 * 0.017453292519943295);
+  BOOST_TEST(f.damping == 4);
+  BOOST_TEST(f.constant == 5);
+  const auto universal = scene(
+      one_body("joint = { kind = \"universal\", axis = [0, 1, 0], second_axis = [1, 0, 0] }\n"
+               "spring = { stiffness = [3, 4] }\ninitial = { angle = [1, 2], rate = [3, 4] }"));
+  BOOST_TEST(universal.bodies.at(0).forces.at(1).stiffness == 4);
+  BOOST_TEST(universal.start.at(0).coordinates == std::vector<double>({1, 2}));
+  BOOST_TEST(universal.start.at(0).rates == std::vector<double>({3, 4}));
+}
+
+BOOST_AUTO_TEST_CASE(begin_against_their_parent) {
+  // The joint's frame is turned by a quarter about z and lies at x = 1.
+  const auto read = scene(one_body(
+      "joint = { kind = \"free\", position = [1, 0, 0], orientation = [0.70710678118654757, 0, 0, "
+      "0.70710678118654757] }\ninitial = { attitude = [0.70710678118654757, 0, 0, "
+      "0.70710678118654757], position = [3, 4, 5], velocity = [1, 2, 3], angular_velocity = [4, 5, "
+      "6] }"));
+  const std::vector<double>& q = read.start.at(0).coordinates;
+  const std::vector<double> expected{0, 0, 0, 1, 2, 4, 5};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    BOOST_TEST(std::abs(q.at(i) - expected[i]) < 1e-15);
+  BOOST_TEST(read.start.at(0).rates == std::vector<double>({4, 5, 6, 1, 2, 3}));
+}
+
+BOOST_AUTO_TEST_CASE(carry_loads) {
+  const auto read = scene(one_body(
+      "joint = { kind = \"free\" }\n"
+      "load = { force = [1, 0, 0], torque = [0, 0, 7], point = [0, 2, 0], axes = \"body\" }"));
+  const Force<Body> P = read.bodies.at(0).loads.at(0)(Situation<>{});
+  BOOST_TEST((P.value.resultant == Vector3<double>(1, 0, 0)));
+  BOOST_TEST((P.value.moment == Vector3<double>(0, 0, 5)));
+}
+
+BOOST_AUTO_TEST_CASE(may_be_rotors) {
+  const std::string axis = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
+  const auto with = [&](const std::string& rest) { return scene(one_body(axis + rest)); };
+  const auto free = with("rotor = { mode = \"free\", speed = 3 }");
+  BOOST_TEST((free.bodies.at(0).rotor->mode == RotorMode::free));
+  BOOST_TEST(free.start.at(0).rates.at(0) == 3);
+  const auto regulated =
+      with("rotor = { mode = \"regulated\", speed = 3 }\ninitial = { rate = 3 }");
+  BOOST_TEST((regulated.bodies.at(0).rotor->mode == RotorMode::regulated));
+  const auto torque = with("rotor = { mode = \"torque\", torque = 2 }");
+  BOOST_TEST(torque.bodies.at(0).rotor->torque == 2);
+  BOOST_TEST((with("drive = \"constant-rate\"").bodies.at(0).rule == JointRule::constant_rate));
+  BOOST_TEST((with("hold = true").bodies.at(0).rule == JointRule::held));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(solve_of_a_scene_file)
+
+BOOST_AUTO_TEST_CASE(makes_output_times) {
+  const auto times = [](const std::string& rest, const SolveRequest& request = {}) {
+    return parse_scene(body + "[solve]\n" + rest, "s.toml", request).output_times;
+  };
+  BOOST_TEST(times("t_end = 1\noutput_step = 0.1").size() == 11U);
+  BOOST_TEST(times("t_end = 1\noutput_step = 0.1").back() == 1);
+  BOOST_TEST(times("t_end = 1\noutput_step = 0.3") ==
+             std::vector<double>({0, 0.3, 0.6, 3 * 0.3, 1}));
+  BOOST_TEST(times("t_end = 1\noutput_step = 5") == std::vector<double>({0, 1}));
+  BOOST_TEST(times("t_end = 1\noutput_times = [0.25, 0.5]") == std::vector<double>({0.25, 0.5}));
+  BOOST_TEST(times("t_end = 1\noutput_times = [0.25, 0.5]", {.t_end = 0.3}) ==
+             std::vector<double>({0.25}));
+  BOOST_TEST(times("output_step = 1", {.t_end = 2}) == std::vector<double>({0, 1, 2}));
+}
+
+BOOST_AUTO_TEST_CASE(knows_the_methods) {
+  BOOST_TEST((method_named("auto") == Method::automatic));
+  BOOST_TEST((method_named("radau13") == Method::radau13));
+  BOOST_TEST(!method_named("euler"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(mistakes_of_a_scene_file)
+
+BOOST_AUTO_TEST_CASE(are_told_with_line_column_key_and_reason) {
+  const std::string revolute = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {"",
+       "s.toml:1:1: the table [solve] with its key 't_end' is missing\n"
+       "s.toml:1:1: no [[body]] is given"},
+      {"titel = \"x\"\n" + body + run, "s.toml:1:1: titel: is no key here (did you mean 'title'?)"},
+      {"title = 3\n" + body + run, "s.toml:1:9: title: must be a text, not a whole number"},
+      {"a = 1\na = 2\n", "is no TOML"},
+      {"[guide]\nkind = \"rotatin\"\n" + body + run,
+       "s.toml:2:8: guide.kind: 'rotatin' is none of 'inertial', 'rotating', 'harmonic', 'earth', "
+       "'table' or 'chain' (did you mean 'rotating'?)"},
+      {"[guide]\nkind = \"rotating\"\n" + body + run,
+       "s.toml:1:1: guide.angular_velocity: is missing"},
+      {"[guide]\nkind = \"earth\"\nlatitude_deg = 91\nheight = 0\nazimuth_deg = 0\n" + body + run,
+       "s.toml:3:16: guide.latitude_deg: 91 degrees lies outside [-90, 90] degrees"},
+      {"[guide]\nkind = \"chain\"\nlinks = [ { kind = \"inertial\" }, { kind = \"earth\", "
+       "latitude_deg = 1, height = 0, azimuth_deg = 0 } ]\n" +
+           body + run,
+       "'earth' must be the first link"},
+      {"[guide]\nkind = \"table\"\nfile = \"none.csv\"\n" + body + run,
+       "s.toml:3:8: guide.file: none.csv: cannot be read"},
+      {"[gravity]\nkind = \"earth\"\n" + body + run, "s.toml:2:8: gravity.kind: 'earth' needs"},
+      {"[guide]\n" + site + "gravity = 9.8\n[gravity]\nkind = \"earth\"\n" + body + run,
+       "gives gravity a second time"},
+      {one_body("joint = { kind = \"revolute\", axis = [0, 0, 0] }"),
+       "s.toml:5:37: body 'a'.joint.axis: is 0 and has no direction"},
+      {one_body(revolute + "initial = { angle = nan }"),
+       "s.toml:6:21: body 'a'.initial.angle: is NaN, not a finite number"},
+      {one_body(revolute + "initial = { angle = 1, angle_deg = 1 }"), "is given in radian too"},
+      {one_body(revolute + "mass = 3"), "is no TOML"},
+      {one_body(revolute + "centre = [0, 0, inf]"),
+       "s.toml:6:17: body 'a'.centre[2]: is infinite, not a finite number"},
+      {one_body(revolute + "damping = -1"), "s.toml:6:11: body 'a'.damping: must not be below 0"},
+      {one_body(revolute + "parent = \"b\""), "s.toml:6:10: body 'a'.parent: 'b' is no body"},
+      {one_body(revolute + "centre = [0.1, 0, 0]\nrotor = { mode = \"free\", speed = 1 }"),
+       "body 'a'.rotor: is unbalanced"},
+      {one_body(revolute + "rotor = { mode = \"free\", speed = 1 }\ninitial = { rate = 2 }"),
+       "body 'a'.rotor.speed: differs from initial.rate"},
+      {one_body("joint = { kind = \"spherical\" }\nspring = { stiffness = 1 }"),
+       "body 'a'.spring: needs a single coordinate"},
+      {one_body("joint = { kind = \"prismatic\", axis = [1, 0, 0] }\ndrive = \"constant-rate\""),
+       "body 'a'.drive: is for a revolute joint"},
+      {one_body("joint = { kind = \"free\" }\ninitial = { attitude = [1, 1, 0, 0] }"),
+       "is a quaternion [w, x, y, z] of norm 1.414214, not of 1"},
+      {body + body + run, "s.toml:9:8: body 'a'.name: is used by an earlier body"},
+      {body + "[solve]\nt_end = 0\n", "s.toml:8:9: solve.t_end: 0 must be above 0"},
+      {body + "[solve]\nt_end = 1\nmodel = \"linear\"\n",
+       "s.toml:9:9: solve.model: 'linear' is not offered for this scene; 'exact' is"},
+      {body + "[solve]\nt_end = 1\noutput_times = [0.5, 0.5]\n", "does not increase"},
+      {body + "[solve]\nt_end = 1\noutput_step = 1e-9\n", "more than ten million rows"},
+  };
+  for (const auto& [text, reason] : cases) {
+    const std::string found = mistakes(text);
+    BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
+  }
+}
+
+// Mass, tensor and axis are wrong at once, and all are told, in the order of the file.
+BOOST_AUTO_TEST_CASE(are_told_all_at_once) {
+  const std::string found = mistakes(R"([[body]]
+name = "a"
+mass = -1
+inertia = [1, 1, 3]
+joint = { kind = "revolute", axis = [0, 0, 0], positon = [0, 0, 0] }
+[solve]
+t_end = "soon"
+)");
+  BOOST_TEST(found ==
+             "s.toml:3:8: body 'a'.mass: -1 must not be below 0\n"
+             "s.toml:4:11: body 'a'.inertia: triangle inequality about the centre of mass fails: "
+             "1 + 1 >= 3 kg m^2\n"
+             "s.toml:5:37: body 'a'.joint.axis: is 0 and has no direction\n"
+             "s.toml:5:48: body 'a'.joint.positon: is no key here (did you mean 'position'?)\n"
+             "s.toml:7:9: solve.t_end: must be a number, not a text");
+}
+
+BOOST_AUTO_TEST_CASE(of_what_is_no_text_are_told_too) {
+  const std::string nested = "a = " + std::string(100'000, '[');
+  BOOST_TEST(mistakes(nested).find("nested more than 64 deep") != std::string::npos);
+  std::string dotted = "a";
+  for (int i = 0; i < 100'000; ++i) dotted += ".a";
+  BOOST_TEST(mistakes(dotted + " = 1").find("nested more than 64 deep") != std::string::npos);
+  BOOST_TEST(mistakes("[" + dotted + "]").find("nested more than 64 deep") != std::string::npos);
+  BOOST_TEST(mistakes(std::string(1000, '\0')).find("is no TOML") != std::string::npos);
+  BOOST_TEST(mistakes("\xff\xfe\x01").find("is no TOML") != std::string::npos);
+  BOOST_CHECK_THROW((void)read_scene("/no/such/scene.toml"), InvalidInput);
+  BOOST_CHECK_THROW((void)read_scene("/"), InvalidInput);
+}
+
+BOOST_AUTO_TEST_CASE(are_none_with_byte_order_mark_and_carriage_returns) {
+  std::string text = "\xEF\xBB\xBF";
+  for (const char c : "# a [ comment . with ' brackets\n" + body + run) {
+    if (c == '\n') text += '\r';
+    text += c;
+  }
+  BOOST_TEST(mistakes(text) == "none");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

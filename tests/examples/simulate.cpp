@@ -1,0 +1,430 @@
+// The program as its user meets it: scene file in, numbers, files and exit status out.
+
+#include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/body_system.hpp>
+#include <dynamics/solve/solve.hpp>
+
+#include <support/program.hpp>
+
+using namespace kreisel;
+using nlohmann::json;
+using test::Outcome;
+using test::Scratch;
+
+namespace {
+
+Outcome run(const std::string& arguments) {
+  return test::run(std::string(KREISEL_SIMULATE) + " " + arguments);
+}
+
+std::string scene(const std::string& name) {
+  return std::string(KREISEL_SCENES) + "/" + name + ".toml";
+}
+
+json answer(const std::string& arguments) {
+  const Outcome outcome = run(arguments + " --json");
+  BOOST_REQUIRE_MESSAGE(outcome.status == 0, arguments << ": " << outcome.err);
+  return json::parse(outcome.out);
+}
+
+json reference(const std::string& name) {
+  std::ifstream file(std::string(KREISEL_TEST_DATA) + "/" + name);
+  return json::parse(file);
+}
+
+double number(const json& x) {
+  return x.is_string() ? std::stod(x.get<std::string>()) : x.get<double>();
+}
+
+void check_near(const std::string& what, double found, double wanted, double bound) {
+  BOOST_TEST(std::abs(found - wanted) <= bound, what << ": " << found << " differs from " << wanted
+                                                     << " by " << found - wanted << ", allowed "
+                                                     << bound);
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> result;
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) result.push_back(line);
+  return result;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(simulate_against_references)
+
+// 25 digits by two programs in 44 and 54 digits; see the file.
+BOOST_AUTO_TEST_CASE(gyros_in_cardan_suspension) {
+  const json cases = reference("cardan-gyro.json").at("trajectories");
+  const std::pair<const char*, const char*> names[] = {
+      {"cardan_gyro_free", "T1_free_symmetric"},
+      {"cardan_gyro_springs", "T4b_springs_large"},
+      {"cardan_gyro_driven", "T8b_regulated_inertial"},
+      {"cardan_gyro_shaken", "T6b_fast_base_free"},
+      {"gimbal_lock", "T7b_through_lock"},
+      {"massless_rings", "T3s_massless_symmetric"}};
+  for (const auto& [file, name] : names) {
+    const auto found = std::find_if(cases.begin(), cases.end(),
+                                    [name = name](const json& c) { return c.at("name") == name; });
+    BOOST_TEST_REQUIRE((found != cases.end()));
+    const json& end = found->at("points").back();
+    const json result = answer(scene(file) + " --reactions");
+    const json& joints = result.at("final").at("joints");
+    int k = 0;
+    for (const char* const body : {"outer ring", "inner ring", "rotor"}) {
+      const auto at = static_cast<std::size_t>(k++);
+      const double q = number(end.at("q").at(at));
+      const double qd = number(end.at("qd").at(at));
+      const std::string what = std::string(file) + ", " + body;
+      check_near(what, joints.at(body).at("coordinate"), q, 1e-12 * std::max(1.0, std::abs(q)));
+      check_near(what, joints.at(body).at("rate"), qd, 1e-12 * std::max(1.0, std::abs(qd)));
+    }
+    const json& reactions = result.at("final").at("reactions");
+    const json& wanted = end.at("reactions");
+    check_near("A3", reactions.at("outer ring").at("torque").at(0), number(wanted.at("M_A3")),
+               1e-11);
+    check_near("BL", reactions.at("outer ring").at("torque").at(1), number(wanted.at("M_BL")),
+               1e-11);
+    check_near("CL", reactions.at("outer ring").at("torque").at(2), number(wanted.at("M_CL")),
+               1e-11);
+    check_near("drive", joints.at("rotor").at("drive_torque"), number(end.at("M_C12_drive_total")),
+               1e-11);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(tops_and_a_pendulum) {
+  const json scenes = reference("ode-scenes.json").at("scenes");
+  const auto state = [&scenes](const char* name) {
+    std::vector<double> numbers;
+    for (const json& x : scenes.at(name).at("states").at(0)) numbers.push_back(number(x));
+    return numbers;
+  };
+  const auto check_body = [&](const char* file, const char* body, const char* name, double off,
+                              double rate_off) {
+    const json result = answer(scene(file)).at("final").at("joints").at(body);
+    const std::vector<double> wanted = state(name);
+    for (std::size_t i = 0; i < 4; ++i) {
+      check_near(file, result.at("attitude").at(i), wanted.at(i), off);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      check_near(file, result.at("angular_velocity").at(i), wanted.at(4 + i), rate_off);
+    }
+  };
+  check_body("tumbling_body", "body", "S1_dzhanibekov", 1e-8, 2e-8);
+  check_body("heavy_top", "top", "S2_fasttop_body", 1e-9, 3e-6);  // of 3000 rad/s
+  const json rod = answer(scene("earth_pendulum")).at("final").at("joints").at("rod");
+  check_near("rod", rod.at("coordinate"), state("S3_earthpend").at(0), 1e-9);
+  check_near("rod", rod.at("rate"), state("S3_earthpend").at(1), 4e-9);
+}
+
+// Closed forms; and, for the last four, Runge-Kutta steps in 18 digits with their error taken out
+// twice (Richardson), of equations written down apart from all bodies: relative 1e-10 or better.
+BOOST_AUTO_TEST_CASE(examples) {
+  struct Case {
+    const char* file;
+    const char* value;
+    double wanted;
+    double bound;
+  };
+  const double pi = std::acos(-1.0);
+  const double w = std::sqrt(25 / 0.5 - 1);
+  const double slide = 0.04 * (1 - std::exp(-2.0) * (std::cos(2 * w) + std::sin(2 * w) / w));
+  const Case cases[] = {
+      {"turntable", "/outer ring/coordinate", -0.46221711420209527, 1e-13},
+      {"turntable", "/inner ring/coordinate", 0.40492936929014556, 1e-13},
+      {"turntable", "/rotor/rate", 59.610124589994791, 1e-11},
+      {"damped_slide", "/slide/coordinate", slide, 1e-14},
+      {"wheel_spun_up", "/wheel/rate", 10 * (1 - std::exp(-3.0)), 1e-13},
+      {"wheel_spun_up", "/wheel/coordinate", 10 * (2 + std::exp(-3.0)), 1e-13},
+      {"crane_on_ship", "/column/coordinate", 2, 1e-12},
+      {"crane_on_ship", "/jib/coordinate", -0.3, 0},
+      {"gyrocompass", "/ring/coordinate", -0.0905804740612723065, 1e-11},
+      {"gyrocompass", "/rotor/coordinate", 240000, 1e-6},
+      {"satellite", "/satellite/angular_velocity/0", -0.00162200887961949882, 1e-12},
+      {"satellite", "/satellite/angular_velocity/1", 0.00104709487436355220, 1e-12},
+      {"satellite", "/satellite/angular_velocity/2", 0.0099678816409924653, 1e-12},
+      {"double_pendulum", "/upper/coordinate", 8.1910784594, 1e-9},
+      {"double_pendulum", "/lower/coordinate", -8.1760615388, 1e-9},
+      {"device_on_logged_ship", "/pendulum/coordinate", -0.214564370970795929, 1e-9},
+  };
+  std::string file;
+  json joints;
+  for (const Case& c : cases) {
+    if (file != c.file) joints = answer(scene(file = c.file)).at("final").at("joints");
+    check_near(std::string(c.file) + c.value, joints.at(json::json_pointer(c.value)), c.wanted,
+               c.bound);
+  }
+  // The plane of Foucault's pendulum: 15.04 degrees an hour times the sine of the latitude. The bob
+  // lets a thousandth of it go by its own oval.
+  const json bob =
+      answer(scene("foucault_pendulum")).at("final").at("joints").at("bob").at("coordinate");
+  const double turned = std::atan(bob.at(1).get<double>() / bob.at(0).get<double>()) * 180 / pi;
+  check_near("Foucault", turned, 15.041067 * std::sin(48.846222 * pi / 180), 0.06);
+}
+
+BOOST_AUTO_TEST_CASE(every_example_runs) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(KREISEL_SCENES)) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    const json result = answer("'" + entry.path().string() + "' --t-end 0.1");
+    BOOST_TEST(result.at("tolerance_kept").get<bool>(), entry.path());
+    BOOST_TEST(result.at("final").at("t").get<double>() == 0.1);
+    BOOST_TEST(result.at("title").get<std::string>().size() > 5U);
+  }
+  BOOST_TEST(count >= 15);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(simulate_from_a_command_line)
+
+const std::string two_rods = R"(
+[gravity]
+kind = "uniform"
+vector = [0, 0, -9.81]
+[[body]]
+name = "upper"
+joint = { kind = "revolute", axis = [0, 1, 0] }
+mass = 1
+centre = [0, 0, -1]
+inertia = [0.1, 0.1, 0.1]
+initial = { angle = 0.5 }
+[[body]]
+name = "lower"
+parent = "upper"
+joint = { kind = "revolute", axis = [0, 1, 0], position = [0, 0, -1] }
+mass = 1
+centre = [0, 0, -1]
+inertia = [0.1, 0.1, 0.1]
+[solve]
+t_end = 2
+tolerance = 1e-9
+output_step = 0.01
+)";
+
+BOOST_AUTO_TEST_CASE(answers_as_the_library_does_to_the_bit) {
+  const auto rod = InertiaTensor<Body>::about_centre(
+      1, {0, 0, -1}, 0.1 * Matrix3<double>::Identity(), Mass::zero_allowed);
+  const Joint joint{.kind = JointKind::revolute, .axis = {0, 1, 0}};
+  Joint hinge = joint;
+  hinge.position = {0, 0, -1};
+  const BodySystem system(RestingFrame<>{},
+                          {{.name = "upper", .joint = joint, .inertia = rod},
+                           {.name = "lower", .parent = "upper", .joint = hinge, .inertia = rod}},
+                          UniformGravity<Guide>{{0, 0, -9.81}});
+  Task task;
+  task.tolerance = 1e-9;
+  for (int i = 0; i <= 200; ++i) task.times.push_back(std::min(i * 0.01, 2.0));
+  auto start = system.rest();
+  start.coordinates[0] = 0.5;
+  const auto wanted = kreisel::solve(system, start, task);
+
+  const Scratch folder;
+  const auto file = folder.write("scene.toml", two_rods);
+  const auto csv = folder.path() / "out.csv";
+  const json result = answer(file.string() + " --csv " + csv.string());
+  const json& joints = result.at("final").at("joints");
+  const auto& end = wanted.states.back();
+  BOOST_TEST(joints.at("upper").at("coordinate").get<double>() == end.coordinates[0]);
+  BOOST_TEST(joints.at("lower").at("coordinate").get<double>() == end.coordinates[1]);
+  BOOST_TEST(joints.at("upper").at("rate").get<double>() == end.rates[0]);
+  BOOST_TEST(joints.at("lower").at("rate").get<double>() == end.rates[1]);
+  BOOST_TEST(result.at("error_estimate").get<double>() == wanted.report.error_estimate);
+  BOOST_TEST(result.at("steps").get<double>() == wanted.report.effort.steps);
+  BOOST_TEST(result.at("invariants").at(0).at("name") == "energy");
+
+  const auto rows = lines(folder.read("out.csv"));
+  BOOST_TEST(rows.size() == 202U);
+  BOOST_TEST(rows.at(0) == "t,upper.angle,upper.rate,lower.angle,lower.rate");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    std::istringstream row(rows[i]);
+    std::string field;
+    std::getline(row, field, ',');
+    std::getline(row, field, ',');
+    BOOST_TEST(std::stod(field) == wanted.states[i - 1].coordinates[0]);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(tells_reactions_and_terms_when_asked) {
+  const Scratch folder;
+  const std::string file = folder.write("scene.toml", two_rods).string();
+  BOOST_TEST(!answer(file).at("final").contains("reactions"));
+  const json final = answer(file + " --reactions --terms --t-end 0.5").at("final");
+  BOOST_TEST(final.at("t").get<double>() == 0.5);
+  BOOST_TEST(final.at("reactions").at("lower").at("force").size() == 3U);
+  BOOST_TEST(final.at("terms").at("lower").at("coriolis").at("torque").size() == 3U);
+  const Outcome text = run(file + " --reactions --terms");
+  BOOST_TEST(text.status == 0);
+  for (const char* const word : {"verner98", "energy", "reactions", "terms kept", "Coriolis"}) {
+    BOOST_TEST(text.out.find(word) != std::string::npos, word);
+  }
+  BOOST_TEST(text.err == "");
+}
+
+// What was cut off is computed again from the last whole row, to the tolerance.
+BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
+  const Scratch folder;
+  const std::string file = folder.write("scene.toml", two_rods).string();
+  const json whole = answer(file + " --csv " + (folder.path() / "whole.csv").string());
+  const std::string all = folder.read("whole.csv");
+  const std::size_t middle = all.size() / 2;  // in the midst of a row
+  const auto part = folder.write("part.csv", all.substr(0, middle));
+  const Outcome outcome = run(file + " --json --resume --csv " + part.string());
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(outcome.err.find("going on from t = ") != std::string::npos);
+  const json rest = json::parse(outcome.out);
+  for (const char* const body : {"upper", "lower"}) {
+    for (const char* const quantity : {"coordinate", "rate"}) {
+      check_near(body, rest.at("final").at("joints").at(body).at(quantity),
+                 whole.at("final").at("joints").at(body).at(quantity), 1e-8);
+    }
+  }
+  const auto rows = lines(folder.read("part.csv"));
+  BOOST_TEST(rows.size() == lines(all).size());
+  BOOST_TEST(folder.read("part.csv").substr(0, middle - 100) == all.substr(0, middle - 100));
+  // A complete one stays as it is.
+  BOOST_TEST(run(file + " --resume --csv " + (folder.path() / "whole.csv").string()).status == 0);
+  BOOST_TEST(folder.read("whole.csv") == all);
+  // Rows of another scene are refused, and kept.
+  const auto other = folder.write("other.toml", "title = \"x\"\n" + two_rods);
+  folder.write("other.csv", "t,upper.angle,upper.rate,lower.angle,lower.rate\n0,1,0,0,0\n");
+  const Outcome refused =
+      run(other.string() + " --resume --csv " + (folder.path() / "other.csv").string());
+  BOOST_TEST(refused.status == 2);
+  BOOST_TEST(lines(folder.read("other.csv")).size() == 2U);
+}
+
+BOOST_AUTO_TEST_CASE(leaves_whole_rows_when_interrupted_or_killed) {
+  std::string endless = two_rods;
+  endless.replace(endless.find("t_end = 2"), 9, "t_end = 1e4");
+  for (const char* const signal : {"INT", "KILL"}) {
+    const Scratch folder;
+    const std::string file = folder.write("scene.toml", endless).string();
+    const std::string csv = (folder.path() / "out.csv").string();
+    const Outcome outcome =
+        test::run("( " + std::string(KREISEL_SIMULATE) + " " + file + " --csv " + csv +
+                  " & pid=$!; while [ ! -s " + csv + " ]; do sleep 0.05; done; sleep 0.2; kill -" +
+                  signal + " $pid; wait $pid )");
+    const std::string text = folder.read("out.csv");
+    BOOST_TEST(lines(text).size() > 2U);
+    if (std::string(signal) == "KILL") continue;
+    BOOST_TEST(outcome.status == 130);
+    BOOST_TEST(text.back() == '\n');
+    BOOST_TEST(std::count(text.begin(), text.end(), ',') ==
+               4 * std::count(text.begin(), text.end(), '\n'));
+    BOOST_TEST(outcome.err.find("interrupted after t = ") != std::string::npos, outcome.err);
+    BOOST_TEST(lines(outcome.err).size() == 1U);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_full_disk_exits_with_3) {
+  const Scratch folder;
+  const std::string file = folder.write("scene.toml", two_rods).string();
+  const Outcome csv = run(file + " --csv /dev/full");
+  BOOST_TEST(csv.status == 3);
+  BOOST_TEST(csv.err.find("/dev/full: No space left on device") != std::string::npos, csv.err);
+  BOOST_TEST(lines(csv.err).size() == 1U);
+  BOOST_TEST(
+      test::run("( " + std::string(KREISEL_SIMULATE) + " " + file + " >/dev/full )").status == 3);
+  // A file that must not grow past 4 kB keeps its whole rows.
+  const std::string out = (folder.path() / "out.csv").string();
+  const Outcome limited =
+      test::run("bash -c \"trap '' XFSZ; ulimit -f 4; " + std::string(KREISEL_SIMULATE) + " " +
+                file + " --csv " + out + "\"");
+  BOOST_TEST(limited.status == 3);
+  BOOST_TEST(limited.err.find("it holds the rows up to there") != std::string::npos, limited.err);
+  const std::string text = folder.read("out.csv");
+  BOOST_TEST(text.size() > 3000U);
+  BOOST_TEST(text.back() == '\n');
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
+  const Scratch folder;
+  const std::string good = folder.write("scene.toml", two_rods).string();
+  const std::string bad = folder.write("bad.toml", "titel = \"\"\n" + two_rods).string();
+  const std::string csv = " --csv " + (folder.path() / "out.csv").string();
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "scene is required"},
+      {"none.toml", "none.toml: cannot be read"},
+      {bad, "bad.toml:1:1: titel: is no key here (did you mean 'title'?)"},
+      {good + " --t-end nan", "--t-end = 'nan' is not a finite number"},
+      {good + " --t-end -1", "--t-end must be above 0"},
+      {good + " --tolerance 1", "--tolerance lies outside"},
+      {good + " --method euler", "--method = 'euler' is none of"},
+      {good + " --method splitting", "method splitting does not apply"},
+      {good + " --colour red", "--colour"},
+      {good + " --resume", "cannot be read"},
+  };
+  for (const auto& [arguments, reason] : cases) {
+    const Outcome outcome = run(arguments + csv);
+    BOOST_TEST(outcome.status == 2, arguments << " exits with " << outcome.status);
+    BOOST_TEST(outcome.out == "");
+    BOOST_TEST(outcome.err.find(reason) != std::string::npos, arguments << ": " << outcome.err);
+    BOOST_TEST(lines(outcome.err).size() == 1U, outcome.err);
+  }
+  BOOST_TEST(folder.size() == 2U);
+  BOOST_TEST(run(good + " --csv /no/such/folder/x.csv").status == 2);
+}
+
+// A joint that finds no inertia is found out when it should move.
+BOOST_AUTO_TEST_CASE(what_cannot_be_computed_exits_with_3) {
+  const Scratch folder;
+  std::string massless = two_rods;
+  const std::size_t last =
+      massless.rfind("mass = 1\ncentre = [0, 0, -1]\ninertia = [0.1, 0.1, 0.1]");
+  massless.replace(last, 8, "mass = 0");
+  massless.replace(massless.rfind("inertia = [0.1, 0.1, 0.1]"), 25, "inertia = [0, 0, 0]");
+  const Outcome outcome = run(folder.write("scene.toml", massless).string());
+  BOOST_TEST(outcome.status == 3);
+  BOOST_TEST(outcome.err.find("lower") != std::string::npos, outcome.err);
+}
+
+// 1e7 a second is damped away at once; what is left is the soft joint's motion.
+BOOST_AUTO_TEST_CASE(stiff_and_chosen_methods) {
+  const Scratch folder;
+  std::string stiff = two_rods;
+  stiff.insert(stiff.find("[solve]"), "spring = { stiffness = 1e6 }\ndamping = 1e6\n");
+  const json result = answer(folder.write("stiff.toml", stiff).string());
+  BOOST_TEST(result.at("method") == "radau13");
+  BOOST_TEST(result.at("tolerance_kept").get<bool>());
+  const std::string file = folder.write("scene.toml", two_rods).string();
+  const json wanted = answer(file);
+  for (const char* const method : {"verner98", "radau13", "gauss16"}) {
+    const json found = answer(file + " --method " + method);
+    BOOST_TEST(found.at("method") == method);
+    for (const char* const body : {"upper", "lower"}) {
+      check_near(method, found.at("final").at("joints").at(body).at("rate"),
+                 wanted.at("final").at("joints").at(body).at("rate"), 2e-8);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(draws) {
+  const Scratch folder;
+  const std::string pictures = (folder.path() / "pictures").string();
+  const Outcome outcome =
+      run(scene("cardan_gyro_springs") + " --t-end 0.5 --reactions --json --plot " + pictures);
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(outcome.err == "");
+  BOOST_TEST(json::parse(outcome.out).contains("final"));
+  for (const char* const name : {"coordinates", "rates", "reactions", "invariants", "axis"}) {
+    const std::string path = std::string("pictures/") + name;
+    BOOST_TEST(folder.read(path + ".svg").find("<svg") != std::string::npos, name);
+    BOOST_TEST(folder.read(path + ".png").substr(1, 3) == "PNG", name);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,14 @@
+// A brake that acts in one direction only asks for the sign of a speed, of which a pack has one a
+// lane.
+// refused: this code branches on a number, of which a pack has one a lane
+#include <dynamics/ensemble/pack.hpp>
+
+using kreisel::Pack;
+
+Pack brake(const Pack& speed) {
+#ifdef MISUSE
+  return speed < Pack(0) ? Pack(0) : -speed;
+#else
+  return select(speed < Pack(0), Pack(0), -speed);
+#endif
+}
