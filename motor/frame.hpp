@@ -130,7 +130,7 @@ struct Negative<Velocity<A, B, E, S>> {
 };
 
 template <Tagged A, Tagged B, class Result = typename Sum<A, B>::Type>
-[[nodiscard]] auto operator+(const A& a, const B& b) ->
+[[nodiscard, gnu::always_inline]] inline auto operator+(const A& a, const B& b) ->
     typename detail::Checked<!std::is_void_v<Result>, Result>::Type {
   static_assert(!std::is_void_v<Result>,
                 "no such sum: velocities join as V_AB + V_BC, all else adds to its own kind, and "
@@ -139,13 +139,13 @@ template <Tagged A, Tagged B, class Result = typename Sum<A, B>::Type>
 }
 
 template <Tagged Q>
-[[nodiscard]] typename Negative<Q>::Type operator-(const Q& q) {
+[[nodiscard, gnu::always_inline]] inline typename Negative<Q>::Type operator-(const Q& q) {
   return {-q.value};
 }
 
 /// a - b = a + (-b), so that V_AC - V_BC = V_AB.
 template <Tagged A, Tagged B>
-[[nodiscard]] auto operator-(const A& a, const B& b) {
+[[nodiscard, gnu::always_inline]] inline auto operator-(const A& a, const B& b) {
   using Result = typename Sum<A, typename Negative<B>::Type>::Type;
   static_assert(!std::is_void_v<Result>,
                 "no such difference: velocities leave V_AC - V_BC = V_AB, all else is taken from "
@@ -171,14 +171,16 @@ struct Displacement {
 
 /// X_AB X_BC = X_AC.
 template <class A, class B, class B2, class C, class S>
-[[nodiscard]] auto operator*(const Displacement<A, B, S>& a, const Displacement<B2, C, S>& b) {
+[[nodiscard, gnu::always_inline]] inline auto operator*(const Displacement<A, B, S>& a,
+                                                        const Displacement<B2, C, S>& b) {
   static_assert(std::is_same_v<B, B2>, "displacements join as X_AB X_BC");
   if constexpr (std::is_same_v<B, B2>) return Displacement<A, C, S>{a.value * b.value};
 }
 
 /// Any motor quantity written in From, written in To. Axes and point of reduction change together.
 template <class To, class From, class S, Tagged Q>
-[[nodiscard]] auto operator*(const Displacement<To, From, S>& X, const Q& q) {
+[[nodiscard, gnu::always_inline]] inline auto operator*(const Displacement<To, From, S>& X,
+                                                        const Q& q) {
   constexpr bool movable = requires { typename Q::template WrittenIn<To>; };
   static_assert(std::is_same_v<typename Q::Frame, From>,
                 "the quantity is not written in the frame that this displacement takes from");
@@ -192,7 +194,8 @@ template <class To, class From, class S, Tagged Q>
 ///
 /// Units  : W
 template <class E, class E2, class Of, class From, class S>
-[[nodiscard]] auto power(const Force<E, S>& P, const Velocity<Of, From, E2, S>& V) ->
+[[nodiscard, gnu::always_inline]] inline auto power(const Force<E, S>& P,
+                                                    const Velocity<Of, From, E2, S>& V) ->
     typename detail::Checked<std::is_same_v<E, E2>, S>::Type {
   static_assert(std::is_same_v<E, E2>, "force and velocity are not written in one frame");
   if constexpr (std::is_same_v<E, E2>) return reciprocal(P.value, V.value);

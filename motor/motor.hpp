@@ -11,6 +11,38 @@ using Vector3 = Eigen::Matrix<S, 3, 1>;
 template <class S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
+// The kernels of this folder and of dynamics/inertia.hpp are written out component by component and
+// always inline. Eigen's own sums and products of three numbers go through packed registers and wait
+// for what has just been stored one by one, and g++ makes calls and loops of them at -O2: together
+// two to five times the work (benchmarks/report.md).
+
+namespace detail {
+
+/// The i-th component of R v.
+template <class S>
+[[nodiscard, gnu::always_inline]] inline S component(const Matrix3<S>& R, int i,
+                                                     const Vector3<S>& v) {
+  return R(i, 0) * v.x() + R(i, 1) * v.y() + R(i, 2) * v.z();
+}
+
+/// R v
+template <class S>
+[[nodiscard, gnu::always_inline]] inline Vector3<S> product(const Matrix3<S>& R,
+                                                            const Vector3<S>& v) {
+  return {component(R, 0, v), component(R, 1, v), component(R, 2, v)};
+}
+
+template <class S>
+[[nodiscard, gnu::always_inline]] inline Matrix3<S> product(const Matrix3<S>& A,
+                                                            const Matrix3<S>& B) {
+  const Vector3<S> x = product(A, Vector3<S>(B.col(0)));
+  const Vector3<S> y = product(A, Vector3<S>(B.col(1)));
+  const Vector3<S> z = product(A, Vector3<S>(B.col(2)));
+  return (Matrix3<S>() << x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()).finished();
+}
+
+}  // namespace detail
+
 /// A motor: the field of moments  m(P) = m(O) + r x OP  of a screw, kept as its reduction (r; m) at
 /// a point O.
 ///
@@ -36,11 +68,17 @@ struct Motor {
   Motor& operator+=(const Motor& b) { return *this = *this + b; }
   Motor& operator-=(const Motor& b) { return *this = *this - b; }
 
-  friend Motor operator+(const Motor& a, const Motor& b) {
-    return {a.resultant + b.resultant, a.moment + b.moment};
+  [[gnu::always_inline]] friend Motor operator+(const Motor& a, const Motor& b) {
+    const auto& [p, p0] = a;
+    const auto& [q, q0] = b;
+    return {{p.x() + q.x(), p.y() + q.y(), p.z() + q.z()},
+            {p0.x() + q0.x(), p0.y() + q0.y(), p0.z() + q0.z()}};
   }
-  friend Motor operator-(const Motor& a, const Motor& b) {
-    return {a.resultant - b.resultant, a.moment - b.moment};
+  [[gnu::always_inline]] friend Motor operator-(const Motor& a, const Motor& b) {
+    const auto& [p, p0] = a;
+    const auto& [q, q0] = b;
+    return {{p.x() - q.x(), p.y() - q.y(), p.z() - q.z()},
+            {p0.x() - q0.x(), p0.y() - q0.y(), p0.z() - q0.z()}};
   }
   friend Motor operator-(const Motor& a) { return {-a.resultant, -a.moment}; }
   friend Motor operator*(const S& s, const Motor& a) { return {s * a.resultant, s * a.moment}; }
@@ -58,9 +96,14 @@ struct Motor {
 /// Error  : componentwise <= 2u (resultant), 4u (moment) * sum of |terms|, u = 2^-53
 /// Cost   : 30 flops
 template <class S>
-[[nodiscard]] Motor<S> cross(const Motor<S>& a, const Motor<S>& b) {
-  return {a.resultant.cross(b.resultant),
-          a.resultant.cross(b.moment) + a.moment.cross(b.resultant)};
+[[nodiscard, gnu::always_inline]] inline Motor<S> cross(const Motor<S>& a, const Motor<S>& b) {
+  const auto& [p, p0] = a;
+  const auto& [q, q0] = b;
+  return {
+      {p.y() * q.z() - p.z() * q.y(), p.z() * q.x() - p.x() * q.z(), p.x() * q.y() - p.y() * q.x()},
+      {p.y() * q0.z() - p.z() * q0.y() + (p0.y() * q.z() - p0.z() * q.y()),
+       p.z() * q0.x() - p.x() * q0.z() + (p0.z() * q.x() - p0.x() * q.z()),
+       p.x() * q0.y() - p.y() * q0.x() + (p0.x() * q.y() - p0.y() * q.x())}};
 }
 
 /// Reciprocal product  a . b0 + a0 . b: the power of a force motor on a velocity motor.
@@ -69,7 +112,7 @@ template <class S>
 /// Error  : <= 6u * sum of |terms|, u = 2^-53
 /// Cost   : 11 flops
 template <class S>
-[[nodiscard]] S reciprocal(const Motor<S>& a, const Motor<S>& b) {
+[[nodiscard]] inline S reciprocal(const Motor<S>& a, const Motor<S>& b) {
   return a.resultant.dot(b.moment) + a.moment.dot(b.resultant);
 }
 

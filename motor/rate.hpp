@@ -99,8 +99,8 @@ inline constexpr bool is_velocity_of =
 /// Frame  : all three written in one frame, which may move against both observers
 /// Error  : that of one motor product, <= 5u * sum of |terms|
 template <class New, class Old, class Q, class V>
-[[nodiscard]] auto seen_from(const Rate<Old, Q>& rate, const V& velocity,
-                             const std::type_identity_t<Q>& q) ->
+[[nodiscard, gnu::always_inline]] inline auto seen_from(const Rate<Old, Q>& rate, const V& velocity,
+                                                        const std::type_identity_t<Q>& q) ->
     typename detail::Checked<detail::is_velocity_of<V, New, Old, Q>, Rate<New, Q>>::Type {
   static_assert(
       detail::is_velocity_of<V, New, Old, Q>,

@@ -1,5 +1,5 @@
 // Runs every form a thousand times and has callgrind write down what each has cost:
-// tests/dynamics/scene/pruning_cost.sh. Each dump's description names case and form.
+// tests/support/instructions.sh. Each dump's description names case and form.
 
 #include <valgrind/callgrind.h>
 

@@ -256,7 +256,7 @@ struct CardanRates {
 /// Error  : of the accelerations <= 1e-14 of the greatest, rings with 1e-8 of the mass at 1e-8
 ///          from 90 degrees included (tests/dynamics/scene/cardan_gyro.cpp)
 /// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving: one more;
-///          of the rest what guide and rotor leave (tests/dynamics/scene/pruning_cost.sh)
+///          of the rest what guide and rotor leave (ctest dynamics.scene.pruning_cost)
 /// Throws : InvalidInput where no body has such moments, the rotor's C is 0, the equations are
 ///          singular at every angle, or stiffness, damping or friction is below 0;
 ///          ComputationFailed from rates() and all that needs accelerations where they are singular
