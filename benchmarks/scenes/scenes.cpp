@@ -199,7 +199,8 @@ Contender cardan_gyro(const M& guide, const kreisel::CardanMoments& moments) {
       "kreisel", "CardanGyro::rates",
       [gyro = kreisel::CardanGyro<M>(moments, {}, guide)](const Input& in, VectorXd& out) {
         const typename kreisel::CardanGyro<M>::Vector y = in.y.template head<6>();
-        out.head<3>() = gyro.rates(moment, y).template tail<3>();
+        const typename kreisel::CardanGyro<M>::Vector rates = gyro.rates(moment, y);
+        for (int k = 0; k < 3; ++k) out[k] = rates[3 + k];
       });
 }
 
