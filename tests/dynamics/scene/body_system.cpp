@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <future>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -624,6 +625,33 @@ BOOST_AUTO_TEST_CASE(move_as_states_of_fixed_size_do) {
   compare(run.on_the_way(within, 0), fixed.at(within));
   // Sums over vectors of either kind round differently, which may cost a step or two.
   BOOST_TEST(std::abs(run.effort().evaluations - fixed.effort().evaluations) <= 2 * 16);
+}
+
+// One system, read by two threads with a workspace each.
+BOOST_AUTO_TEST_CASE(may_be_asked_by_several_threads) {
+  const BodySystem<RotatingFrame<>> system({.angular_velocity = {0.3, -0.2, 0.5}}, mobile(0.1),
+                                           UniformGravity<Guide>{{0, 0, -9.81}});
+  const auto accelerations = [&system] {
+    BodyWorkspace w = system.workspace();
+    Eigen::VectorXd y = system.to_vector(system.rest());
+    Eigen::VectorXd dv;
+    std::vector<Eigen::VectorXd> found;
+    for (int k = 0; k < 2000; ++k) {
+      y.tail(system.tree().rates()).setConstant(std::sin(k));
+      system.accelerations(0.01 * k, y, {}, dv, w);
+      found.push_back(dv);
+    }
+    return found;
+  };
+  const auto alone = accelerations();
+  auto other = std::async(std::launch::async, accelerations);
+  const auto here = accelerations();
+  const auto there = other.get();
+  bool same = true;
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    same = same && here[k] == alone[k] && there[k] == alone[k];
+  }
+  BOOST_TEST(same);
 }
 
 BOOST_AUTO_TEST_CASE(may_have_nothing_that_moves) {
