@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <dynamics/scene/held_body.hpp>
+#include <dynamics/scene/structure.hpp>
 #include <motor/attitude.hpp>
 
 namespace kreisel {
@@ -31,6 +33,9 @@ namespace kreisel {
 /// Throws : InvalidInput where no body has these moments or one of them is 0
 template <class M, class... Loads>
 class AxisymmetricBody {
+  using Held =
+      HeldBody<M, Loads..., Without<ProductsOfInertia>, Without<FirstMoment, Axis::x, Axis::y>>;
+
  public:
   using S = double;
   using Vector = Eigen::Matrix<S, 8, 1>;
@@ -45,19 +50,27 @@ class AxisymmetricBody {
   /// axis, all from the held point; `point` is where in the guide that is.
   AxisymmetricBody(S mass, S arm, S A, S C, const Vector3<S>& point, M guide, Loads... loads)
       : body_({{mass, Vector3<S>(0, 0, mass * arm), {A, A, C}}}, point, std::move(guide),
-              std::move(loads)...) {}
+              std::move(loads)..., Without<ProductsOfInertia>{},
+              Without<FirstMoment, Axis::x, Axis::y>{}) {}
 
-  [[nodiscard]] Vector rates(const S& t, const Vector& y) const {
-    const State state = from_vector(y);
-    const Vector3<S>& u = state.angular_velocity;
-    const Eigen::Vector4d dq = attitude_rate(state.attitude, Vector3<S>(u.x(), u.y(), 0));
-    const Vector3<S> du = body_.acceleration(body_.situation(t, {state.attitude, u}));
-    return Vector(dq[0], dq[1], dq[2], dq[3], du.x() - u.z() * u.y(), du.y() + u.z() * u.x(),
-                  du.z(), u.z());
+  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; u'; spin), for double and,
+  /// if the loads take them, dual numbers.
+  template <class N>
+  requires(Load<Loads, N>&&...)
+      [[nodiscard]] Eigen::Matrix<N, 8, 1> rates(const std::type_identity_t<N>& t,
+                                                 const Eigen::Matrix<N, 8, 1>& y) const {
+    const N &x = y[4], &z = y[6];
+    const Eigen::Matrix<N, 7, 1> as_body =
+        body_.template rates<N>(t, Eigen::Matrix<N, 7, 1>(y.template head<7>()));
+    const Eigen::Matrix<N, 4, 1> dq =
+        attitude_rate(Eigen::Quaternion<N>(y[3], y[0], y[1], y[2]), Vector3<N>(x, y[5], N(0)));
+    return Eigen::Matrix<N, 8, 1>(dq[0], dq[1], dq[2], dq[3], N(as_body[4] - z * y[5]),
+                                  N(as_body[5] + z * x), as_body[6], z);
   }
+  [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
   /// The same state on the body's own axes.
-  [[nodiscard]] static typename HeldBody<M, Loads...>::State on_body_axes(const State& state) {
+  [[nodiscard]] static typename Held::State on_body_axes(const State& state) {
     const Eigen::Quaternion<S> turn(std::cos(state.spin / 2), 0, 0, std::sin(state.spin / 2));
     return {state.attitude * turn, turn.conjugate() * state.angular_velocity};
   }
@@ -70,6 +83,9 @@ class AxisymmetricBody {
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 3> blocks = {4, 3, 1};
 
+  [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
+  static constexpr std::array names = {"q_x", "q_y", "q_z", "q_w", "u'_x", "u'_y", "u'_z", "spin"};
+
   [[nodiscard]] static Vector to_vector(const State& state) {
     return (Vector() << state.attitude.coeffs(), state.angular_velocity, state.spin).finished();
   }
@@ -79,7 +95,7 @@ class AxisymmetricBody {
   }
 
  private:
-  HeldBody<M, Loads...> body_;
+  Held body_;
 };
 
 }  // namespace kreisel

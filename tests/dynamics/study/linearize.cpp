@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/axisymmetric_body.hpp>
 #include <dynamics/scene/cardan_gyro_laws.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/scene/foeppl.hpp>
@@ -129,6 +130,23 @@ BOOST_AUTO_TEST_CASE(of_a_top_have_its_roots_and_none_for_the_norm) {
   }
 }
 
+// On axes that do not spin the roots are those in space, i nu.
+BOOST_AUTO_TEST_CASE(of_a_top_on_axes_that_do_not_spin_have_its_roots_in_space) {
+  const double A = 0.3, C = 0.1, arm = 0.25;
+  const UniformGravity<Guide> down{{0, 0, -10}};
+  const AxisymmetricBody top(1.0, arm, A, C, Vector3<double>::Zero(), RestingFrame<>{}, down);
+  const double w = 40;
+  const auto start = top.to_vector({.angular_velocity = {0, 0, w}});
+  const auto linear = linearize<Guide, Guide>(top, 0, start);
+  BOOST_TEST(linear.unsteadiness.norm() == 0);
+  BOOST_TEST(linear.rate[6] == w);  // the spin
+  const std::vector<Mode> modes = spectrum(linear.A);
+  const double D = std::sqrt(C * C * w * w - 4 * A * 10 * arm);
+  for (const double sign : {1.0, -1.0}) {
+    BOOST_TEST(nearest(modes, {0, (C * w + sign * D) / (2 * A)}) < 1e-13 * w);
+  }
+}
+
 // A motion that is not steady says so.
 BOOST_AUTO_TEST_CASE(hold_for_the_moment_where_the_motion_is_not_steady) {
   const Top top{0.3, 0.1, 2.5};
@@ -141,6 +159,7 @@ BOOST_AUTO_TEST_CASE(are_asked_of_scenes_that_take_dual_numbers) {
   static_assert(Differentiable<Top>);
   static_assert(Differentiable<CardanGyro<RestingFrame<>>>);
   static_assert(Differentiable<EulerTop>);
+  static_assert(Differentiable<AxisymmetricBody<RestingFrame<>>>);
   using Weight = UniformGravity<Guide>;
   static_assert(Differentiable<HeldBody<RestingFrame<>, Weight>>);
   static_assert(Differentiable<FreeBody<RotatingFrame<>, Weight>>);
