@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -201,6 +202,41 @@ template <class S>
   }
 }
 
+/// The eigenvalues of a symmetric matrix, ascending, by Jacobi's rotations: Eigen's solver takes the
+/// compiler as long as half a scene.
+template <class S>
+[[nodiscard]] Vector3<S> principal_moments(Matrix3<S> m) {
+  using std::abs;
+  using std::sqrt;
+  constexpr int planes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  for (int sweep = 0; sweep < 16 && (m(0, 1) != S(0) || m(0, 2) != S(0) || m(1, 2) != S(0));
+       ++sweep) {
+    for (const auto& [p, q] : planes) {
+      const S off = m(p, q);
+      if (abs(off) <= std::numeric_limits<S>::epsilon() * S(1e-3) * (abs(m(p, p)) + abs(m(q, q)))) {
+        m(p, q) = m(q, p) = S(0);
+        continue;
+      }
+      const S half = (m(q, q) - m(p, p)) / (S(2) * off);
+      const S root = abs(half) + sqrt(S(1) + half * half);
+      const S tangent = half < S(0) ? S(-1) / root : S(1) / root;
+      const S cosine = S(1) / sqrt(S(1) + tangent * tangent);
+      const S sine = tangent * cosine;
+      const int other = 3 - p - q;
+      const S a = m(p, other);
+      const S b = m(q, other);
+      m(p, p) -= tangent * off;
+      m(q, q) += tangent * off;
+      m(p, q) = m(q, p) = S(0);
+      m(p, other) = m(other, p) = cosine * a - sine * b;
+      m(q, other) = m(other, q) = sine * a + cosine * b;
+    }
+  }
+  Vector3<S> moments = m.diagonal();
+  std::sort(moments.data(), moments.data() + 3);
+  return moments;
+}
+
 }  // namespace detail
 
 /// Whether a body without mass is legal: a massless ring is a limit that some scenes take.
@@ -241,8 +277,7 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
   using Number = decltype(detail::number_in(T.mass));
   const Matrix3<Number> centred =
       about_centre.matrix().unaryExpr([](const S& x) { return detail::number_in(x); });
-  const Eigen::SelfAdjointEigenSolver<Matrix3<Number>> eigen(centred, Eigen::EigenvaluesOnly);
-  const Vector3<Number>& p = eigen.eigenvalues();
+  const Vector3<Number> p = detail::principal_moments(centred);
   const Number slack = detail::number_in(detail::tensor_slack(t.matrix()));
   if (p[0] < -slack) {
     refuse("principal moments about the centre of mass >= 0 fails: ", p[0], ", ", p[1], ", ", p[2],

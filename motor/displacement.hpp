@@ -42,7 +42,7 @@ struct Pose {
   }
 
   [[nodiscard]] Pose inverse() const {
-    return {rotation.transpose(), -(rotation.transpose() * translation)};
+    return {rotation.transpose(), -detail::transposed_product(rotation, translation)};
   }
 
   [[gnu::always_inline]] friend Pose operator*(const Pose& a, const Pose& b) {

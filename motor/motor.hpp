@@ -41,6 +41,15 @@ template <class S>
   return (Matrix3<S>() << x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()).finished();
 }
 
+/// R^t v
+template <class S>
+[[nodiscard, gnu::always_inline]] inline Vector3<S> transposed_product(const Matrix3<S>& R,
+                                                                       const Vector3<S>& v) {
+  return {R(0, 0) * v.x() + R(1, 0) * v.y() + R(2, 0) * v.z(),
+          R(0, 1) * v.x() + R(1, 1) * v.y() + R(2, 1) * v.z(),
+          R(0, 2) * v.x() + R(1, 2) * v.y() + R(2, 2) * v.z()};
+}
+
 }  // namespace detail
 
 /// A motor: the field of moments  m(P) = m(O) + r x OP  of a screw, kept as its reduction (r; m) at

@@ -31,11 +31,12 @@ struct RotatingFrame {
     const Vector3<S> w = u * t;
     const Pose<S> turn = exp(Motor<S>{w, a * t});  // its translation: the integral of exp(u s) a
     FrameMotion<G, I, S> motion;
-    motion.X.value.rotation = axes * turn.rotation;
-    motion.X.value.translation =
-        X.value.translation + origin_velocity * t + axes * (t * t * twice_integrated(w, a));
-    const Vector3<S> v =
-        turn.rotation.transpose() * (axes.transpose() * origin_velocity + turn.translation);
+    motion.X.value.rotation = detail::product(axes, turn.rotation);
+    motion.X.value.translation = X.value.translation + origin_velocity * t +
+                                 detail::product(axes, Vector3<S>(t * t * twice_integrated(w, a)));
+    const Vector3<S> v = detail::transposed_product(
+        turn.rotation,
+        Vector3<S>(detail::transposed_product(axes, origin_velocity) + turn.translation));
     motion.V.value = {u, v};
     motion.dV.value = {Vector3<S>::Zero(), a - u.cross(v)};
     return motion;

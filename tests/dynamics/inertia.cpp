@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/data/monomorphic.hpp>
 #include <boost/test/data/test_case.hpp>
