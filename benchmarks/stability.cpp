@@ -17,6 +17,7 @@
 
 #include <motor/error.hpp>
 
+#include "order.hpp"
 #include "stability/catalogue.hpp"
 #include "stability/isolated.hpp"
 #include "stability/output.hpp"
@@ -24,32 +25,6 @@
 using namespace stability;
 
 namespace {
-
-struct Order {
-  bool quick = false;
-  std::string wanted = "all";
-  std::string directory;
-};
-
-Order parse(int argc, char** argv) {
-  Order order;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--quick") {
-      order.quick = true;
-    } else if (word == "--case" && i + 1 < argc) {
-      order.wanted = argv[++i];
-    } else if (word == "--out" && i + 1 < argc) {
-      order.directory = argv[++i];
-    } else {
-      throw kreisel::InvalidInput("no such option: " + word);
-    }
-  }
-  if (order.directory.empty()) {
-    throw kreisel::InvalidInput("usage: stability [--quick] [--case NAME|all] --out DIR");
-  }
-  return order;
-}
 
 std::vector<Case> chosen(const std::string& wanted) {
   std::vector<Case> all;
@@ -69,7 +44,7 @@ std::vector<Case> chosen(const std::string& wanted) {
 
 int main(int argc, char** argv) {
   try {
-    const Order order = parse(argc, argv);
+    const Order order = parse_order(argc, argv, "stability", "case");
     const std::vector<Case> cases = chosen(order.wanted);
     std::filesystem::create_directories(order.directory);
     const std::vector<Finding> findings = run_isolated(cases, order.quick);

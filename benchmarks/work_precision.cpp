@@ -14,6 +14,7 @@
 
 #include <motor/error.hpp>
 
+#include "order.hpp"
 #include "work_precision/output.hpp"
 #include "work_precision/point.hpp"
 #include "work_precision/scenes.hpp"
@@ -31,32 +32,6 @@ const std::pair<std::string, AddRuns> all_scenes[] = {
     {"bearing_1e9", &bearing_1e9},   {"bearing_undamped", &bearing_undamped},
     {"bearing_1e12", &bearing_1e12}, {"bearing_deviation", &bearing_deviation}};
 
-struct Order {
-  bool quick = false;
-  std::string scene = "all";
-  std::string directory;
-};
-
-Order parse(int argc, char** argv) {
-  Order order;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--quick") {
-      order.quick = true;
-    } else if (word == "--scene" && i + 1 < argc) {
-      order.scene = argv[++i];
-    } else if (word == "--out" && i + 1 < argc) {
-      order.directory = argv[++i];
-    } else {
-      throw kreisel::InvalidInput("no such option: " + word);
-    }
-  }
-  if (order.directory.empty()) {
-    throw kreisel::InvalidInput("usage: work_precision [--quick] [--scene NAME|all] --out DIR");
-  }
-  return order;
-}
-
 std::vector<Run> runs(const std::string& scene, const Thoroughness& thoroughness) {
   std::vector<Run> all;
   std::string known;
@@ -72,11 +47,11 @@ std::vector<Run> runs(const std::string& scene, const Thoroughness& thoroughness
 
 int main(int argc, char** argv) {
   try {
-    const Order order = parse(argc, argv);
+    const Order order = parse_order(argc, argv, "work_precision", "scene");
     const Thoroughness thoroughness =
         order.quick ? Thoroughness::in_a_minute() : Thoroughness::full();
     std::filesystem::create_directories(order.directory);
-    const std::vector<Point> points = measure(runs(order.scene, thoroughness), thoroughness);
+    const std::vector<Point> points = measure(runs(order.wanted, thoroughness), thoroughness);
     write_csv(order.directory + "/work_precision.csv", points);
     write_tables(order.directory + "/work_precision.md", points);
     draw(order.directory, points);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -67,6 +68,10 @@ struct Case {
   std::function<void(const Recorder&)> run;
   double time_limit = 10;  ///< s, in which it has to end when quick; twenty times that when not
 };
+
+[[nodiscard]] inline double seconds_since(const std::chrono::steady_clock::time_point& begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 /// Each adds its cases.
 using AddCases = void (*)(std::vector<Case>&);

@@ -93,12 +93,7 @@ void far_origins(const Recorder& out) {
       trial.must_answer = away < 1e5;
       attempt_all(out, trial, {Method::automatic, Method::gauss16, Method::radau13});
     } catch (const kreisel::Error& error) {
-      Row row;
-      row.variant = what;
-      row.method = "FreeBody";
-      row.note = error.what();
-      row.verdict = says_something(row.note) ? Verdict::refused : Verdict::failed;
-      out.add(row);
+      add_refusal(out, what, "FreeBody", error.what());
     }
   }
 }

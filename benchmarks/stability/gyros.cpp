@@ -75,7 +75,7 @@ void undamped_bearings(const Recorder& out) {
 }
 
 /// 1e11 oscillations: no method resolves them, and none may pretend.
-void hopeless_bearing(const Recorder& out) {
+void unresolved_bearing(const Recorder& out, Methods methods) {
   const Gyro gyro(heavy_rings, {{0.5, 1e-3}, {1e12, 0, reference_angle}}, {});
   Trial<Gyro> trial{"1e12 N m/rad without damping, a budget of 1e6",
                     gyro,
@@ -83,19 +83,15 @@ void hopeless_bearing(const Recorder& out) {
                     {.times = {2.0}, .tolerance = 1e-9, .most_evaluations = 1e6},
                     [](double) { return State{}; }};
   trial.must_answer = false;
-  attempt_all(out, trial, {Method::automatic, Method::radau13});
+  attempt_all(out, trial, methods);
+}
+
+void hopeless_bearing(const Recorder& out) {
+  unresolved_bearing(out, {Method::automatic, Method::radau13});
 }
 
 /// The same with Gauss's equal steps, of which there would be 1e7.
-void endless_bearing(const Recorder& out) {
-  const Gyro gyro(heavy_rings, {{0.5, 1e-3}, {1e12, 0, reference_angle}}, {});
-  Trial<Gyro> trial{"1e12 N m/rad without damping, a budget of 1e6",
-                    gyro,
-                    {.beta = 1e-6, .alpha_rate = 0.5, .phi_rate = 500},
-                    {.times = {2.0}, .tolerance = 1e-9, .most_evaluations = 1e6},
-                    [](double) { return State{}; }};
-  attempt(out, trial, Method::gauss16);
-}
+void endless_bearing(const Recorder& out) { unresolved_bearing(out, {Method::gauss16}); }
 
 /// The trajectories of tests/data/cardan-gyro.json on a guide at rest.
 void through_gimbal_lock(const Recorder& out) {

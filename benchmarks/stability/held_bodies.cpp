@@ -242,12 +242,7 @@ void nearly_singular(const Recorder& out) {
       trial.must_answer = least >= 1e-8;
       attempt_all(out, trial, {Method::automatic, Method::gauss16, Method::radau13});
     } catch (const kreisel::Error& error) {
-      Row row;
-      row.variant = what;
-      row.method = "HeldBody";
-      row.note = error.what();
-      row.verdict = says_something(row.note) ? Verdict::refused : Verdict::failed;
-      out.add(row);
+      add_refusal(out, what, "HeldBody", error.what());
     }
   }
 }

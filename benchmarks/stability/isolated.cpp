@@ -30,10 +30,6 @@ void stop(int signal) {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(const Clock::time_point& begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 /// One line of tabs and no line breaks inside.
 std::string flat(std::string text) {
   for (char& c : text) {

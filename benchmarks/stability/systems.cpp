@@ -67,23 +67,14 @@ void heavy_end(const Recorder& out) {
         solve(system, start, {.times = {0.2}, .tolerance = 1e-6, .most_evaluations = 1e6});
     const auto b =
         solve(system, start, {.times = {0.2}, .tolerance = 1e-9, .most_evaluations = 1e6});
-    Row row;
-    row.variant = what;
-    row.method = "verner98";
-    row.estimate = a.report.error_estimate;
-    row.evaluations = a.report.all_evaluations;
-    row.steps = a.report.effort.steps;
     if (a.states.empty() || b.states.empty()) {
-      row.note = a.report.message;
-      row.verdict = says_something(row.note) ? Verdict::refused : Verdict::failed;
-    } else {
-      kreisel::detail::ErrorMeasure<System> distance(system, 1e-3);
-      row.error = distance(System::to_vector(a.states[0]), System::to_vector(b.states[0]));
-      row.verdict =
-          row.error <= row.estimate + b.report.error_estimate ? Verdict::accurate : Verdict::failed;
-      row.note = "against a run at 1e-9";
+      add_refusal(out, what, "verner98", a.report.message);
+      continue;
     }
-    out.add(row);
+    kreisel::detail::ErrorMeasure<System> distance(system, 1e-3);
+    expect_below(out, what, "verner98",
+                 distance(System::to_vector(a.states[0]), System::to_vector(b.states[0])),
+                 a.report.error_estimate + b.report.error_estimate, "against a run at 1e-9");
   }
 }
 
@@ -167,12 +158,7 @@ void rigid_limit(const Recorder& out) {
     out.begin(what, "automatic");
     const auto elastic = swing(stiffness);
     if (elastic.states.empty()) {
-      Row row;
-      row.variant = what;
-      row.method = "automatic";
-      row.note = elastic.report.message;
-      row.verdict = says_something(row.note) ? Verdict::refused : Verdict::failed;
-      out.add(row);
+      add_refusal(out, what, "automatic", elastic.report.message);
       continue;
     }
     expect_below(out, what, "automatic",

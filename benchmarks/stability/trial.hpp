@@ -40,10 +40,6 @@ struct Trial {
 /// Whether words say what is wrong: not empty, and more than a name.
 [[nodiscard]] inline bool says_something(const std::string& message) { return message.size() > 20; }
 
-[[nodiscard]] inline double seconds_since(const std::chrono::steady_clock::time_point& begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
 /// The greatest relative drift.
 [[nodiscard]] inline double drift(const kreisel::RunReport& report) {
   double worst = NAN;
@@ -151,6 +147,17 @@ inline void expect_below(const Recorder& out, const std::string& variant, const 
   row.estimate = bound;
   row.note = note;
   row.verdict = error <= bound ? Verdict::accurate : Verdict::failed;
+  out.add(row);
+}
+
+/// An end without an answer: right if it says why.
+inline void add_refusal(const Recorder& out, const std::string& variant, const std::string& method,
+                        const std::string& words) {
+  Row row;
+  row.variant = variant;
+  row.method = method;
+  row.note = words;
+  row.verdict = says_something(words) ? Verdict::refused : Verdict::failed;
   out.add(row);
 }
 
