@@ -178,6 +178,7 @@ class RadauSteps {
     if (step_ == 0) step_ = sizes_.first_step(rate_);
     note_jacobian();
     before_ = {time_, state_};
+    if (goal > t() ? t() >= rejected_.end : t() <= rejected_.end) rejected_ = {};
     bool again = false;
     while (true) {
       const double left = (goal - time_.value) - time_.rest;
@@ -237,6 +238,13 @@ class RadauSteps {
     detail::Compensated<Vector> state;
   };
 
+  /// The last try at a step that did not stand, while t is within it.
+  struct Rejected {
+    double end = 0;
+    double step = 0;  ///< 0 if there is none
+    double worst = 0;
+  };
+
   [[nodiscard]] static const RadauCoefficients& radau() {
     static const RadauCoefficients coefficients(stages);
     return coefficients;
@@ -267,10 +275,11 @@ class RadauSteps {
                                   const detail::Compensated<Vector>& state, double h) {
     constexpr int most_iterations = 12;
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-    const double enough = std::max(accuracy_.relative / 20, rounding);
+    // What is left errs to the same side in every step: it has to stay below what rounding makes.
+    const double enough = std::max(accuracy_.relative / 20, rounding / 64);
     // Rounding in a stiff field ends the descent before rounding of the state would.
-    const double stalled = 1e3 * enough;
-    double change_before = 0;
+    const double stalled = 1e3 * std::max(accuracy_.relative / 20, rounding);
+    double change_before = std::numeric_limits<double>::infinity();
     for (int iteration = 1; iteration <= most_iterations; ++iteration) {
       for (int i = 0; i < stages; ++i) {
         const double at = time.value + (radau().node[i] * h + time.rest);
@@ -285,7 +294,7 @@ class RadauSteps {
         change = std::max(change, sizes_.relative(correction.col(i), stages_.value.col(i)));
       }
       if (!std::isfinite(change)) return false;
-      if (change <= rounding) return true;
+      if (change <= std::min(enough, rounding) || change_before <= rounding) return true;
       if (iteration > 1) {
         const double shrinks = change / change_before;
         if (shrinks >= 1) return change <= stalled;
@@ -296,6 +305,20 @@ class RadauSteps {
       change_before = change;
     }
     return change_before <= stalled;
+  }
+
+  /// Whether the error of a step, where a longer one was rejected before, has fallen with the length
+  /// no faster than a jump of the field lets it: then the estimate is the error, not far above it.
+  [[nodiscard]] bool jumps_within(double h, double worst) const {
+    if (rejected_.step == 0) return false;
+    const double shortened = std::abs(h) / rejected_.step;
+    return worst > rejected_.worst * shortened * shortened;
+  }
+
+  /// What is allowed where the estimate is the error, in units of allowed_.
+  [[nodiscard]] double least_allowed() const {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    return std::min(1.0, std::max(accuracy_.relative, rounding) / allowed_);
   }
 
   /// One step of length h; says whether it stood. Sets the length of the next.
@@ -329,11 +352,13 @@ class RadauSteps {
       worst = sizes_.relative(error, change) / allowed_;
     }
     const double root = 1.0 / (stages + 1);
-    if (!(worst < 1)) {
+    const double most = jumps_within(h, worst) ? least_allowed() : 1;
+    if (!(worst < most)) {
       stages_.value = kept;
       effort_.rejected += 1;
-      const double aim = std::isfinite(worst) ? 0.9 * std::pow(worst, -root) : 0.125;
+      const double aim = std::isfinite(worst) ? 0.9 * std::pow(worst / most, -root) : 0.125;
       step_ = std::abs(h) * std::clamp(aim, 0.125, 0.9);
+      rejected_ = {t() + h, std::abs(h), worst};
       return false;
     }
     worst = std::max(worst, 1e-8);
@@ -365,6 +390,7 @@ class RadauSteps {
   double step_ = 0;
   double h_before_ = 0;  ///< of the step that the stages belong to; 0 if there is none
   double worst_before_ = 1;
+  Rejected rejected_;
   Vector rate_;
   detail::RadauStages stages_;
   Eigen::MatrixXd rates_ = stages_.value;  ///< at the stages
