@@ -43,13 +43,14 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const Plane pendulum{[](double, const Vector& y) { return Vector(y[1], -19.62 * std::sin(y[0])); }};
 
 void swing(const Recorder& out, const std::string& variant, double angle, double rate,
-           const kreisel::Task& task, const std::string& picture = "") {
+           const kreisel::Task& task, const std::string& picture = "", bool must_answer = true) {
   const kreisel::exact::PendulumMotion motion(19.62, angle, rate);
   Trial<Plane> trial{variant, pendulum, {angle, rate}, task, [&](double t) {
                        const auto m = motion.at(t - task.begin);
                        return State{m.angle, m.rate};
                      }};
   trial.picture = picture;
+  trial.must_answer = must_answer;
   attempt_all(out, trial, by_steps);
 }
 
@@ -69,8 +70,10 @@ void near_the_top(const Recorder& out) {
 void small_swings(const Recorder& out) {
   for (const double angle : {1e-320, 1e-300, 1e-170, 1e-30, 1e-10}) {
     for (const double smallest : {0.0, 1e-3}) {
+      // solve() does not know that this field has no squares, which underflow below 1e-146.
       swing(out, fmt::format("amplitude {:g}, smallest = {:g}", angle, smallest), angle, 0,
-            {.times = every(1, 5), .tolerance = 1e-9, .smallest = smallest});
+            {.times = every(1, 5), .tolerance = 1e-9, .smallest = smallest}, "",
+            angle > 1e-146 || smallest > 0);
     }
   }
 }

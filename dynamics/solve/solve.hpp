@@ -160,11 +160,39 @@ template <class Scene, class Runs>
   }
 }
 
+/// The start as steps take it: quaternions, whose norm means nothing, brought near the norm 1, for
+/// it is by size that errors are measured.
+///
+/// Throws : where the state is so small that products of its components underflow
+template <class Scene>
+[[nodiscard]] typename Scene::State start_of_steps(const Scene& scene,
+                                                   const typename Scene::State& start,
+                                                   double smallest) {
+  using Limits = std::numeric_limits<double>;
+  const double least = std::sqrt(Limits::min() / Limits::epsilon());
+  typename Scene::Vector y = scene.to_vector(start);
+  int begin = 0;
+  for (const int components : blocks_of(scene)) {
+    const double size = norm(y, begin, components);
+    const bool attitude = components == 4;
+    if (attitude && std::isfinite(size) && std::abs(std::ilogb(size)) > 4) {
+      const int power = std::ilogb(size);  // of two, lest anything be rounded
+      for (int i = begin; i < begin + components; ++i) y[i] = std::ldexp(y[i], -power);
+    } else if (size > 0 && size < least && smallest < least) {
+      refuse_task("a part of the state is ", size, " at the start, and below ", least,
+                  " products of it underflow: take other units, or a `smallest` above that");
+    }
+    begin += components;
+  }
+  return scene.from_vector(y);
+}
+
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve_by_steps(const Scene& scene,
-                                                               const typename Scene::State& start,
+                                                               const typename Scene::State& given,
                                                                const Task& task) {
   const Clock::time_point clock = Clock::now();
+  const typename Scene::State start = start_of_steps(scene, given, task.smallest);
   const bool automatic = task.method == Method::automatic;
   double spent = 0;
   const auto with = [&](const auto& runs) {

@@ -381,6 +381,10 @@ BOOST_AUTO_TEST_CASE(refuses_a_task_that_is_none) {
   BOOST_CHECK_THROW((void)with({.times = {1}, .smallest = HUGE_VAL}), InvalidInput);
   BOOST_CHECK_THROW((void)with({.times = {1}, .most_evaluations = nan}), InvalidInput);
   BOOST_CHECK_THROW((void)solve(top, {tilted, {nan, 2, 3}}, {.times = {1}}), InvalidInput);
+  const Vector3<double> underflowing(1e-200, 2e-200, 1e-200);
+  BOOST_CHECK_THROW((void)solve(top, {tilted, underflowing},
+                                {.times = {1}, .method = Method::verner98, .smallest = 0}),
+                    InvalidInput);
   const EulerTop::State turned_by_nothing{Eigen::Quaterniond(0, 0, 0, 0), {1, 2, 3}};
   const Task by_steps{.times = {1}, .method = Method::verner98};
   BOOST_CHECK_THROW((void)solve(top, turned_by_nothing, by_steps), InvalidInput);
