@@ -7,7 +7,6 @@
 #include <complex>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include <dynamics/decompositions.hpp>
 #include <dynamics/scene/euler_top.hpp>
@@ -163,39 +162,46 @@ class RadauRuns : public AdaptiveRuns {
   const typename Scene::State& start_;
 };
 
+/// The length of equal steps, all of which end at the output times.
+struct EqualLength {
+  double longest;
+
+  /// Of the run beside which this one goes on, with at least one step more between any two outputs:
+  /// else the two would be the same, and tell nothing of their error.
+  double beside = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] double over(double interval) const {
+    return std::min(longest, interval / (std::ceil(interval / beside) + 1));
+  }
+};
+
 /// The settings of fixed steps of a method of the order given: their length.
 class FixedRuns {
  public:
-  FixedRuns(int order, double first, double shortest, const Task& task)
-      : root_(1.0 / order), first_(first), shortest_(shortest) {
-    double from = task.begin;
-    for (const double to : task.times) {
-      if (to != from) intervals_.push_back(std::abs(to - from));
-      from = to;
-    }
+  FixedRuns(int order, double first, double shortest)
+      : root_(1.0 / order), first_{first}, shortest_(shortest) {}
+
+  [[nodiscard]] EqualLength first() const { return first_; }
+  [[nodiscard]] EqualLength finer(const EqualLength& step) const {
+    return {step.longest * std::pow(30.0, -root_), step.longest};
+  }
+  [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
+  [[nodiscard]] EqualLength tightened(const EqualLength& step, double ratio) const {
+    return {std::max(step.longest * std::clamp(std::pow(ratio, root_), 0.2, 0.9), shortest_)};
   }
 
-  [[nodiscard]] double first() const { return first_; }
-
-  /// At least one step more between any two outputs, at which all steps end: else two runs would be
-  /// the same, and tell nothing of their error.
-  [[nodiscard]] double finer(double step) const {
-    double fine = step * std::pow(30.0, -root_);
-    for (const double interval : intervals_) {
-      fine = std::min(fine, interval / (std::ceil(interval / step) + 1));
-    }
-    return fine;
-  }
-  [[nodiscard]] bool last(double step) const { return step <= shortest_; }
-  [[nodiscard]] double tightened(double step, double ratio) const {
-    return std::max(step * std::clamp(std::pow(ratio, root_), 0.2, 0.9), shortest_);
+ protected:
+  template <class Steps>
+  static void advance(Steps& steps, const EqualLength& step, double t) {
+    if (t == steps.t()) return;
+    steps.take_steps_of(step.over(std::abs(t - steps.t())));
+    steps.advance_to(t);
   }
 
  private:
   double root_;
-  double first_;
+  EqualLength first_;
   double shortest_;
-  std::vector<double> intervals_;
 };
 
 /// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
@@ -234,17 +240,21 @@ class GaussRuns : public FixedRuns {
 
   struct Run {
     const Scene* scene;
+    EqualLength length;
     GaussSteps<typename Scene::Vector, Field> steps;
 
     [[nodiscard]] typename Scene::State on_the_way(double t, double /*end*/) {
-      return scene->from_vector(steps.advance_to(t));
+      advance(steps, length, t);
+      return scene->from_vector(steps.y());
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
-  [[nodiscard]] Run run(double step) const {
-    Run r{&scene_,
-          {Field{&scene_}, task_.begin, scene_.to_vector(start_), step, blocks_of(scene_)}};
+  [[nodiscard]] Run run(const EqualLength& length) const {
+    Run r{
+        &scene_,
+        length,
+        {Field{&scene_}, task_.begin, scene_.to_vector(start_), length.longest, blocks_of(scene_)}};
     r.steps.give_up_after(task_.most_evaluations);
     return r;
   }
@@ -252,7 +262,7 @@ class GaussRuns : public FixedRuns {
  private:
   // 16 Gauss points carry about twice as far as Verner98's stages do at 1e-14.
   GaussRuns(const Scene& scene, const Task& task, const typename Scene::State& start, double pace)
-      : FixedRuns(16, 2 * pace, pace / 2, task), scene_(scene), task_(task), start_(start) {}
+      : FixedRuns(16, 2 * pace, pace / 2), scene_(scene), task_(task), start_(start) {}
 
   const Scene& scene_;
   const Task& task_;
@@ -290,23 +300,25 @@ class SplittingRuns : public FixedRuns {
   static constexpr double rounding = 2.5;
 
   struct Run {
+    EqualLength length;
     SplittingSteps<SymmetricFreeFlow, Weight> steps;
 
     [[nodiscard]] EulerTop::State on_the_way(double t, double /*end*/) {
-      steps.advance_to(t);
+      advance(steps, length, t);
       return {steps.attitude(), steps.angular_velocity()};
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
-  [[nodiscard]] Run run(double step) const {
+  [[nodiscard]] Run run(const EqualLength& length) const {
     const Vector3<double>& I = top_.moments();
-    Run r{{SymmetricFreeFlow(I.x(), I.z()),
+    Run r{length,
+          {SymmetricFreeFlow(I.x(), I.z()),
            {&top_},
            task_.begin,
            start_.attitude,
            start_.angular_velocity,
-           step}};
+           length.longest}};
     r.steps.give_up_after(task_.most_evaluations);
     return r;
   }
@@ -324,7 +336,7 @@ class SplittingRuns : public FixedRuns {
   SplittingRuns(const EulerTop& top, const Task& task, const EulerTop::State& start, double rate)
       // Steps of 2/rate err by some 1e-9.
       : FixedRuns(8, 2 / rate * std::clamp(std::pow(task.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
-                  0.02 / rate, task),
+                  0.02 / rate),
         top_(top),
         task_(task),
         start_(start) {}

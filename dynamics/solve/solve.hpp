@@ -105,7 +105,7 @@ template <class Scene, class Runs>
   // The finer run ends at the middle first, lest a short run be one and the same step in both.
   const double end = task.times.back();
   const double middle = (task.begin + end) / 2;
-  double setting = runs.first();
+  auto setting = runs.first();
   while (true) {
     result = {};
     RunReport& report = result.report;

@@ -153,6 +153,12 @@ class GaussSteps {
   /// Evaluations after which the integration gives up.
   void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
 
+  /// Steps no longer than this from here on.
+  void take_steps_of(double step) {
+    detail::require_step(step);
+    step_ = step;
+  }
+
   /// Integrates to `end`, which is hit exactly, in equal steps no longer than the one asked for;
   /// forwards or backwards.
   const Vector& advance_to(const Scalar& end) {

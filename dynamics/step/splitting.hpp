@@ -128,6 +128,12 @@ class SplittingSteps {
   /// Evaluations after which the integration gives up.
   void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
 
+  /// Steps no longer than this from here on.
+  void take_steps_of(double step) {
+    detail::require_step(step);
+    step_ = step;
+  }
+
   /// Moves to the time `end`, which is hit exactly, in equal steps no longer than the one asked
   /// for; forwards or backwards.
   void advance_to(double end) {

@@ -329,6 +329,19 @@ BOOST_AUTO_TEST_CASE(tells_the_error_of_fixed_steps_between_near_outputs) {
   }
 }
 
+// One output a billionth of the run before another: as many steps as each interval needs.
+BOOST_AUTO_TEST_CASE(takes_fixed_steps_between_outputs_of_any_distance) {
+  const EulerTop top({1, 2, 3});
+  const EulerTop::State start{tilted, {1, 2, 3}};
+  const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
+  const auto found =
+      solve(top, start,
+            {.times = {1e-310, 1e-300, 1e-9, 1}, .tolerance = 1e-11, .method = Method::gauss16});
+  BOOST_TEST(found.report.tolerance_kept);
+  BOOST_TEST(found.report.all_evaluations < 2e4);
+  BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
+}
+
 BOOST_AUTO_TEST_CASE(spends_no_more_than_it_may) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.05});
   for (const Method method : {Method::splitting, Method::gauss16, Method::verner98}) {
