@@ -84,22 +84,24 @@ template <class N, class Scene>
 void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
             const Task& task, bool estimates_errors, const std::atomic<bool>& stop,
             const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
-  constexpr double rounding = 2.5;
+  constexpr double rounding = 0.5;
   const AdaptiveRuns runs(task);
   const double end = task.times.back();
   const double middle = (task.begin + end) / 2;
+  auto beside = starts;
+  for (auto& start : beside) start = off_by_last_digits(scene, start);
   double setting = runs.first();
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
-    const auto run = [&](double relative) {
-      PackedAdvance<Scene, N> made(scene, task.begin, starts, runs.accuracy(relative));
+    const auto run = [&](double relative, const auto& from) {
+      PackedAdvance<Scene, N> made(scene, task.begin, from, runs.accuracy(relative));
       made.stop_at(task.jumps);
       return made;
     };
-    auto coarse = run(setting);
+    auto coarse = run(setting, starts);
     std::optional<PackedAdvance<Scene, N>> fine;
-    if (estimates_errors) fine = run(runs.finer(setting));
+    if (estimates_errors) fine = run(runs.finer(setting), beside);
     std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, task.smallest});
     for (auto* member : members) {
       if (!member) continue;
@@ -123,7 +125,8 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
         if (!members[k]) continue;
         double& estimate = members[k]->report.error_estimate;
         const double off = distance[k](scene.to_vector(states[k]), scene.to_vector(better[k]));
-        estimate = std::max(estimate, error_of_pair(off, rounding, coarse.effort().steps));
+        estimate = std::max(
+            estimate, error_of_pair(off, runs.finer_by(setting), rounding, coarse.effort().steps));
         worst = std::max(worst, estimate);
       }
       if (worst > task.tolerance && !last_try) break;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
+#include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/accuracy.hpp>
 
@@ -13,7 +15,13 @@ class AdaptiveRuns {
   explicit AdaptiveRuns(const Task& task) : task_(task) {}
 
   [[nodiscard]] double first() const { return std::max(task_.tolerance / 10, 4 * least); }
-  [[nodiscard]] static double finer(double accuracy) { return std::max(accuracy / 30, least); }
+  [[nodiscard]] static double finer(double accuracy) {
+    return std::max(accuracy / times_finer, least);
+  }
+  [[nodiscard]] static double finer_by(double accuracy) { return accuracy / finer(accuracy); }
+  [[nodiscard]] static double digits_lost(double accuracy, double steps) {
+    return accuracy <= 1e-13 ? 0.08 * std::sqrt(steps) : 0;
+  }
   [[nodiscard]] static bool last(double accuracy) { return accuracy <= 4 * least; }
   [[nodiscard]] static double tightened(double accuracy, double ratio) {
     return std::max(accuracy * std::clamp(ratio, 1e-4, 0.2), 4 * least);

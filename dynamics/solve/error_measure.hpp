@@ -12,13 +12,27 @@
 
 namespace kreisel::detail {
 
-/// The global error of a run after so many steps, `off` from one held 30 times more exact beside
-/// it: that is, to a thirtieth, what the coarser errs by; and a random walk of rounding, in units
-/// of 2^-53 a step.
-[[nodiscard]] inline double error_of_pair(double off, double rounding, double steps) {
-  constexpr double caution = 1.3;
+/// How much finer the run is beside which another is held.
+inline constexpr double times_finer = 30;
+
+/// The global error of a run after so many steps, `off` from one beside it whose error is so many
+/// times finer: what the coarser errs by, less that part of it; and a random walk of rounding, in
+/// units of 2^-53 a step, where nothing grows.
+[[nodiscard]] inline double error_of_pair(double off, double finer_by, double rounding,
+                                          double steps) {
+  const double caution = 1.26 / (1 - 1 / finer_by);
   constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
   return caution * off + rounding * unit_roundoff * std::sqrt(steps);
+}
+
+/// The state with its components moved by so much in the last digit.
+template <class Scene>
+[[nodiscard]] typename Scene::State off_by_last_digits(const Scene& scene,
+                                                       const typename Scene::State& state,
+                                                       double by = 1) {
+  typename Scene::Vector y = scene.to_vector(state);
+  move_last_digits<double>(y, by);
+  return scene.from_vector(y);
 }
 
 /// The distance of two states in the measure of RunReport::error_estimate.

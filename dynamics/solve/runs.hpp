@@ -21,13 +21,16 @@
 /// The integrators as solve() sees them: each a kind of run that has one setting, an accuracy or a
 /// step, which can be made finer by thirty times in the error.
 ///
-/// A kind is made from (scene, task, start) and has
+/// A kind is made from (task), one of fixed steps from (scene, task, start), and has
 ///   first()               the setting to begin with
 ///   finer(x)              of the run beside, whose error is a thirtieth
 ///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
 ///   last(x)               whether rounding leaves nothing to gain beyond
-///   rounding              of one step, in units of 2^-53; that of many adds up as a random walk
-///   run(x)                with on_the_way(t, end) -> State and effort()
+///   rounding              of one step where nothing grows, in units of 2^-53
+///   finer_by(x)           how many times finer that is
+///   digits_lost(x, n)     what rounding in n steps does to the state, in units of its last digit: a
+///                         random walk; 0 where the method errs by more
+///   run(x, scene, start)  with on_the_way(t, end) -> State and effort()
 namespace kreisel::detail {
 
 /// The Jacobian of a scene's field: exact, where the field takes dual numbers.
@@ -65,11 +68,10 @@ template <class Scene>
 template <class Scene>
 class VernerRuns : public AdaptiveRuns {
  public:
-  VernerRuns(const Scene& scene, const Task& task, const typename Scene::State& start)
-      : AdaptiveRuns(task), scene_(scene), start_(start) {}
+  using AdaptiveRuns::AdaptiveRuns;
 
   static constexpr Method method = Method::verner98;
-  static constexpr double rounding = 2.5;
+  static constexpr double rounding = 0.5;
 
   class Run {
    public:
@@ -117,13 +119,10 @@ class VernerRuns : public AdaptiveRuns {
     Advance<Scene> steps_;
   };
 
-  [[nodiscard]] Run run(double setting) const {
-    return {scene_, task(), start_, accuracy(setting)};
+  [[nodiscard]] Run run(double setting, const Scene& scene,
+                        const typename Scene::State& start) const {
+    return {scene, task(), start, accuracy(setting)};
   }
-
- private:
-  const Scene& scene_;
-  const typename Scene::State& start_;
 };
 
 template <class Scene>
@@ -133,11 +132,10 @@ class RadauRuns : public AdaptiveRuns {
   using Steps = RadauSteps<typename Scene::Vector, Field, J>;
 
  public:
-  RadauRuns(const Scene& scene, const Task& task, const typename Scene::State& start)
-      : AdaptiveRuns(task), scene_(scene), start_(start) {}
+  using AdaptiveRuns::AdaptiveRuns;
 
   static constexpr Method method = Method::radau13;
-  static constexpr double rounding = 24;  // where Newton's iterations stop
+  static constexpr double rounding = 8;  // where Newton's iterations stop
 
   struct Run {
     const Scene* scene;
@@ -150,16 +148,13 @@ class RadauRuns : public AdaptiveRuns {
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
-  [[nodiscard]] Run run(double setting) const {
-    Run r{&scene_, Steps(Field{&scene_}, jacobian_of(scene_), task().begin,
-                         scene_.to_vector(start_), accuracy(setting), blocks_of(scene_))};
+  [[nodiscard]] Run run(double setting, const Scene& scene,
+                        const typename Scene::State& start) const {
+    Run r{&scene, Steps(Field{&scene}, jacobian_of(scene), task().begin, scene.to_vector(start),
+                        accuracy(setting), blocks_of(scene))};
     r.steps.stop_at(task().jumps);
     return r;
   }
-
- private:
-  const Scene& scene_;
-  const typename Scene::State& start_;
 };
 
 /// The length of equal steps, all of which end at the output times.
@@ -183,7 +178,17 @@ class FixedRuns {
 
   [[nodiscard]] EqualLength first() const { return first_; }
   [[nodiscard]] EqualLength finer(const EqualLength& step) const {
-    return {step.longest * std::pow(30.0, -root_), step.longest};
+    return {step.longest * std::pow(times_finer, -root_), step.longest};
+  }
+
+  /// Where the shortest steps still err, it is by rounding or by a jump that nobody declared: neither
+  /// falls with the method's order.
+  [[nodiscard]] double finer_by(const EqualLength& step) const {
+    return last(step) ? 2 : times_finer;
+  }
+
+  [[nodiscard]] static double digits_lost(const EqualLength& /*step*/, double steps) {
+    return 0.02 * std::sqrt(steps);
   }
   [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
   [[nodiscard]] EqualLength tightened(const EqualLength& step, double ratio) const {
@@ -233,10 +238,10 @@ class GaussRuns : public FixedRuns {
 
  public:
   GaussRuns(const Scene& scene, const Task& task, const typename Scene::State& start)
-      : GaussRuns(scene, task, start, pace(scene, task, start)) {}
+      : GaussRuns(task, pace(scene, task, start)) {}
 
   static constexpr Method method = Method::gauss16;
-  static constexpr double rounding = 2.5;
+  static constexpr double rounding = 0.5;
 
   struct Run {
     const Scene* scene;
@@ -250,23 +255,20 @@ class GaussRuns : public FixedRuns {
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
-  [[nodiscard]] Run run(const EqualLength& length) const {
-    Run r{
-        &scene_,
-        length,
-        {Field{&scene_}, task_.begin, scene_.to_vector(start_), length.longest, blocks_of(scene_)}};
+  [[nodiscard]] Run run(const EqualLength& length, const Scene& scene,
+                        const typename Scene::State& start) const {
+    Run r{&scene,
+          length,
+          {Field{&scene}, task_.begin, scene.to_vector(start), length.longest, blocks_of(scene)}};
     r.steps.give_up_after(task_.most_evaluations);
     return r;
   }
 
  private:
   // 16 Gauss points carry about twice as far as Verner98's stages do at 1e-14.
-  GaussRuns(const Scene& scene, const Task& task, const typename Scene::State& start, double pace)
-      : FixedRuns(16, 2 * pace, pace / 2), scene_(scene), task_(task), start_(start) {}
+  GaussRuns(const Task& task, double pace) : FixedRuns(16, 2 * pace, pace / 2), task_(task) {}
 
-  const Scene& scene_;
   const Task& task_;
-  const typename Scene::State& start_;
 };
 
 /// Whether splitting applies to a scene: a symmetric top under weight.
@@ -294,10 +296,10 @@ class SplittingRuns : public FixedRuns {
 
  public:
   SplittingRuns(const EulerTop& top, const Task& task, const EulerTop::State& start)
-      : SplittingRuns(top, task, start, fastest_rate(top, start)) {}
+      : SplittingRuns(task, fastest_rate(top, start)) {}
 
   static constexpr Method method = Method::splitting;
-  static constexpr double rounding = 2.5;
+  static constexpr double rounding = 0.5;
 
   struct Run {
     EqualLength length;
@@ -310,14 +312,15 @@ class SplittingRuns : public FixedRuns {
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
   };
 
-  [[nodiscard]] Run run(const EqualLength& length) const {
-    const Vector3<double>& I = top_.moments();
+  [[nodiscard]] Run run(const EqualLength& length, const EulerTop& top,
+                        const EulerTop::State& start) const {
+    const Vector3<double>& I = top.moments();
     Run r{length,
           {SymmetricFreeFlow(I.x(), I.z()),
-           {&top_},
+           {&top},
            task_.begin,
-           start_.attitude,
-           start_.angular_velocity,
+           start.attitude,
+           start.angular_velocity,
            length.longest}};
     r.steps.give_up_after(task_.most_evaluations);
     return r;
@@ -333,17 +336,13 @@ class SplittingRuns : public FixedRuns {
     return std::max(nutation, spin) + std::sqrt(top.weight_moment().norm() / I.x());
   }
 
-  SplittingRuns(const EulerTop& top, const Task& task, const EulerTop::State& start, double rate)
+  SplittingRuns(const Task& task, double rate)
       // Steps of 2/rate err by some 1e-9.
       : FixedRuns(8, 2 / rate * std::clamp(std::pow(task.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
                   0.02 / rate),
-        top_(top),
-        task_(task),
-        start_(start) {}
+        task_(task) {}
 
-  const EulerTop& top_;
   const Task& task_;
-  const EulerTop::State& start_;
 };
 
 }  // namespace kreisel::detail

@@ -90,9 +90,22 @@ template <class Scene>
   return result;
 }
 
+/// The scene that a run is held against: the same but for last digits of parameters of which so
+/// little makes much, if it has such.
+template <class Scene>
+[[nodiscard]] std::optional<Scene> off_by_last_digits(const Scene& scene) {
+  if constexpr (requires { scene.off_by_last_digits(); }) {
+    return scene.off_by_last_digits();
+  } else {
+    return std::nullopt;
+  }
+}
+
 /// Two integrations run side by side, one whose steps are held 30 times more exact than the
-/// other's; the coarser one is returned, with the error that the pair tells of. Where it exceeds
-/// the tolerance the run begins again with shorter steps, until rounding stops it.
+/// other's; the coarser one is returned, with the error that the pair tells of. The finer one starts
+/// a last digit away, or as many as rounding has taken by the end, so that the pair also tells what
+/// that grows to: near a separatrix steps of any length round the same digits away. Where the error
+/// exceeds the tolerance the run begins again with shorter steps, until rounding stops it.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 template <class Scene, class Runs>
@@ -105,6 +118,8 @@ template <class Scene, class Runs>
   // The finer run ends at the middle first, lest a short run be one and the same step in both.
   const double end = task.times.back();
   const double middle = (task.begin + end) / 2;
+  const std::optional<Scene> changed = off_by_last_digits(scene);
+  double digits = 1;
   auto setting = runs.first();
   while (true) {
     result = {};
@@ -114,8 +129,9 @@ template <class Scene, class Runs>
     InvariantWatch<Scene> watch(scene);
     ErrorMeasure<Scene> distance(scene, task.smallest);
     const bool last_try = runs.last(setting);
-    auto coarse = runs.run(setting);
-    auto fine = runs.run(runs.finer(setting));
+    auto coarse = runs.run(setting, scene, start);
+    auto fine = runs.run(runs.finer(setting), changed ? *changed : scene,
+                         off_by_last_digits(scene, start, digits));
     watch.note(task.begin, start);
     bool too_coarse = false;
     try {
@@ -130,8 +146,9 @@ template <class Scene, class Runs>
         const typename Scene::State better =
             fine.on_the_way(t, (t < middle) == (end > task.begin) ? middle : end);
         const double off = distance(scene.to_vector(state), scene.to_vector(better));
-        report.error_estimate = std::max(report.error_estimate,
-                                         error_of_pair(off, Runs::rounding, coarse.effort().steps));
+        report.error_estimate = std::max(
+            report.error_estimate,
+            error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse.effort().steps));
         too_coarse = report.error_estimate > task.tolerance && !last_try;
         if (too_coarse) break;
         if (!output(result, watch, task, t, state)) break;
@@ -146,10 +163,15 @@ template <class Scene, class Runs>
       report.message = text.str();
     }
     spent += coarse.effort().evaluations + fine.effort().evaluations;
+    // Rounding on a long way does more than to move the start by a digit.
+    const double lost = runs.digits_lost(setting, coarse.effort().steps);
+    const bool too_close = lost > 2 * digits && report.status == RunStatus::complete;
+    digits = std::max(digits, lost);
     if (too_coarse) {
       setting = runs.tightened(setting, task.tolerance / (3 * report.error_estimate));
       continue;
     }
+    if (too_close) continue;
     report.effort = coarse.effort();
     report.all_evaluations = spent;
     report.tolerance_kept =
@@ -205,10 +227,10 @@ template <class Scene>
     const bool pays = automatic && splits(scene) && is_fast(scene, start);
     if (pays || task.method == Method::splitting) return *with(SplittingRuns(scene, task, start));
   }
-  if (task.method == Method::radau13) return *with(RadauRuns(scene, task, start));
+  if (task.method == Method::radau13) return *with(RadauRuns<Scene>(task));
   if (task.method == Method::gauss16) return *with(GaussRuns(scene, task, start));
-  const auto explicitly = with(VernerRuns(scene, task, start));
-  if (!explicitly) return *with(RadauRuns(scene, task, start));
+  const auto explicitly = with(VernerRuns<Scene>(task));
+  if (!explicitly) return *with(RadauRuns<Scene>(task));
   // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
   const RunReport& report = explicitly->report;
   const bool long_run = report.status == RunStatus::complete && report.effort.steps > 1e5;
@@ -259,7 +281,8 @@ void check_method(const Scene& scene, const Task& task) {
 /// Error  : by steps true error / estimate lies in [0.1, 1] in 99 % of 200 runs and never above 1
 ///          (tests/dynamics/solve/solve.cpp); docs/promises.md tells where that ends. Where the
 ///          tolerance cannot be reached the best is returned and RunReport::tolerance_kept is false
-/// Cost   : by steps 2.5 times the integration alone, reported as all_evaluations
+/// Cost   : by steps 2.5 times the integration alone, reported as all_evaluations; twice that where
+///          so many steps near the last digits are taken that rounding outgrows them
 /// Throws : InvalidInput for a task that is none or a method that does not fit the scene. What
 ///          fails on the way is told by the report, with the trajectory up to there
 template <class Scene>

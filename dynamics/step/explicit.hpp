@@ -369,10 +369,7 @@ class ExplicitSteps {
     typename Memory::Passing moved = stage_.point();
     typename Memory::Passing rate = stage_.error();
     moved = before_.state.value;
-    for (int i = 0; i < int(moved.size()); ++i) {
-      const Scalar last_digit = std::numeric_limits<Scalar>::epsilon() * moved[i];
-      moved[i] += i / detail::lanes_of<Number> % 2 == 0 ? last_digit : Scalar(-last_digit);
-    }
+    detail::move_last_digits<Number>(moved);
     evaluate(before_.time.value, moved, rate);
     rate -= before_.rate;
     if ((rate - rate).isZero(Scalar(0))) sizes_.note_noise(rate);

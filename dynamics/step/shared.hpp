@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/step/compensated.hpp>
+#include <dynamics/step/lanes.hpp>
 #include <motor/error.hpp>
 
 /// What the steppers share.
@@ -77,6 +78,18 @@ template <class S>
   using std::nextafter;
   const bool jumps_here = std::find(jumps.begin(), jumps.end(), t) != jumps.end();
   return jumps_here ? S(nextafter(t, side)) : t;
+}
+
+/// Moves the components of a state by so much in the last digit, up and down in turn; all lanes of
+/// one alike.
+template <class Number, class Vector>
+void move_last_digits(Vector& y, double by = 1) {
+  using Scalar = typename Vector::Scalar;
+  const Scalar part = Scalar(by) * std::numeric_limits<Scalar>::epsilon();
+  for (int i = 0; i < int(y.size()); ++i) {
+    const Scalar moved = part * y[i];
+    y[i] += i / lanes_of<Number> % 2 == 0 ? moved : Scalar(-moved);
+  }
 }
 
 /// `count` steps of one length, never above the one asked for. The length is kept to 64 bits: over

@@ -342,6 +342,35 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_between_outputs_of_any_distance) {
   BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
 }
 
+// 1e-14 beside the separatrix steps of any length round the same digits away.
+BOOST_AUTO_TEST_CASE(knows_what_last_digits_grow_to) {
+  const Vector3<double> w(std::sqrt(2.0) * (1 + 1e-14), 1.5, 1);
+  const EulerTop top({2, 3, 4});
+  const exact::FreeTop truth(top.moments(), w, tilted);
+  for (const Method method : {Method::verner98, Method::gauss16, Method::radau13}) {
+    const auto run =
+        solve(top, {tilted, w}, {.times = every(2, 20), .tolerance = 1e-8, .method = method});
+    const double error = true_error(run, truth);
+    BOOST_TEST_MESSAGE(name(method)
+                       << ": estimate " << run.report.error_estimate << ", true " << error);
+    BOOST_TEST(error <= run.report.error_estimate);
+  }
+}
+
+// Errors are relative to sizes, and the size of a quaternion means nothing.
+BOOST_AUTO_TEST_CASE(steps_attitudes_of_any_norm) {
+  const EulerTop top({1, 2, 3});
+  const Vector3<double> w(1, 2, 3);
+  const exact::FreeTop truth(top.moments(), w, tilted);
+  for (const double norm : {1e-300, 1e300}) {
+    const EulerTop::State start{Eigen::Quaterniond(norm * tilted.coeffs()), w};
+    const auto run =
+        solve(top, start, {.times = every(1, 10), .tolerance = 1e-9, .method = Method::radau13});
+    BOOST_TEST(run.report.tolerance_kept);
+    BOOST_TEST(true_error(run, truth) <= run.report.error_estimate);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(spends_no_more_than_it_may) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.05});
   for (const Method method : {Method::splitting, Method::gauss16, Method::verner98}) {
