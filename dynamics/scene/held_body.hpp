@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -151,6 +152,19 @@ class HeldBody {
           return detail::kept_energy(guide_, situation(t, state), all...);
         },
         loads_);
+  }
+
+  /// The same body with its tensor off by last digits, where that makes more than last digits of
+  /// the motion: for estimates of what rounding does.
+  [[nodiscard]] std::optional<HeldBody> off_by_last_digits() const {
+    if constexpr (detail::principal<Loads...>) {
+      return std::nullopt;
+    } else {
+      if (!tensor_.is_nearly_singular()) return std::nullopt;
+      HeldBody other = *this;
+      other.tensor_ = tensor_.off_by_last_digits();
+      return other;
+    }
   }
 
   /// For integrators: components that share unit and size.

@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <type_traits>
 
@@ -145,6 +147,20 @@ class GeneralTensor {
     const N b = y / d_y_ - l_yz_ * c;
     const N a = M.x / d_x_ - l_xy_ * b - l_xz_ * c;
     return {a, b, c};
+  }
+
+  /// Whether rounding of the tensor makes 1e4 times as much of the rates about some axis.
+  [[nodiscard]] bool is_nearly_singular() const {
+    const auto [least, greatest] = std::minmax({d_x_, d_y_, d_z_});
+    return least < 1e-4 * greatest;
+  }
+
+  /// The tensor with its entries moved by two last digits: one for them, one for their factors.
+  [[nodiscard]] GeneralTensor off_by_last_digits() const {
+    const Symmetric3<double>& T = tensor_;
+    constexpr double up = 1 + 2 * std::numeric_limits<double>::epsilon();
+    constexpr double down = 1 - 2 * std::numeric_limits<double>::epsilon();
+    return GeneralTensor({up * T.xx, down * T.yy, up * T.zz, down * T.xy, up * T.xz, down * T.yz});
   }
 
  private:
