@@ -33,22 +33,22 @@ constexpr double reference_angle = 0.3;
 
 /// From references of 25 digits, whose beta counts from 0.
 void bearing(const Recorder& out, const std::string& name, const std::string& variant,
-             double stiffness, double damping, Methods methods, double& evaluations) {
+             double stiffness, double damping, double budget, Methods methods,
+             double& evaluations) {
   const work_precision::Reference all = work_precision::reference(name);
   const Gyro gyro(heavy_rings, {{0.5, 1e-3}, {stiffness, damping, reference_angle}}, {});
-  const Trial<Gyro> trial{
-      variant,
-      gyro,
-      {.alpha_rate = 0.5, .phi_rate = 500},
-      {.times = all.times, .tolerance = 1e-9, .most_evaluations = out.quick() ? 3e6 : 1e8},
-      [&](double t) {
-        for (std::size_t i = 0; i < all.times.size(); ++i) {
-          if (all.times[i] != t) continue;
-          const auto& s = all.states[i];
-          return State{s[0], s[1] - reference_angle, s[2], s[3], s[4], s[5]};
-        }
-        throw std::logic_error("no reference at this time");
-      }};
+  const Trial<Gyro> trial{variant,
+                          gyro,
+                          {.alpha_rate = 0.5, .phi_rate = 500},
+                          {.times = all.times, .tolerance = 1e-9, .most_evaluations = budget},
+                          [&](double t) {
+                            for (std::size_t i = 0; i < all.times.size(); ++i) {
+                              if (all.times[i] != t) continue;
+                              const auto& s = all.states[i];
+                              return State{s[0], s[1] - reference_angle, s[2], s[3], s[4], s[5]};
+                            }
+                            throw std::logic_error("no reference at this time");
+                          }};
   for (const Method method : methods) {
     const Row row = attempt(out, trial, method);
     if (method == Method::automatic) evaluations = row.evaluations;
@@ -59,19 +59,23 @@ void damped_bearings(const Recorder& out) {
   double first = 0;
   double now = 0;
   const Methods methods = {Method::automatic, Method::radau13, Method::verner98};
-  bearing(out, "S4a_cardan_k1e3_d2", "1e3 N m/rad", 1e3, 2, methods, first);
-  bearing(out, "S4b_cardan_k1e6_d2e3", "1e6 N m/rad", 1e6, 2e3, methods, now);
+  const double budget = out.quick() ? 3e6 : 1e8;
+  bearing(out, "S4a_cardan_k1e3_d2", "1e3 N m/rad", 1e3, 2, budget, methods, first);
+  bearing(out, "S4b_cardan_k1e6_d2e3", "1e6 N m/rad", 1e6, 2e3, budget, methods, now);
   expect_below(out, "cost at 1e6 over that at 1e3 N m/rad", "automatic", now / first, 1.5);
-  bearing(out, "S4c_cardan_k1e9_d2e6", "1e9 N m/rad", 1e9, 2e6, methods, now);
+  bearing(out, "S4c_cardan_k1e9_d2e6", "1e9 N m/rad", 1e9, 2e6, budget, methods, now);
   expect_below(out, "cost at 1e9 over that at 1e3 N m/rad", "automatic", now / first, 1.5);
-  bearing(out, "S4e_cardan_k1e12_d2e9", "1e12 N m/rad", 1e12, 2e9, methods, now);
+  bearing(out, "S4e_cardan_k1e12_d2e9", "1e12 N m/rad", 1e12, 2e9, budget, methods, now);
   expect_below(out, "cost at 1e12 over that at 1e3 N m/rad", "automatic", now / first, 1.5);
 }
 
 void undamped_bearings(const Recorder& out) {
   double evaluations = 0;
   const Methods methods = {Method::automatic, Method::radau13, Method::gauss16};
-  bearing(out, "S4d_cardan_k1e6_d0", "1e6 N m/rad, 1e4 oscillations", 1e6, 0, methods, evaluations);
+  // Other codes of order 8 spend 3e6 to be right to 4e-9 there (GSL's rk8pd, odeint's rkf78).
+  const double budget = out.quick() ? 3e7 : 1e8;
+  bearing(out, "S4d_cardan_k1e6_d0", "1e6 N m/rad, 1e4 oscillations", 1e6, 0, budget, methods,
+          evaluations);
 }
 
 /// 1e11 oscillations: no method resolves them, and none may pretend.
@@ -290,7 +294,7 @@ void drift_of_gyro(const Recorder& out) {
 void gyros(std::vector<Case>& cases) {
   cases.push_back(
       {"damped-bearings", "bearings of 1e3 to 1e12 N m/rad, overdamped", &damped_bearings});
-  cases.push_back({"undamped-bearing", "a stiff spring is an oscillation", &undamped_bearings});
+  cases.push_back({"undamped-bearing", "a stiff spring is an oscillation", &undamped_bearings, 60});
   cases.push_back({"hopeless-bearing", "1e11 oscillations", &hopeless_bearing});
   cases.push_back({"endless-bearing", "1e11 oscillations in equal steps", &endless_bearing, 5});
   cases.push_back({"gimbal-lock", "through 90 degrees", &through_gimbal_lock});
