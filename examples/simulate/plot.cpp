@@ -12,6 +12,9 @@
 #include "../shared/gnuplot.hpp"
 #include "columns.hpp"
 #include "output.hpp"
+#include "samples.hpp"
+#include "shape.hpp"
+#include "view.hpp"
 
 using gnuplot::quoted;
 using kreisel::JointKind;
@@ -36,40 +39,6 @@ struct Panel {
   std::string title;
   std::string unit;
   std::vector<Curve> curves;
-};
-
-/// The output times and states that a picture shows.
-class Samples {
- public:
-  explicit Samples(const Result& result) : result_(result) {
-    const std::size_t n = result.run.times.size();
-    const std::size_t stride = std::max<std::size_t>(1, n / most_points);
-    for (std::size_t i = 0; i < n; i += stride) chosen_.push_back(i);
-    if (chosen_.back() != n - 1) chosen_.push_back(n - 1);
-  }
-
-  /// What `value` gives of each time and state.
-  template <class Value>
-  [[nodiscard]] Series of(const Value& value) const {
-    Series series;
-    for (const std::size_t i : chosen_) {
-      series.push_back(value(result_.run.times[i], result_.run.states[i]));
-    }
-    return series;
-  }
-
-  template <class Value>
-  [[nodiscard]] auto all(const Value& value) const {
-    std::vector<decltype(value(0.0, JointState{}))> list;
-    for (const std::size_t i : chosen_) {
-      list.push_back(value(result_.run.times[i], result_.run.states[i]));
-    }
-    return list;
-  }
-
- private:
-  const Result& result_;
-  std::vector<std::size_t> chosen_;
 };
 
 /// Curves of the columns of a row that begin at `first`.
@@ -219,20 +188,6 @@ std::string over_time(const std::string& title, const Series& times,
   return s.str();
 }
 
-/// The direction in the last body whose path is drawn, on body axes.
-Eigen::Vector3d axis(const kreisel::BodyDescription& body) {
-  const auto& joint = body.joint;
-  const auto on_body = [&joint](const Eigen::Vector3d& a) {
-    return Eigen::Vector3d(joint.orientation.normalized().conjugate() * a.normalized());
-  };
-  switch (joint.kind) {
-    case JointKind::revolute:
-    case JointKind::prismatic: return on_body(joint.axis);
-    case JointKind::universal: return on_body(joint.second_axis);
-    default: return Eigen::Vector3d::UnitZ();
-  }
-}
-
 /// Directions on the unit sphere, the guide's axes; empty where nothing turns.
 std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, std::string& what) {
   const int last = static_cast<int>(result.scene.bodies.size()) - 1;
@@ -250,7 +205,7 @@ std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, 
   const bool has_one_axis =
       body.joint.kind == JointKind::revolute || body.joint.kind == JointKind::prismatic;
   what = "axis of " + body.name;
-  auto way = directions(axis(body));
+  auto way = directions(last_axis(body));
   if (centre.norm() == 0 || (has_one_axis && moves(way))) {
     return moves(way) ? way : std::vector<Eigen::Vector3d>();
   }
@@ -383,8 +338,9 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw kreisel::InvalidInput("--plot " + folder.string() + ": " + error.message());
-  const Samples samples(result);
-  const Series times = samples.of([](double t, const JointState&) { return t; });
+  write_view(result, folder / "view.html");
+  const Samples samples(result, most_points);
+  const Series times = samples.all([](double t, const JointState&) { return t; });
   const auto rows = samples.all([&result](double t, const JointState& state) {
     return row(result.model, t, state, result.reactions);
   });

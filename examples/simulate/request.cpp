@@ -78,7 +78,8 @@ std::optional<Request> read_request(int argc, char** argv) {
                "go on from the last row of the --csv file. The rest is computed with other steps, "
                "so that it agrees with an uninterrupted run to the tolerance, not to the bit")
       ->group("Output");
-  app.add_option("--plot", plot, "pictures of the run, SVG and PNG, by gnuplot")
+  app.add_option("--plot", plot,
+                 "pictures of the run, SVG and PNG, by gnuplot; view.html shows it in motion")
       ->type_name("FOLDER")
       ->group("Output");
   try {

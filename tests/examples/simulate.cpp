@@ -427,4 +427,67 @@ BOOST_AUTO_TEST_CASE(draws) {
   }
 }
 
+// A page that asks for nothing else, with the rows of the CSV file in it, to nine digits.
+BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
+  const Scratch folder;
+  const std::string title = "a </script> <!-- title";
+  const auto file = folder.write("scene.toml", "title = \"" + title + "\"\n" + two_rods);
+  const Outcome outcome =
+      run(file.string() + " --terms --json --csv " + (folder.path() / "out.csv").string() +
+          " --plot " + (folder.path() / "out").string());
+  BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+  const std::string page = folder.read("out/view.html");
+  for (const char* const foreign : {"http:", "https:", "src=", "href=", "import", "url("}) {
+    BOOST_TEST(page.find(foreign) == std::string::npos, foreign);
+  }
+  const std::string opening = R"(<script type="application/json" id="run">)";
+  const std::size_t begin = page.find(opening);
+  BOOST_TEST_REQUIRE(begin != std::string::npos);
+  const std::size_t length = page.find("</script>", begin) - begin - opening.size();
+  const json shown = json::parse(page.substr(begin + opening.size(), length));
+  BOOST_TEST(shown.at("title") == title);
+  BOOST_TEST(shown.at("up") == json({0, 0, 1}));
+  BOOST_TEST(shown.at("bodies").at(1).at("parent") == 0);
+
+  const auto rows = lines(folder.read("out.csv"));
+  std::string columns = "t";
+  for (std::size_t k = 1; k < shown.at("columns").size(); ++k) {
+    columns += "," + shown.at("columns").at(k).get<std::string>();
+  }
+  BOOST_TEST(rows.at(0) == columns);
+  BOOST_TEST_REQUIRE(shown.at("rows").size() == rows.size() - 1);
+  for (const std::size_t i : {0, 57, 200}) {
+    std::istringstream row(rows.at(i + 1));
+    for (const json& x : shown.at("rows").at(i)) {
+      std::string field;
+      std::getline(row, field, ',');
+      const double wanted = std::stod(field);
+      check_near("row " + std::to_string(i), x, wanted, 5e-9 * std::abs(wanted));
+    }
+  }
+  // Relative, guide and Coriolis part of both rods, four digits of them; the guide rests.
+  BOOST_TEST_REQUIRE(shown.at("terms").size() == rows.size() - 1);
+  const json& parts = shown.at("terms").back();
+  const json wanted = json::parse(outcome.out).at("final").at("terms").at("lower");
+  BOOST_TEST_REQUIRE(parts.size() == 36U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double force = wanted.at("relative").at("force").at(k);
+    check_near("relative force", parts.at(18 + k), force, 5e-4 * std::abs(force));
+    BOOST_TEST(parts.at(24 + k) == 0);
+  }
+}
+
+// However many rows the run has.
+BOOST_AUTO_TEST_CASE(keeps_the_page_small) {
+  const Scratch folder;
+  std::string fine = two_rods;
+  fine.replace(fine.find("output_step = 0.01"), 18, "output_step = 1e-4");
+  const auto file = folder.write("scene.toml", fine);
+  const Outcome outcome = run(file.string() + " --plot " + (folder.path() / "out").string());
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  const std::size_t size = folder.read("out/view.html").size();
+  BOOST_TEST(size > 50000U);
+  BOOST_TEST(size < 250000U);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

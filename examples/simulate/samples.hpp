@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "output.hpp"
+
+/// Output times and states of a run, no more of them than a picture shows.
+class Samples {
+ public:
+  Samples(const Result& result, std::size_t most) : result_(result) {
+    const std::size_t n = result.run.times.size();
+    const std::size_t stride = std::max<std::size_t>(1, (n + most - 1) / most);
+    for (std::size_t i = 0; i < n; i += stride) chosen_.push_back(i);
+    if (chosen_.back() != n - 1) chosen_.push_back(n - 1);
+  }
+
+  /// What `value` gives of each time and state.
+  template <class Value>
+  [[nodiscard]] auto all(const Value& value) const {
+    std::vector<decltype(value(0.0, JointState{}))> list;
+    for (const std::size_t i : chosen_) {
+      list.push_back(value(result_.run.times[i], result_.run.states[i]));
+    }
+    return list;
+  }
+
+ private:
+  const Result& result_;
+  std::vector<std::size_t> chosen_;
+};

@@ -1,0 +1,147 @@
+#include "shape.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using kreisel::BodyDescription;
+using kreisel::BodyTree;
+using kreisel::JointKind;
+
+namespace {
+
+/// A joint this near to a body's centre, as a share of what turns there, is at its centre.
+constexpr double near = 0.05;
+
+std::size_t slot(int i) { return static_cast<std::size_t>(i); }
+
+bool turns(const BodyDescription& body) {
+  return body.joint.kind == JointKind::revolute || body.joint.kind == JointKind::universal;
+}
+
+Vector3d centre(const BodyDescription& body) {
+  const auto& T = body.inertia.value;
+  return T.mass > 0 ? Vector3d(T.first_moment / T.mass) : Vector3d(Vector3d::Zero());
+}
+
+/// Whether a body is drawn as a wheel on the axis of its joint.
+bool is_wheel(const BodyDescription& body, bool has_children) {
+  if (body.rotor) return true;
+  if (body.joint.kind != JointKind::revolute || has_children) return false;
+  const Vector3d axis = last_axis(body);
+  const Matrix3d Theta = body.inertia.value.tensor.matrix();
+  return centre(body).cross(axis).norm() <= 1e-6 * std::sqrt(Theta.trace()) &&
+         (Theta * axis).cross(axis).norm() <= 1e-6 * Theta.trace();
+}
+
+/// The solid with the body's mean squares of the coordinates of its mass: half the trace of the
+/// tensor less the moment about the axis, by the mass. A box has 3 of it as half its side squared,
+/// an ellipsoid 5; a cylinder 4 across, 3 along.
+Shape solid(const BodyDescription& body, bool wheel) {
+  const auto& T = body.inertia.value;
+  Shape shape{"ellipsoid", Matrix3d::Identity(), centre(body), Vector3d::Zero()};
+  if (!(T.mass > 0)) return shape;
+  const Matrix3d Theta =
+      T.tensor.matrix() - T.mass / 2 * kreisel::offset_product(shape.centre, shape.centre).matrix();
+  // The largest moment is the last, so that a wheel gets its axis as third.
+  const Vector3d axis = wheel ? last_axis(body) : Vector3d(Vector3d::Zero());
+  const Matrix3d marked = Theta + 2 * Theta.trace() * axis * axis.transpose();
+  shape.axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(marked).eigenvectors();
+  const Vector3d moments = (shape.axes.transpose() * Theta * shape.axes).diagonal();
+  Vector3d squares = (Vector3d::Constant(moments.sum() / 2) - moments).cwiseMax(0) / T.mass;
+  const auto same = [&squares](int i, int k) {
+    return std::abs(squares[i] - squares[k]) <= 1e-3 * squares.sum();
+  };
+  if (wheel || (same(0, 1) && !same(1, 2))) {
+    shape.form = "cylinder";
+  } else if (same(1, 2) && !same(0, 1)) {
+    shape.form = "cylinder";
+    const Matrix3d axes = shape.axes;
+    shape.axes << axes.col(1), axes.col(2), axes.col(0);
+    squares = Vector3d(squares[1], squares[2], squares[0]);
+  } else if (!same(0, 1)) {
+    shape.form = "box";
+  }
+  if (shape.form == "cylinder") {
+    shape.half = Vector3d(4, 4, 3).cwiseProduct(squares).cwiseSqrt();
+  } else {
+    shape.half = ((shape.form == "box" ? 3 : 5) * squares).cwiseSqrt();
+  }
+  return shape;
+}
+
+/// How far from the body's origin it reaches.
+double reach(const Shape& shape) {
+  const Vector3d& half = shape.half;
+  if (shape.form == "cylinder") {
+    return shape.centre.norm() + std::hypot(std::max(half.x(), half.y()), half.z());
+  }
+  return shape.centre.norm() + (shape.form == "box" ? half.norm() : half.maxCoeff());
+}
+
+/// In the plane of its own axis and of that which it holds, where the bearings of both are.
+Shape ring(const BodyDescription& body, const Vector3d& held_axis, double inside) {
+  const Vector3d axis = last_axis(body);
+  Vector3d normal = axis.cross(held_axis);
+  normal = normal.norm() > near ? normal.normalized() : axis.unitOrthogonal();
+  Matrix3d axes;
+  axes << axis, normal.cross(axis), normal;
+  const double outside = 1.2 * inside;
+  return {"ring", axes, Vector3d::Zero(), {outside, outside, 0.06 * inside}};
+}
+
+bool holds_a_joint(const Shape& shape, const std::vector<Vector3d>& joints) {
+  return std::any_of(joints.begin(), joints.end(), [&shape](const Vector3d& joint) {
+    const Vector3d there = shape.axes.transpose() * (joint - shape.centre);
+    return (there.array().abs() < 0.99 * shape.half.array()).all();
+  });
+}
+
+}  // namespace
+
+Vector3d last_axis(const BodyDescription& body) {
+  const auto& joint = body.joint;
+  const Vector3d& axis = joint.kind == JointKind::universal ? joint.second_axis : joint.axis;
+  if (axis.isZero()) return Vector3d::UnitZ();
+  return joint.orientation.normalized().conjugate() * axis.normalized();
+}
+
+std::vector<Shape> shapes(const BodyTree& tree) {
+  const int n = static_cast<int>(tree.bodies().size());
+  std::vector<Shape> all(slot(n));
+  std::vector<std::vector<int>> children(slot(n));
+  for (int i = n - 1; i >= 0; --i) {  // children come after their parents
+    const BodyDescription& body = tree.body(i);
+    if (body.parent != "guide") children[slot(tree.index(body.parent))].push_back(i);
+    double inside = 0;
+    Vector3d held_axis = Vector3d::Zero();
+    std::vector<Vector3d> joints;
+    for (const int child : children[slot(i)]) {
+      const auto& joint = tree.body(child).joint;
+      joints.push_back(joint.position);
+      const double needed = reach(all[slot(child)]);
+      if (!turns(tree.body(child)) || joint.position.norm() > near * needed) continue;
+      if (needed < inside) continue;
+      inside = needed;
+      held_axis = joint.axis.normalized();
+    }
+    Shape& shape = all[slot(i)];
+    const bool is_ring = turns(body) && inside > 0 && centre(body).norm() <= near * inside;
+    const bool wheel = is_wheel(body, !joints.empty());
+    shape = is_ring ? ring(body, held_axis, inside) : solid(body, wheel);
+    shape.holds_a_joint = !is_ring && holds_a_joint(shape, joints);
+    shape.mark = shape.centre.norm() > near * shape.half.maxCoeff()
+                     ? shape.centre
+                     : Vector3d(shape.axes.col(2) * shape.half.z());
+    if (is_ring || wheel) {
+      const double length = 1.2 * (is_ring ? shape.half.x() : reach(shape));
+      shape.axle = length * last_axis(body);
+      shape.axle_begin = is_ring ? shape.half.x() / length : 0;
+      if (wheel) shape.mark = shape.axle;
+    }
+  }
+  return all;
+}

@@ -1,0 +1,145 @@
+#include "view.hpp"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <dynamics/file/atomic_file.hpp>
+
+#include "columns.hpp"
+#include "samples.hpp"
+#include "shape.hpp"
+
+using kreisel::JointKind;
+using nlohmann::ordered_json;
+
+namespace {
+
+/// 20 s at 100 frames a second; the page finds what lies between by coordinates and rates.
+constexpr std::size_t most_frames = 2000;
+
+/// What one cannot see is left out of the file.
+double rounded(double x, int digits) {
+  return std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr);
+}
+
+template <class Numbers>
+ordered_json rounded(const Numbers& all, int digits) {
+  ordered_json list = ordered_json::array();
+  for (const double x : all) list.push_back(rounded(x, digits));
+  return list;
+}
+
+constexpr int row_digits = 9;    ///< of what is moved by it
+constexpr int arrow_digits = 4;  ///< of what is only drawn
+
+ordered_json numbers(const Eigen::Vector3d& v) { return rounded(v, row_digits); }
+
+/// Row by row.
+ordered_json numbers(const Eigen::Matrix3d& m) {
+  return rounded(m.transpose().reshaped(), row_digits);
+}
+
+const char* word(JointKind kind) {
+  switch (kind) {
+    case JointKind::fixed: return "fixed";
+    case JointKind::revolute: return "revolute";
+    case JointKind::prismatic: return "prismatic";
+    case JointKind::universal: return "universal";
+    case JointKind::spherical: return "spherical";
+    case JointKind::free: return "free";
+  }
+  return "";
+}
+
+/// Against gravity, where the scene has a direction of it.
+Eigen::Vector3d up(const kreisel::SceneFile& scene) {
+  Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  if (std::holds_alternative<kreisel::scene_guide::Earth>(scene.guide.front())) {
+    down = Eigen::Vector3d::UnitX();
+  }
+  std::visit(
+      [&down](const auto& field) {
+        if constexpr (requires { field.g; }) down = field.g;
+      },
+      scene.gravity);
+  return down.norm() > 0 ? Eigen::Vector3d(-down.normalized()) : Eigen::Vector3d::UnitZ();
+}
+
+ordered_json drawn_as(const Shape& shape) {
+  return {{"form", shape.form},
+          {"axes", numbers(shape.axes)},
+          {"centre", numbers(shape.centre)},
+          {"half", numbers(shape.half)},
+          {"see_through", shape.holds_a_joint},
+          {"axle", numbers(shape.axle)},
+          {"axle_begin", rounded(shape.axle_begin, row_digits)},
+          {"mark", numbers(shape.mark)}};
+}
+
+ordered_json bodies(const kreisel::BodyTree& tree) {
+  const std::vector<Shape> drawn = shapes(tree);
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const kreisel::BodyDescription& body = tree.bodies()[i];
+    const kreisel::Joint& joint = body.joint;
+    list.push_back({{"name", body.name},
+                    {"parent", body.parent == "guide" ? -1 : tree.index(body.parent)},
+                    {"kind", word(joint.kind)},
+                    {"axis", numbers(joint.axis.normalized())},
+                    {"second_axis", numbers(joint.second_axis.normalized())},
+                    {"position", numbers(joint.position)},
+                    {"orientation", numbers(joint.orientation.normalized().toRotationMatrix())},
+                    {"shape", drawn_as(drawn[i])}});
+  }
+  return list;
+}
+
+/// Relative, guide and Coriolis part of each body, force and torque.
+std::vector<double> terms_row(const Result& result, double t, const JointState& state) {
+  std::vector<double> values;
+  for (int i = 0; i < static_cast<int>(result.scene.bodies.size()); ++i) {
+    const auto parts = result.model.terms(t, state, i);
+    for (const auto& part : {parts.relative.value, parts.guide.value, parts.coriolis.value}) {
+      values.insert(values.end(), part.resultant.begin(), part.resultant.end());
+      values.insert(values.end(), part.moment.begin(), part.moment.end());
+    }
+  }
+  return values;
+}
+
+/// JSON that may stand in a script element, which "</script" or "<!--" in a name would end.
+std::string text(const ordered_json& values) {
+  std::string result;
+  for (const char c : values.dump())
+    result += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return result;
+}
+
+}  // namespace
+
+void write_view(const Result& result, const std::filesystem::path& place) {
+  const Samples samples(result, most_frames);
+  ordered_json run{{"title", result.scene.title},
+                   {"up", numbers(up(result.scene))},
+                   {"bodies", bodies(result.model.tree())},
+                   {"columns", columns(result.model.tree(), false)},
+                   {"rows", samples.all([&result](double t, const JointState& state) {
+                      return rounded(row(result.model, t, state, false), row_digits);
+                    })}};
+  if (result.terms) {
+    run["terms"] = samples.all([&result](double t, const JointState& state) {
+      return rounded(terms_row(result, t, state), arrow_digits);
+    });
+  }
+  constexpr std::string_view mark = "RUN_AS_JSON";
+  const std::size_t at = view_page.find(mark);
+  kreisel::AtomicFile page(place);
+  page.stream() << view_page.substr(0, at) << text(run) << view_page.substr(at + mark.size());
+  page.commit();
+}
