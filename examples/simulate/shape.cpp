@@ -14,7 +14,7 @@ using kreisel::JointKind;
 namespace {
 
 /// A joint this near to a body's centre, as a share of what turns there, is at its centre.
-constexpr double near = 0.05;
+constexpr double at_centre = 0.05;
 
 std::size_t slot(int i) { return static_cast<std::size_t>(i); }
 
@@ -32,9 +32,9 @@ bool is_wheel(const BodyDescription& body, bool has_children) {
   if (body.rotor) return true;
   if (body.joint.kind != JointKind::revolute || has_children) return false;
   const Vector3d axis = last_axis(body);
-  const Matrix3d Theta = body.inertia.value.tensor.matrix();
-  return centre(body).cross(axis).norm() <= 1e-6 * std::sqrt(Theta.trace()) &&
-         (Theta * axis).cross(axis).norm() <= 1e-6 * Theta.trace();
+  const Matrix3d tensor = body.inertia.value.tensor.matrix();
+  return centre(body).cross(axis).norm() <= 1e-6 * std::sqrt(tensor.trace()) &&
+         (tensor * axis).cross(axis).norm() <= 1e-6 * tensor.trace();
 }
 
 /// The solid with the body's mean squares of the coordinates of its mass: half the trace of the
@@ -44,13 +44,13 @@ Shape solid(const BodyDescription& body, bool wheel) {
   const auto& T = body.inertia.value;
   Shape shape{"ellipsoid", Matrix3d::Identity(), centre(body), Vector3d::Zero()};
   if (!(T.mass > 0)) return shape;
-  const Matrix3d Theta =
+  const Matrix3d tensor =
       T.tensor.matrix() - T.mass / 2 * kreisel::offset_product(shape.centre, shape.centre).matrix();
   // The largest moment is the last, so that a wheel gets its axis as third.
   const Vector3d axis = wheel ? last_axis(body) : Vector3d(Vector3d::Zero());
-  const Matrix3d marked = Theta + 2 * Theta.trace() * axis * axis.transpose();
+  const Matrix3d marked = tensor + 2 * tensor.trace() * axis * axis.transpose();
   shape.axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(marked).eigenvectors();
-  const Vector3d moments = (shape.axes.transpose() * Theta * shape.axes).diagonal();
+  const Vector3d moments = (shape.axes.transpose() * tensor * shape.axes).diagonal();
   Vector3d squares = (Vector3d::Constant(moments.sum() / 2) - moments).cwiseMax(0) / T.mass;
   const auto same = [&squares](int i, int k) {
     return std::abs(squares[i] - squares[k]) <= 1e-3 * squares.sum();
@@ -86,7 +86,7 @@ double reach(const Shape& shape) {
 Shape ring(const BodyDescription& body, const Vector3d& held_axis, double inside) {
   const Vector3d axis = last_axis(body);
   Vector3d normal = axis.cross(held_axis);
-  normal = normal.norm() > near ? normal.normalized() : axis.unitOrthogonal();
+  normal = normal.norm() > 1e-6 ? normal.normalized() : axis.unitOrthogonal();
   Matrix3d axes;
   axes << axis, normal.cross(axis), normal;
   const double outside = 1.2 * inside;
@@ -123,17 +123,17 @@ std::vector<Shape> shapes(const BodyTree& tree) {
       const auto& joint = tree.body(child).joint;
       joints.push_back(joint.position);
       const double needed = reach(all[slot(child)]);
-      if (!turns(tree.body(child)) || joint.position.norm() > near * needed) continue;
+      if (!turns(tree.body(child)) || joint.position.norm() > at_centre * needed) continue;
       if (needed < inside) continue;
       inside = needed;
       held_axis = joint.axis.normalized();
     }
     Shape& shape = all[slot(i)];
-    const bool is_ring = turns(body) && inside > 0 && centre(body).norm() <= near * inside;
+    const bool is_ring = turns(body) && inside > 0 && centre(body).norm() <= at_centre * inside;
     const bool wheel = is_wheel(body, !joints.empty());
     shape = is_ring ? ring(body, held_axis, inside) : solid(body, wheel);
     shape.holds_a_joint = !is_ring && holds_a_joint(shape, joints);
-    shape.mark = shape.centre.norm() > near * shape.half.maxCoeff()
+    shape.mark = shape.centre.norm() > at_centre * shape.half.maxCoeff()
                      ? shape.centre
                      : Vector3d(shape.axes.col(2) * shape.half.z());
     if (is_ring || wheel) {
