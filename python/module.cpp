@@ -1,0 +1,239 @@
+// kreisel for Python: scenes of simulate, their motion as numpy arrays.
+
+#include <chrono>
+#include <cmath>
+#include <examples/simulate/columns.hpp>
+#include <examples/simulate/model.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <motor/error.hpp>
+
+namespace py = pybind11;
+using namespace py::literals;
+
+namespace {
+
+/// A scene as text, so that every run may set its own end, tolerance and method against it.
+struct Scene {
+  std::string text;
+  std::filesystem::path path;
+};
+
+struct Run {
+  std::string title;
+  std::vector<std::string> columns;
+  py::array_t<double> rows;
+  py::dict coordinates;
+  py::dict rates;
+  py::dict reactions;
+  kreisel::RunReport report;
+};
+
+Scene scene_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw kreisel::InvalidInput(path.string() + ": cannot be read");
+  }
+  Scene scene{{std::istreambuf_iterator<char>(file), {}}, path};
+  static_cast<void>(kreisel::parse_scene(scene.text, scene.path));
+  return scene;
+}
+
+Scene scene_of_text(std::string text, std::filesystem::path path) {
+  static_cast<void>(kreisel::parse_scene(text, path));
+  return {std::move(text), std::move(path)};
+}
+
+/// Asks Python ten times a second whether a signal has come: taking its lock costs more than an
+/// evaluation.
+class SignalWatch {
+  using Clock = std::chrono::steady_clock;
+
+ public:
+  /// Without Python's lock.
+  [[nodiscard]] bool stop() {
+    if (stop_ || Clock::now() < next_) return stop_;
+    next_ = Clock::now() + std::chrono::milliseconds(100);
+    const py::gil_scoped_acquire lock;
+    stop_ = PyErr_CheckSignals() != 0;
+    return stop_;
+  }
+
+  /// With it.
+  void rethrow() const {
+    if (stop_) throw py::error_already_set();
+  }
+
+ private:
+  bool stop_ = false;
+  Clock::time_point next_ = Clock::now();
+};
+
+kreisel::SceneFile requested(const Scene& scene, std::optional<double> t_end,
+                             const std::optional<double>& tolerance,
+                             const std::optional<std::string>& method,
+                             const std::optional<std::vector<double>>& times) {
+  if (times && t_end) throw kreisel::InvalidInput("t_end: times have an end of their own");
+  if (times && times->empty()) throw kreisel::InvalidInput("times: there are none");
+  if (times) t_end = times->back();
+  if (t_end && !(*t_end > 0 && std::isfinite(*t_end))) {
+    throw kreisel::InvalidInput("t_end must be a number above 0");
+  }
+  kreisel::SolveRequest request{t_end, tolerance, {}};
+  if (method) {
+    request.method = kreisel::method_named(*method);
+    if (!request.method) throw kreisel::InvalidInput("method '" + *method + "' is unknown");
+  }
+  kreisel::SceneFile file = kreisel::parse_scene(scene.text, scene.path, request);
+  if (times) file.output_times = *times;
+  if (file.output_times.empty() || file.output_times.back() < file.t_end) {
+    file.output_times.push_back(file.t_end);
+  }
+  return file;
+}
+
+/// Columns [begin, begin + count) of the rows, or the one column as a vector.
+py::object part(const py::array_t<double>& rows, std::size_t begin, int count) {
+  const py::slice all{std::nullopt, std::nullopt, std::nullopt};
+  if (count == 1) return rows[py::make_tuple(all, begin)];
+  const auto first = static_cast<py::ssize_t>(begin);
+  return rows[py::make_tuple(all, py::slice(first, first + count, 1))];
+}
+
+Run solve(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
+          const std::optional<std::string>& method, const std::optional<std::vector<double>>& times,
+          bool reactions) {
+  const kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
+  const std::unique_ptr<Model> model = make_model(file);
+  kreisel::Task task;
+  task.times = file.output_times;
+  task.tolerance = file.tolerance;
+  task.method = file.method;
+  SignalWatch watch;
+  kreisel::Trajectory<JointState> run;
+  std::vector<std::vector<double>> numbers;
+  {
+    const py::gil_scoped_release released;
+    run = model->solve(
+        task, start_of(file),
+        [&watch](double /*t*/, const JointState& /*state*/) { return !watch.stop(); },
+        [&watch] { return watch.stop(); });
+    for (std::size_t i = 0; i < run.states.size() && !watch.stop(); ++i) {
+      numbers.push_back(row(*model, run.times[i], run.states[i], reactions));
+    }
+  }
+  watch.rethrow();
+  if (run.report.status == kreisel::RunStatus::failed) {
+    throw kreisel::ComputationFailed(run.report.message);
+  }
+
+  Run result;
+  result.title = file.title;
+  result.report = run.report;
+  result.columns = columns(model->tree(), reactions);
+  const std::size_t width = result.columns.size();
+  result.rows = py::array_t<double>({numbers.size(), width});
+  auto cells = result.rows.mutable_unchecked<2>();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    for (std::size_t k = 0; k < width; ++k) {
+      cells(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(k)) = numbers[i][k];
+    }
+  }
+  std::size_t at = 1;
+  for (std::size_t i = 0; i < file.bodies.size(); ++i) {
+    const auto [q, q_count, v, v_count] = model->tree().place(static_cast<int>(i));
+    const py::str name(file.bodies[i].name);
+    result.coordinates[name] = part(result.rows, at, q_count);
+    at += static_cast<std::size_t>(q_count);
+    result.rates[name] = part(result.rows, at, v_count);
+    at += static_cast<std::size_t>(v_count);
+  }
+  if (!reactions) return result;
+  for (const kreisel::BodyDescription& body : file.bodies) {
+    result.reactions[py::str(body.name)] =
+        py::dict("force"_a = part(result.rows, at, 3), "torque"_a = part(result.rows, at + 3, 3),
+                 "drive_torque"_a = part(result.rows, at + 6, 1));
+    at += 7;
+  }
+  return result;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(kreisel, m) {
+  m.doc() =
+      "Rigid bodies, pendulums and gyros seen from moving frames.\n\n"
+      "SI units and radians. Quaternions are (w, x, y, z).";
+
+  // The latest is asked first, so that what is derived comes after its base.
+  const auto error = py::register_exception<kreisel::Error>(m, "Error");
+  const auto invalid = py::register_exception<kreisel::InvalidInput>(m, "InvalidInput", error);
+  py::register_exception<kreisel::SceneMistakes>(m, "SceneMistakes", invalid);
+  py::register_exception<kreisel::ComputationFailed>(m, "ComputationFailed", error);
+  m.attr("Error").attr("__doc__") = "Whatever this module raises of its own.";
+  m.attr("InvalidInput").attr("__doc__") = "The data are at fault; the message says which and why.";
+  m.attr("SceneMistakes").attr("__doc__") = "A line for each: file:line:column: key: reason.";
+  m.attr("ComputationFailed").attr("__doc__") = "The data are legal, the answer cannot be had.";
+
+  py::class_<kreisel::InvariantDrift>(m, "Invariant", "A number that should not change in a run.")
+      .def_readonly("name", &kreisel::InvariantDrift::name)
+      .def_readonly("start", &kreisel::InvariantDrift::start, "in SI units")
+      .def_readonly("largest_drift", &kreisel::InvariantDrift::largest,
+                    "greatest distance from the start, same unit");
+
+  using Report = kreisel::RunReport;
+  py::class_<Report>(m, "Report", "How far a run is off and what it cost.")
+      .def_readonly("method", &Report::method)
+      .def_readonly("tolerance", &Report::tolerance, "asked for")
+      .def_readonly("error_estimate", &Report::error_estimate,
+                    "of the global error: attitudes in rad, others relative to their size")
+      .def_readonly("tolerance_kept", &Report::tolerance_kept)
+      .def_readonly("all_evaluations", &Report::all_evaluations,
+                    "with those for the estimate and for attempts that fell short")
+      .def_readonly("run_time", &Report::run_time, "s")
+      .def_readonly("invariants", &Report::invariants)
+      .def_property_readonly("steps", [](const Report& r) { return r.effort.steps; })
+      .def_property_readonly("rejected", [](const Report& r) { return r.effort.rejected; })
+      .def_property_readonly("evaluations", [](const Report& r) { return r.effort.evaluations; });
+
+  py::class_<Run>(m, "Run", "A motion that was computed. Arrays are by output time.")
+      .def_readonly("title", &Run::title)
+      .def_readonly("columns", &Run::columns, "names of the columns of rows")
+      .def_readonly("rows", &Run::rows, "the numbers of simulate --csv")
+      .def_property_readonly(
+          "times", [](const Run& run) { return part(run.rows, 0, 1); }, "s")
+      .def_readonly("coordinates", &Run::coordinates,
+                    "by body: angle in rad or displacement in m; two angles; attitude against the "
+                    "parent, and of a free body its place in m")
+      .def_readonly("rates", &Run::rates,
+                    "by body: rad/s or m/s; angular velocity on body axes, and of a free body its "
+                    "velocity in m/s on the parent's axes")
+      .def_readonly("reactions", &Run::reactions,
+                    "by body, where asked for: 'force' in N and 'torque' in N m that the parent "
+                    "exerts at the joint, on body axes, and 'drive_torque' in N m")
+      .def_readonly("report", &Run::report);
+
+  py::class_<Scene>(m, "Scene", "A mechanical system on a guide frame, as a scene file has it.")
+      .def(py::init(&scene_of_file), "path"_a, "Reads a scene file, TOML.")
+      .def_static("from_text", &scene_of_text, "text"_a, "path"_a = "scene.toml",
+                  "The same of a text; path names it in messages, tables are looked for beside it.")
+      .def("solve", &solve, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),
+           "method"_a = py::none(), "times"_a = py::none(), "reactions"_a = false,
+           "The motion from t = 0.\n\n"
+           "t_end      s; times in s, increasing, instead of the scene's output times\n"
+           "tolerance  of the global error, see Report.error_estimate\n"
+           "method     auto, closed form, verner98, gauss16, radau13, splitting\n"
+           "reactions  whether to tell what every joint carries\n\n"
+           "What is left out is the scene's. Python's lock is released meanwhile.");
+}

@@ -1,0 +1,121 @@
+"""The module against the program simulate: test_kreisel.py SIMULATE SCENES."""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import kreisel
+
+SIMULATE, SCENES = sys.argv[1], pathlib.Path(sys.argv[2])
+
+ROD = """
+[gravity]
+kind = "uniform"
+vector = [0, 0, -9.81]
+[[body]]
+name = "rod"
+joint = { kind = "revolute", axis = [0, 1, 0] }
+mass = 1
+centre = [0, 0, -1]
+inertia = [0.1, 0.1, 0.1]
+initial = { angle = 0.5 }
+[solve]
+t_end = 2
+output_step = 0.5
+"""
+
+
+def simulate(scene, *arguments):
+    """The summary, the names of the columns and the rows."""
+    with tempfile.TemporaryDirectory() as folder:
+        table = os.path.join(folder, "out.csv")
+        answer = subprocess.run([SIMULATE, scene, "--json", "--csv", table, *arguments],
+                                check=True, capture_output=True, text=True)
+        with open(table, newline="") as file:
+            names, *rows = csv.reader(file)
+    return json.loads(answer.stdout), names, np.array(rows, dtype=float)
+
+
+class AsSimulate(unittest.TestCase):
+    def test_to_the_last_bit(self):
+        for name in ["cardan_gyro_springs", "crane_on_ship", "satellite", "tumbling_body"]:
+            with self.subTest(name):
+                path = SCENES / (name + ".toml")
+                summary, names, rows = simulate(path, "--t-end", "2", "--reactions")
+                run = kreisel.Scene(path).solve(t_end=2, reactions=True)
+                self.assertEqual(run.columns, names)
+                np.testing.assert_array_equal(run.rows, rows)
+                np.testing.assert_array_equal(run.times, rows[:, 0])
+                self.assertEqual(run.title, summary["title"])
+                for key in ["method", "steps", "rejected", "evaluations", "error_estimate",
+                            "tolerance", "tolerance_kept"]:
+                    self.assertEqual(getattr(run.report, key), summary[key], key)
+                for found, wanted in zip(run.report.invariants, summary["invariants"]):
+                    self.assertEqual(found.name, wanted["name"])
+                    self.assertEqual(found.largest_drift, wanted["largest_drift"])
+                joints = summary["final"]["joints"]
+                for body, forces in run.reactions.items():
+                    wanted = summary["final"]["reactions"][body]
+                    self.assertEqual(forces["force"][-1].tolist(), wanted["force"])
+                    self.assertEqual(forces["torque"][-1].tolist(), wanted["torque"])
+                    if "coordinate" in joints[body]:
+                        self.assertEqual(run.coordinates[body][-1].tolist(),
+                                         joints[body]["coordinate"])
+                        self.assertEqual(run.rates[body][-1].tolist(), joints[body]["rate"])
+
+    def test_shapes(self):
+        run = kreisel.Scene(SCENES / "satellite.toml").solve(times=np.array([0, 0.5, 1]))
+        self.assertEqual(run.coordinates["satellite"].shape, (3, 7))
+        self.assertEqual(run.rates["satellite"].shape, (3, 6))
+        self.assertEqual(run.coordinates["wheel"].shape, (3,))
+        self.assertEqual(run.reactions, {})
+
+    def test_what_is_set_against_the_scene(self):
+        scene = kreisel.Scene.from_text(ROD)
+        self.assertEqual(scene.solve().times.tolist(), [0, 0.5, 1, 1.5, 2])
+        run = scene.solve(times=[0.25, 1.25], tolerance=1e-6, method="radau13")
+        self.assertEqual(run.times.tolist(), [0.25, 1.25])
+        self.assertEqual((run.report.tolerance, run.report.method), (1e-6, "radau13"))
+
+
+class Errors(unittest.TestCase):
+    def test_derive_from_one(self):
+        self.assertTrue(issubclass(kreisel.SceneMistakes, kreisel.InvalidInput))
+        self.assertTrue(issubclass(kreisel.InvalidInput, kreisel.Error))
+        self.assertTrue(issubclass(kreisel.ComputationFailed, kreisel.Error))
+
+    def test_say_what_is_wrong(self):
+        with self.assertRaisesRegex(kreisel.SceneMistakes, r"my\.toml:1:1: titel"):
+            kreisel.Scene.from_text("titel = ''\n" + ROD, path="my.toml")
+        with self.assertRaisesRegex(kreisel.InvalidInput, "no.toml: cannot be read"):
+            kreisel.Scene("no.toml")
+        scene = kreisel.Scene.from_text(ROD)
+        for wrong in [{"tolerance": 1}, {"t_end": -1}, {"t_end": float("nan")}, {"times": []},
+                      {"times": [2, 1]}, {"times": [1], "t_end": 1}, {"method": "euler"},
+                      {"times": [1, float("inf")]}, {"times": [-1, 1]}]:
+            with self.subTest(wrong), self.assertRaises(kreisel.InvalidInput):
+                scene.solve(**wrong)
+
+    def test_ctrl_c_ends_a_run(self):
+        """Which it only can where the run has let go of Python's lock: the signal's thread waits
+        for that."""
+        scene = kreisel.Scene.from_text(ROD)
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            scene.solve(t_end=1e5)
+        self.assertLess(time.monotonic() - begin, 30)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
