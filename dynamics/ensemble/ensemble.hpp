@@ -84,12 +84,12 @@ template <class N, class Scene>
 void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
             const Task& task, bool estimates_errors, const std::atomic<bool>& stop,
             const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
-  constexpr double rounding = 0.5;
+  constexpr double rounding = 2.5;
   const AdaptiveRuns runs(task);
   const double end = task.times.back();
   const double middle = (task.begin + end) / 2;
   auto beside = starts;
-  for (auto& start : beside) start = off_by_last_digits(scene, start);
+  for (auto& start : beside) start = off_by_last_digits(scene, start, digits_off(task));
   double setting = runs.first();
   double spent = 0;
   while (true) {

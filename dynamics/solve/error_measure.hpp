@@ -29,7 +29,7 @@ inline constexpr double times_finer = 30;
 template <class Scene>
 [[nodiscard]] typename Scene::State off_by_last_digits(const Scene& scene,
                                                        const typename Scene::State& state,
-                                                       double by = 1) {
+                                                       double by) {
   typename Scene::Vector y = scene.to_vector(state);
   move_last_digits<double>(y, by);
   return scene.from_vector(y);

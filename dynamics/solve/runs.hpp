@@ -71,7 +71,7 @@ class VernerRuns : public AdaptiveRuns {
   using AdaptiveRuns::AdaptiveRuns;
 
   static constexpr Method method = Method::verner98;
-  static constexpr double rounding = 0.5;
+  static constexpr double rounding = 2.5;
 
   class Run {
    public:
@@ -241,7 +241,7 @@ class GaussRuns : public FixedRuns {
       : GaussRuns(task, pace(scene, task, start)) {}
 
   static constexpr Method method = Method::gauss16;
-  static constexpr double rounding = 0.5;
+  static constexpr double rounding = 2.5;
 
   struct Run {
     const Scene* scene;
@@ -299,7 +299,7 @@ class SplittingRuns : public FixedRuns {
       : SplittingRuns(task, fastest_rate(top, start)) {}
 
   static constexpr Method method = Method::splitting;
-  static constexpr double rounding = 0.5;
+  static constexpr double rounding = 2.5;
 
   struct Run {
     EqualLength length;

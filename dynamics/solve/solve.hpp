@@ -119,7 +119,7 @@ template <class Scene, class Runs>
   const double end = task.times.back();
   const double middle = (task.begin + end) / 2;
   const std::optional<Scene> changed = off_by_last_digits(scene);
-  double digits = 1;
+  double digits = digits_off(task);
   auto setting = runs.first();
   while (true) {
     result = {};
@@ -165,13 +165,13 @@ template <class Scene, class Runs>
     spent += coarse.effort().evaluations + fine.effort().evaluations;
     // Rounding on a long way does more than to move the start by a digit.
     const double lost = runs.digits_lost(setting, coarse.effort().steps);
-    const bool too_close = lost > 2 * digits && report.status == RunStatus::complete;
-    digits = std::max(digits, lost);
+    const bool too_close = lost > 2 * std::max(digits, 1.0);
+    if (too_close) digits = lost;
     if (too_coarse) {
       setting = runs.tightened(setting, task.tolerance / (3 * report.error_estimate));
       continue;
     }
-    if (too_close) continue;
+    if (too_close && report.status == RunStatus::complete) continue;
     report.effort = coarse.effort();
     report.all_evaluations = spent;
     report.tolerance_kept =

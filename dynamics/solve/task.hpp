@@ -62,6 +62,10 @@ template <class... Words>
   throw InvalidInput(text.str());
 }
 
+/// By how many last digits the start of the run beside is off. Who asks for the last digits of the
+/// result takes those of the start for exact.
+[[nodiscard]] inline double digits_off(const Task& task) { return task.tolerance > 1e-11 ? 1 : 0; }
+
 inline void check(const Task& task) {
   if (!(task.tolerance >= 1e-15 && task.tolerance <= 1e-2)) {
     refuse_task("tolerance = ", task.tolerance,

@@ -369,7 +369,7 @@ class ExplicitSteps {
     typename Memory::Passing moved = stage_.point();
     typename Memory::Passing rate = stage_.error();
     moved = before_.state.value;
-    detail::move_last_digits<Number>(moved);
+    detail::move_last_digits<Number>(moved, 1);
     evaluate(before_.time.value, moved, rate);
     rate -= before_.rate;
     if ((rate - rate).isZero(Scalar(0))) sizes_.note_noise(rate);

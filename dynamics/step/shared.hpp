@@ -83,7 +83,7 @@ template <class S>
 /// Moves the components of a state by so much in the last digit, up and down in turn; all lanes of
 /// one alike.
 template <class Number, class Vector>
-void move_last_digits(Vector& y, double by = 1) {
+void move_last_digits(Vector& y, double by) {
   using Scalar = typename Vector::Scalar;
   const Scalar part = Scalar(by) * std::numeric_limits<Scalar>::epsilon();
   for (int i = 0; i < int(y.size()); ++i) {
