@@ -19,6 +19,7 @@
 #include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/load.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <dynamics/step/lanes.hpp>
 #include <motor/absent.hpp>
 #include <motor/error.hpp>
@@ -427,6 +428,36 @@ class CardanGyro {
     }
     if (rotor_free && symmetric_) kept.emplace_back("rotor momentum", all.rotor_momentum);
     return kept;
+  }
+
+  /// What rates() computes: see kreisel::terms. H = C_1 u_C1 is the momentum of the spin, i counts
+  /// the bodies.
+  [[nodiscard]] Terms terms() const {
+    using Felt = decltype(std::declval<const CardanGyro&>().template felt_turning<double>(0.0));
+    constexpr bool turns = !decltype(Felt::u)::absent;
+    constexpr bool turns_unsteadily = !decltype(Felt::du)::absent;
+    constexpr bool spun =
+        !detail::is_absent<decltype(std::declval<const CardanGyro&>().template spin_torque<double>(
+            0.0, 0.0))>;
+    const std::string of_turning = turns ? "" : "the guide does not turn";
+    const std::string of_steadiness = turns && !turns_unsteadily ? "the guide moves steadily" : "";
+    const std::string of_drive = regulated ? "the motor keeps phi'" : "FrictionlessRotor";
+    Terms list;
+    list.add("relative", "u' x (Theta_i u') of rings and rotor, H of the spin in it");
+    list.add("relative", "A_1 - B_1, which turns with phi", !symmetric_,
+             symmetric_ ? "the rotor is symmetric" : "");
+    list.add("guide", "u x (Theta_i u)", turns, of_turning);
+    list.add("guide", "Theta_i ou", turns_unsteadily, turns ? of_steadiness : of_turning);
+    list.add("guide", "gravity, a of the guide", false,
+             "every centre of mass lies where the axes meet");
+    list.add("Coriolis", "u' x (Theta_i u) + u x (Theta_i u') + Theta_i (u x u')", turns,
+             of_turning);
+    list.add("load", "springs and friction of the rings' bearings");
+    list.add("load", "references of the bearings", !plain_,
+             plain_ ? "both are 0, and the rotor is symmetric" : "");
+    list.add("load", "drive and friction of the rotor", spun && !regulated,
+             spun && !regulated ? "" : of_drive);
+    return list;
   }
 
   /// For integrators. One by one: a stiff bearing's angle is far smaller than the other, phi far

@@ -13,6 +13,7 @@ namespace kreisel {
 /// in it: that is the guide's motion. The field's gradient over the body is left out (see
 /// OblateGravitation).
 struct EarthGravitation {
+  static constexpr const char* kind = "gravitation of the earth";
   static constexpr bool ignores_spin = true;
 
   [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {

@@ -14,6 +14,7 @@
 
 #include <dynamics/inertia.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <dynamics/step/lanes.hpp>
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
@@ -156,6 +157,20 @@ class BasicEulerTop {
       kept.emplace_back("kovalevskaya", all.kovalevskaya);
     }
     return kept;
+  }
+
+  /// What rates() computes: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    const bool rotor = load_ == Load::rotor || load_ == Load::both;
+    const bool weight = load_ == Load::weight || load_ == Load::both;
+    Terms list;
+    list.add("relative", "w x (Theta w)");
+    list.add("relative", "products of inertia in Theta", false, "body axes are principal axes");
+    list.add("relative", "w x h", rotor, rotor ? "" : "no rotor");
+    list.add("guide", "all", false, "the top is held in the inertial frame");
+    list.add("Coriolis", "all", false, "the top is held in the inertial frame");
+    list.add("load", "k x gamma", weight, weight ? "" : "no weight, or held at its centre of mass");
+    return list;
   }
 
   /// For integrators: components that share unit and size.

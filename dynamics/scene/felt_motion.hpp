@@ -9,6 +9,7 @@
 #include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/load.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <motor/absent.hpp>
 
 /// What a body in a guide feels of the guide's motion, on guide axes: by need and, where the motion
@@ -216,5 +217,47 @@ template <class N, class... Loads>
   (add(loads), ...);
   return sum;
 }
+
+template <class L>
+[[nodiscard]] const char* kind_of() {
+  if constexpr (requires { L::kind; }) {
+    return L::kind;
+  } else {
+    return "load";
+  }
+}
+
+/// Whether a body feels the guide's turning, its angular acceleration and g', as its Felt type says,
+/// and why not.
+template <class Now, class M, class... Loads>
+struct FeltTerms {
+  static constexpr bool turns = !decltype(Now::u)::absent;
+  static constexpr bool turns_unsteadily = !decltype(Now::du)::absent;
+  static constexpr bool pulled = !decltype(Now::g)::absent;
+
+  [[nodiscard]] static std::string of_turning() {
+    const std::string said = said_of<GuideRate, Loads...>();
+    return turns || !said.empty() ? said : "the guide does not turn";
+  }
+
+  [[nodiscard]] static std::string of_unsteadiness() {
+    if (turns_unsteadily) return {};
+    return turns ? "the guide moves steadily" : of_turning();
+  }
+
+  [[nodiscard]] static std::string of_gravity() {
+    const std::string said = said_of<FeltGravity, Loads...>();
+    return pulled || !said.empty() ? said : "no gravity, and the guide does not accelerate";
+  }
+
+  /// The loads, of which uniform gravity matters if `gravity_matters`.
+  static void add_loads(Terms& terms, bool gravity_matters, const std::string& why) {
+    [[maybe_unused]] const auto add = [&](const char* kind, bool force, bool field) {
+      if (force) terms.add("load", kind);
+      if (field) terms.add("load", kind, gravity_matters, why);
+    };
+    (add(kind_of<Loads>(), is_force<Loads>, is_field<Loads>), ...);
+  }
+};
 
 }  // namespace kreisel::detail

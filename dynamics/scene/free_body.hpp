@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <dynamics/scene/jacobi_integral.hpp>
 #include <dynamics/scene/read_out.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 
@@ -138,6 +140,27 @@ class FreeBody {
         loads_);
   }
 
+  /// What acceleration() computes of its formula: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    using Now = detail::FeltTerms<FeltNow, M, Loads...>;
+    const std::string of_centre = detail::said_of<FirstMoment, Loads...>();
+    Terms list;
+    list.add("relative", "u' x (Theta_c u')");
+    list.add("relative", "products of inertia in Theta_c", !detail::principal<Loads...>,
+             detail::said_of<ProductsOfInertia, Loads...>());
+    list.add("relative", "c apart from O'", !CentreKept::absent, of_centre);
+    list.add("guide", "u x (Theta_c u)", Now::turns, Now::of_turning());
+    list.add("guide", "Theta_c ou", Now::turns_unsteadily, Now::of_unsteadiness());
+    list.add("guide", "m g'", Now::pulled, Now::of_gravity());
+    list.add("guide", "m u x (u x r)", Now::turns, Now::of_turning());
+    list.add("guide", "m ou x r", Now::turns_unsteadily, Now::of_unsteadiness());
+    list.add("Coriolis", "u' x (Theta_c u) + u x (Theta_c u') + Theta_c (u x u')", Now::turns,
+             Now::of_turning());
+    list.add("Coriolis", "2 m u x v'", Now::turns, Now::of_turning());
+    Now::add_loads(list, Now::pulled, Now::of_gravity());
+    return list;
+  }
+
   /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
   /// at rest), if no load does work besides its potential.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
@@ -244,6 +267,9 @@ class FreeBody {
 
   using CentreKept = detail::Kept<FirstMoment, S, Loads...>;
   using Felt = detail::FeltMotion<true, detail::NoVector, M, Loads...>;
+
+  using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
+                                                          std::declval<const Loads&>()...));
 
   InertiaTensor<Body, S> inertia_;
   M guide_;

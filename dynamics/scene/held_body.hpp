@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -16,6 +17,7 @@
 #include <dynamics/scene/jacobi_integral.hpp>
 #include <dynamics/scene/read_out.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
@@ -143,6 +145,26 @@ class HeldBody {
         loads_);
   }
 
+  /// What acceleration() computes of its formula: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    using Now = detail::FeltTerms<FeltNow, M, Loads...>;
+    constexpr bool heavy = !FirstMomentKept::absent && Now::pulled;
+    const std::string of_weight = FirstMomentKept::absent || Now::of_gravity().empty()
+                                      ? detail::said_of<FirstMoment, Loads...>()
+                                      : Now::of_gravity();
+    Terms list;
+    list.add("relative", "u' x (Theta u')");
+    list.add("relative", "products of inertia in Theta", !detail::principal<Loads...>,
+             detail::said_of<ProductsOfInertia, Loads...>());
+    list.add("guide", "u x (Theta u)", Now::turns, Now::of_turning());
+    list.add("guide", "Theta ou", Now::turns_unsteadily, Now::of_unsteadiness());
+    list.add("guide", "s x g'", heavy, of_weight);
+    list.add("Coriolis", "u' x (Theta u) + u x (Theta u') + Theta (u x u')", Now::turns,
+             Now::of_turning());
+    Now::add_loads(list, heavy, of_weight);
+    return list;
+  }
+
   /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
   /// at rest), if no load does work besides its potential.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
@@ -224,6 +246,9 @@ class HeldBody {
 
   using FirstMomentKept = detail::Kept<FirstMoment, S, Loads...>;
   using Felt = detail::FeltMotion<!FirstMomentKept::absent, detail::Components<S>, M, Loads...>;
+
+  using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
+                                                          std::declval<const Loads&>()...));
 
   InertiaTensor<Body, S> inertia_;
   Vector3<S> point_;

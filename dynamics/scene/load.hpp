@@ -50,7 +50,8 @@ struct Situation {
 /// What acts on a body: called with a situation it gives force and torque about the body's origin,
 /// on body axes. A user's lambda is one. A load that has a potential says so by a member
 /// potential(situation), which the read-outs add up; one that does not look at Situation::guide by
-/// a static member ignores_guide = true, which spares scenes to work the guide out.
+/// a static member ignores_guide = true, which spares scenes to work the guide out. A static member
+/// kind is its name in terms().
 ///
 /// Those here are called with situations in any numbers: what they do is differentiated by dual
 /// ones.
@@ -78,6 +79,8 @@ inline constexpr bool are_loads = (Load<Loads> && ...);
 /// Units  : m/s^2
 template <class A, class S = double>
 struct UniformGravity {
+  static constexpr const char* kind =
+      std::is_same_v<A, Inertial> ? "gravity at rest inertially" : "gravity on guide axes";
   static constexpr bool ignores_spin = !std::is_same_v<A, Body>;
   static constexpr bool on_guide_axes = std::is_same_v<A, Guide>;
 
@@ -101,6 +104,7 @@ struct UniformGravity {
 /// Units  : N, N m, metre (point: body axes)
 template <class A, class S = double>
 struct ConstantLoad {
+  static constexpr const char* kind = "constant load";
   static constexpr bool ignores_guide = !std::is_same_v<A, Inertial>;
 
   Vector3<S> force = Vector3<S>::Zero();
@@ -120,6 +124,7 @@ struct ConstantLoad {
 /// Units  : N s/m, N m s
 template <class S = double>
 struct ViscousDrag {
+  static constexpr const char* kind = "viscous drag";
   static constexpr bool ignores_guide = true;
 
   S torque_per_rate = S(0);     ///< d
@@ -139,6 +144,7 @@ struct ViscousDrag {
 /// Throws : ComputationFailed where both ends meet and a rest length above 0 leaves no direction
 template <class S = double>
 struct Spring {
+  static constexpr const char* kind = "spring";
   static constexpr bool ignores_guide = true;
 
   Vector3<S> guide_end;
@@ -176,6 +182,7 @@ struct Spring {
 /// Units  : metre, N/m, N s/m, N
 template <class S = double>
 struct ElasticMount {
+  static constexpr const char* kind = "elastic mount";
   static constexpr bool ignores_guide = true;
 
   Vector3<S> guide_end;

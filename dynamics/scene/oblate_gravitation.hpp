@@ -18,6 +18,7 @@ namespace kreisel {
 /// Source : the potential GM/r [1 - J2 (R/r)^2 P2(s)], differentiated
 template <class S = double>
 struct OblateGravitation {
+  static constexpr const char* kind = "gravitation of a planet";
   static constexpr bool ignores_spin = true;
 
   S parameter = S(3986004418LL) * S(100000);  ///< GM

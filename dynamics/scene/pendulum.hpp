@@ -3,12 +3,14 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <motor/absent.hpp>
 #include <motor/error.hpp>
 #include <motor/motor.hpp>
@@ -432,6 +434,25 @@ class PendulumField {
     }
   }
 
+  /// What the field computes of (23): see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    constexpr bool moves = !detail::is_absent<decltype(Equation::h)>;
+    constexpr bool crooked = moves && !principal;
+    constexpr bool damped = !std::is_same_v<Damping, NoDamping>;
+    const char* const at_rest = moves ? "" : "the guide rests, gravity straight down";
+    const std::string of_products =
+        moves ? detail::said_of<ProductsOfInertia, Known...>() : std::string(at_rest);
+    Terms list;
+    list.add("relative", "Theta_C phi..");
+    list.add("guide", "(Theta_B - Theta_A) of u x (u x r): in H, K", moves, at_rest);
+    list.add("guide", "products of inertia: in E, F, H, K", crooked, of_products);
+    list.add("guide", "Theta_C ou_z", moves, at_rest);
+    list.add("load", "m a g'_x: in E");
+    list.add("load", "m a g'_y: in F", moves, at_rest);
+    list.add("load", "damping", damped, damped ? "" : "NoDamping");
+    return list;
+  }
+
  private:
   static constexpr bool steady = detail::is_steady_pendulum_guide<Motion>;
   static constexpr bool principal = detail::principal<Known...>;
@@ -459,6 +480,16 @@ class PendulumField {
     const A acceleration = -A(resistance + drive);
     return {state[1], acceleration};
   }
+
+  [[nodiscard]] static auto motion_of(const Motion& motion) {
+    if constexpr (steady) {
+      return motion;
+    } else {
+      return motion(S(0));
+    }
+  }
+  using Equation = decltype(detail::pendulum_equation(std::declval<const Shape&>(),
+                                                      motion_of(std::declval<const Motion&>())));
 
   S theta_c_;
   Shape shape_;

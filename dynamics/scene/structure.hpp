@@ -16,10 +16,22 @@
 namespace kreisel {
 
 /// Quantities of a body and its guide of which components may vanish by structure.
-struct FirstMoment {};        ///< mass times centre of mass, on body axes from O'
-struct ProductsOfInertia {};  ///< about O' of a HeldBody, about its centre of mass of a FreeBody
-struct GuideRate {};          ///< u of the guide, on guide axes
-struct FeltGravity {};        ///< g' = g - a of what rests in the guide at O', on guide axes
+/// Mass times centre of mass, on body axes from O'.
+struct FirstMoment {
+  static constexpr const char* name = "FirstMoment";
+};
+/// About O' of a HeldBody, about its centre of mass of a FreeBody.
+struct ProductsOfInertia {
+  static constexpr const char* name = "ProductsOfInertia";
+};
+/// u of the guide, on guide axes.
+struct GuideRate {
+  static constexpr const char* name = "GuideRate";
+};
+/// g' = g - a of what rests in the guide at O', on guide axes.
+struct FeltGravity {
+  static constexpr const char* name = "FeltGravity";
+};
 
 enum class Axis { x, y, z };
 
@@ -89,6 +101,27 @@ void check_vanishing(const Vector3<double>& v, const std::string& what) {
   held(vanishes<Quantity, Axis::x, Parts...>, v.x(), "x");
   held(vanishes<Quantity, Axis::y, Parts...>, v.y(), "y");
   held(vanishes<Quantity, Axis::z, Parts...>, v.z(), "z");
+}
+
+/// Why components of a quantity are not computed; empty if no part says so.
+template <class Quantity, class... Parts>
+[[nodiscard]] std::string said_of() {
+  constexpr bool x = vanishes<Quantity, Axis::x, Parts...>;
+  constexpr bool y = vanishes<Quantity, Axis::y, Parts...>;
+  constexpr bool z = vanishes<Quantity, Axis::z, Parts...>;
+  std::string text;
+  if (!(x || y || z)) return text;
+  if (!(x && y && z)) {
+    text += "without";
+    if (x) text += " x";
+    if (y) text += " y";
+    if (z) text += " z";
+    text += ", ";
+  }
+  text += "said by Without<";
+  text += Quantity::name;
+  text += '>';
+  return text;
 }
 
 /// A tensor of inertia on principal axes:  Theta = diag(A, B, C); P is double or a pack.

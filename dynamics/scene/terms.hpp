@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <iomanip>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kreisel {
+
+/// A term of a scene's equation of motion, and whether its field computes it.
+struct Term {
+  std::string part;  ///< relative, guide, Coriolis or load: the parts of equation_of_motion
+  std::string name;  ///< its formula, in the letters of the scene's documentation
+  bool kept = true;
+  std::string why = {};  ///< why it is dropped; of one that is kept which components are not
+};
+
+/// All terms of a scene's equation of motion. Printed it is a table, a term a line.
+class Terms {
+ public:
+  void add(std::string part, std::string name, bool kept, std::string why) {
+    list_.push_back({std::move(part), std::move(name), kept, std::move(why)});
+  }
+  /// Kept, whatever the scene is.
+  void add(std::string part, std::string name) { add(std::move(part), std::move(name), true, {}); }
+
+  [[nodiscard]] auto begin() const { return list_.begin(); }
+  [[nodiscard]] auto end() const { return list_.end(); }
+  [[nodiscard]] std::size_t size() const { return list_.size(); }
+
+ private:
+  std::vector<Term> list_;
+};
+
+/// What a scene's field computes and what its type, or what it found out when it was built, leaves
+/// out: said by the same constants and types that the field is compiled from.
+///
+///   std::cout << terms(HeldBody(rod, {0, 0, 0}, RestingFrame<>{}, ViscousDrag<>{0.02}));
+///
+/// A term that is kept may still be 0 in numbers: of those no type knows.
+///
+/// Scene  : HeldBody, FreeBody, CardanGyro, EulerTop, PendulumField
+/// Source : the scenes' own equations, after paper 002 (5)
+template <class Scene>
+requires requires(const Scene& scene) { scene.terms(); }
+[[nodiscard]] Terms terms(const Scene& scene) { return scene.terms(); }
+
+inline std::ostream& operator<<(std::ostream& out, const Terms& terms) {
+  std::size_t part = 0;
+  std::size_t name = 0;
+  for (const Term& term : terms) {
+    part = std::max(part, term.part.size());
+    name = std::max(name, term.name.size());
+  }
+  const auto column = [](std::size_t width) { return std::setw(static_cast<int>(width) + 2); };
+  const std::ios_base::fmtflags before = out.flags();
+  out << std::left;
+  for (const Term& term : terms) {
+    out << column(part) << term.part << column(name) << term.name
+        << (term.kept ? "kept" : "dropped");
+    if (!term.why.empty()) out << ": " << term.why;
+    out << '\n';
+  }
+  out.flags(before);
+  return out;
+}
+
+}  // namespace kreisel
