@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/scene/dual_numbers.hpp>
@@ -458,6 +459,29 @@ class CardanGyro {
     list.add("load", "drive and friction of the rotor", spun && !regulated,
              spun && !regulated ? "" : of_drive);
     return list;
+  }
+
+  /// This gyro with something left out, for prune(): on a guide in the mean steady motion between
+  /// two times; on one at rest where it is at their middle; with the mean of A_1 and B_1 for both;
+  /// with rings without mass.
+  [[nodiscard]] CardanGyro<RotatingFrame<>, Rotor> without(GuideUnsteadiness /*what*/, double begin,
+                                                           double end) const
+      requires(!SteadyGuide<M>) {
+    return {moments_, bearings_, mean_motion(guide_, begin, end), rotor_};
+  }
+  [[nodiscard]] CardanGyro<RestingFrame<>, Rotor> without(GuideRate /*what*/, double begin,
+                                                          double end) const
+      requires(!detail::is_resting<M>) {
+    return {moments_, bearings_, RestingFrame<>{guide_((begin + end) / 2).X}, rotor_};
+  }
+  [[nodiscard]] CardanGyro without(RotorAsymmetry /*what*/, double /*begin*/,
+                                   double /*end*/) const {
+    CardanMoments round = moments_;
+    round.rotor.x() = round.rotor.y() = (moments_.rotor.x() + moments_.rotor.y()) / 2;
+    return {round, bearings_, guide_, rotor_};
+  }
+  [[nodiscard]] CardanGyro without(RingInertia /*what*/, double /*begin*/, double /*end*/) const {
+    return {{moments_.rotor}, bearings_, guide_, rotor_};
   }
 
   /// For integrators. One by one: a stiff bearing's angle is far smaller than the other, phi far

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -216,6 +217,29 @@ template <class N, class... Loads>
   };
   (add(loads), ...);
   return sum;
+}
+
+/// The loads that are not of the kind L.
+template <class L, class... Loads>
+[[nodiscard]] auto other_loads(const std::tuple<Loads...>& all) {
+  const auto other = [](const auto& load) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(load)>, L>) {
+      return std::tuple();
+    } else {
+      return std::tuple(load);
+    }
+  };
+  return std::apply([&](const auto&... loads) { return std::tuple_cat(other(loads)...); }, all);
+}
+
+/// Whether a guide turns, as far as its type knows.
+template <class M>
+[[nodiscard]] constexpr bool turns() {
+  if constexpr (SteadyGuide<M>) {
+    return !decltype(std::declval<const M&>().steady().u)::absent;
+  } else {
+    return true;
+  }
 }
 
 template <class L>

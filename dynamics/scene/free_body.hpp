@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/mean_motion.hpp>
+#include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/felt_motion.hpp>
 #include <dynamics/scene/jacobi_integral.hpp>
@@ -19,6 +21,13 @@
 #include <motor/attitude.hpp>
 
 namespace kreisel {
+
+/// How a free body moves.
+struct FreeBodyState {
+  Eigen::Quaternion<double> attitude = Eigen::Quaternion<double>::Identity();  ///< body to guide
+  Vector3<double> position = Vector3<double>::Zero();  ///< of O' in the guide
+  Velocity<Body, Guide, Body> velocity = {};           ///< V'
+};
 
 /// A free rigid body watched from a moving guide: thrown, falling, floating, hung on springs.
 ///
@@ -37,11 +46,7 @@ class FreeBody {
   using S = double;
   using Vector = Eigen::Matrix<S, 13, 1>;
 
-  struct State {
-    Eigen::Quaternion<S> attitude = Eigen::Quaternion<S>::Identity();  ///< body to guide
-    Vector3<S> position = Vector3<S>::Zero();                          ///< of O' in the guide
-    Velocity<Body, Guide, Body, S> velocity = {};                      ///< V'
-  };
+  using State = FreeBodyState;
 
   FreeBody(const InertiaTensor<Body, S>& inertia, M guide, Loads... loads)
       : inertia_(inertia),
@@ -144,6 +149,7 @@ class FreeBody {
   [[nodiscard]] Terms terms() const {
     using Now = detail::FeltTerms<FeltNow, M, Loads...>;
     const std::string of_centre = detail::said_of<FirstMoment, Loads...>();
+    const std::string of_centrifugal = detail::said_of<CentrifugalForce, Loads...>();
     Terms list;
     list.add("relative", "u' x (Theta_c u')");
     list.add("relative", "products of inertia in Theta_c", !detail::principal<Loads...>,
@@ -152,13 +158,56 @@ class FreeBody {
     list.add("guide", "u x (Theta_c u)", Now::turns, Now::of_turning());
     list.add("guide", "Theta_c ou", Now::turns_unsteadily, Now::of_unsteadiness());
     list.add("guide", "m g'", Now::pulled, Now::of_gravity());
-    list.add("guide", "m u x (u x r)", Now::turns, Now::of_turning());
+    list.add("guide", "m u x (u x r)", Now::turns && of_centrifugal.empty(),
+             Now::turns ? of_centrifugal : Now::of_turning());
     list.add("guide", "m ou x r", Now::turns_unsteadily, Now::of_unsteadiness());
     list.add("Coriolis", "u' x (Theta_c u) + u x (Theta_c u') + Theta_c (u x u')", Now::turns,
              Now::of_turning());
     list.add("Coriolis", "2 m u x v'", Now::turns, Now::of_turning());
     Now::add_loads(list, Now::pulled, Now::of_gravity());
     return list;
+  }
+
+  /// This body with something left out, for prune(): on a guide in the mean steady motion between
+  /// two times; on one at rest where it is at their middle, its origin's acceleration being left
+  /// as gravity; with zeros for the products of inertia; without loads of one kind;
+  /// without the centrifugal force.
+  [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
+      requires(!SteadyGuide<M>) {
+    return remade(inertia_, mean_motion(guide_, begin, end), loads_);
+  }
+  [[nodiscard]] auto without(GuideRate what, double begin, double end) const
+      requires(detail::turns<M>()) {
+    if constexpr (SteadyGuide<M>) {
+      const auto motion = guide_.steady();
+      const Vector3<S> carried = detail::vector<S>(motion.origin_acceleration);
+      return remade(inertia_, RestingFrame<>{guide_((begin + end) / 2).X},
+                    std::tuple_cat(loads_, std::tuple(UniformGravity<Guide>{-carried})));
+    } else {
+      return without(GuideUnsteadiness{}, begin, end).without(what, begin, end);
+    }
+  }
+  [[nodiscard]] auto without(CentrifugalForce /*what*/, double /*begin*/, double /*end*/) const
+      requires(detail::turns<M>() && !detail::vanishes<CentrifugalForce, Axis::x, Loads...>) {
+    return remade(inertia_, guide_,
+                  std::tuple_cat(loads_, std::tuple(Without<CentrifugalForce>{})));
+  }
+  [[nodiscard]] auto without(ProductsOfInertia /*what*/, double /*begin*/, double /*end*/) const
+      requires(!detail::principal<Loads...>) {
+    // Those that the centre of mass off O' makes stay, to the last bit.
+    InertiaTensor<Body, S> straight = inertia_;
+    const Symmetric3<S> offset = offset_of_centre(inertia_.value);
+    Symmetric3<S>& T = straight.value.tensor;
+    T.xy = offset.xy;
+    T.xz = offset.xz;
+    T.yz = offset.yz;
+    return remade(straight, guide_,
+                  std::tuple_cat(loads_, std::tuple(Without<ProductsOfInertia>{})));
+  }
+  template <class L>
+  [[nodiscard]] auto without(LoadOf<L> /*what*/, double /*begin*/, double /*end*/) const
+      requires((std::is_same_v<L, Loads> || ...)) {
+    return remade(inertia_, guide_, detail::other_loads<L>(loads_));
   }
 
   /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
@@ -192,6 +241,17 @@ class FreeBody {
   }
 
  private:
+  template <class OtherGuide, class... Others>
+  [[nodiscard]] FreeBody<OtherGuide, Others...> remade(const InertiaTensor<Body, S>& inertia,
+                                                       const OtherGuide& guide,
+                                                       const std::tuple<Others...>& loads) const {
+    return std::apply(
+        [&](const Others&... all) {
+          return FreeBody<OtherGuide, Others...>(inertia, guide, all...);
+        },
+        loads);
+  }
+
   /// All but the guide's motion.
   template <class N>
   [[nodiscard]] Situation<N> situation_in(const N& t, const Matrix3<N>& attitude,
@@ -246,8 +306,9 @@ class FreeBody {
     const auto w = u_rel + u;
     const auto dw =
         tensor_.solve(tensor_.gyroscopic_torque(w) + load.torque - cross(centre_, load.force));
+    const auto u_centrifugal = detail::without<CentrifugalForce, Loads...>(guide.u);
     const auto g = turned_back(
-        R, guide.g - detail::carried_acceleration(guide.u, guide.du, detail::NoVector{}, r));
+        R, guide.g - detail::carried_acceleration(u_centrifugal, guide.du, detail::NoVector{}, r));
     const auto du = dw - turned_back(R, guide.du) + cross(u_rel, u);
     const auto dv = load.force / inertia_.value.mass + g - cross(dw, centre_) -
                     cross(w, cross(w, centre_)) - cross(w + u, v_rel);
@@ -260,9 +321,14 @@ class FreeBody {
     return T.first_moment / T.mass;
   }
 
-  [[nodiscard]] static Symmetric3<S> about_centre(const Inertia<S>& T) {
+  /// What the tensor about O' has from the centre of mass's being elsewhere.
+  [[nodiscard]] static Symmetric3<S> offset_of_centre(const Inertia<S>& T) {
     const Vector3<S> c = T.first_moment / T.mass;
-    return T.tensor - offset_product(c, Vector3<S>(T.first_moment / S(2)));
+    return offset_product(c, Vector3<S>(T.first_moment / S(2)));
+  }
+
+  [[nodiscard]] static Symmetric3<S> about_centre(const Inertia<S>& T) {
+    return T.tensor - offset_of_centre(T);
   }
 
   using CentreKept = detail::Kept<FirstMoment, S, Loads...>;

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/mean_motion.hpp>
+#include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/felt_motion.hpp>
 #include <dynamics/scene/jacobi_integral.hpp>
@@ -23,6 +25,12 @@
 #include <motor/error.hpp>
 
 namespace kreisel {
+
+/// How a held body moves.
+struct HeldBodyState {
+  Eigen::Quaternion<double> attitude = Eigen::Quaternion<double>::Identity();  ///< body to guide
+  Vector3<double> angular_velocity = Vector3<double>::Zero();                  ///< u', on body axes
+};
 
 /// A rigid body held at one of its points, its origin O', at a point of a moving guide: a pendulum
 /// in a ball joint on a ship, a top on a turntable, an instrument on gimbals without mass.
@@ -47,10 +55,7 @@ class HeldBody {
   using S = double;
   using Vector = Eigen::Matrix<S, 7, 1>;
 
-  struct State {
-    Eigen::Quaternion<S> attitude = Eigen::Quaternion<S>::Identity();  ///< body to guide
-    Vector3<S> angular_velocity = Vector3<S>::Zero();                  ///< u', on body axes
-  };
+  using State = HeldBodyState;
 
   /// `point` is where in the guide the body is held.
   HeldBody(const InertiaTensor<Body, S>& inertia, const Vector3<S>& point, M guide, Loads... loads)
@@ -165,6 +170,39 @@ class HeldBody {
     return list;
   }
 
+  /// This body with something left out, for prune(): on a guide in the mean steady motion between
+  /// two times; on one at rest where it is at their middle, what it makes felt of its acceleration
+  /// being left as gravity; with zeros for the products of inertia; without loads of one kind.
+  [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
+      requires(!SteadyGuide<M>) {
+    return remade(inertia_, mean_motion(guide_, begin, end), loads_);
+  }
+  [[nodiscard]] auto without(GuideRate what, double begin, double end) const
+      requires(detail::turns<M>()) {
+    if constexpr (SteadyGuide<M>) {
+      const auto motion = guide_.steady();
+      const Vector3<S> carried = detail::vector<S>(detail::carried_acceleration(
+          motion.u, detail::NoVector{}, motion.origin_acceleration, detail::components(point_)));
+      return remade(inertia_, RestingFrame<>{guide_((begin + end) / 2).X},
+                    std::tuple_cat(loads_, std::tuple(UniformGravity<Guide>{-carried})));
+    } else {
+      return without(GuideUnsteadiness{}, begin, end).without(what, begin, end);
+    }
+  }
+  [[nodiscard]] auto without(ProductsOfInertia /*what*/, double /*begin*/, double /*end*/) const
+      requires(!detail::principal<Loads...>) {
+    InertiaTensor<Body, S> straight = inertia_;
+    Symmetric3<S>& T = straight.value.tensor;
+    T.xy = T.xz = T.yz = 0;
+    return remade(straight, guide_,
+                  std::tuple_cat(loads_, std::tuple(Without<ProductsOfInertia>{})));
+  }
+  template <class L>
+  [[nodiscard]] auto without(LoadOf<L> /*what*/, double /*begin*/, double /*end*/) const
+      requires((std::is_same_v<L, Loads> || ...)) {
+    return remade(inertia_, guide_, detail::other_loads<L>(loads_));
+  }
+
   /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
   /// at rest), if no load does work besides its potential.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
@@ -205,6 +243,17 @@ class HeldBody {
   }
 
  private:
+  template <class OtherGuide, class... Others>
+  [[nodiscard]] HeldBody<OtherGuide, Others...> remade(const InertiaTensor<Body, S>& inertia,
+                                                       const OtherGuide& guide,
+                                                       const std::tuple<Others...>& loads) const {
+    return std::apply(
+        [&](const Others&... all) {
+          return HeldBody<OtherGuide, Others...>(inertia, point_, guide, all...);
+        },
+        loads);
+  }
+
   /// All but the guide's motion.
   template <class N>
   [[nodiscard]] Situation<N> situation_in(const N& t, const Matrix3<N>& attitude,

@@ -39,7 +39,8 @@ template <class M, class... Loads>
                                                                       const Situation<double>& s,
                                                                       const Loads&... loads) {
   if constexpr (SteadyGuide<M>) {
-    if (!(keeps_energy<M>(loads) && ...)) return {};
+    if (!(keeps_energy<M>(loads) && ...) || vanishes<CentrifugalForce, Axis::x, Loads...>)
+      return {};
     const auto motion = guide.steady();
     const Velocity<Guide, Inertial, Guide> turning{
         {vector<double>(motion.u), Vector3<double>::Zero()}};

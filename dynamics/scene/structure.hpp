@@ -33,6 +33,28 @@ struct FeltGravity {
   static constexpr const char* name = "FeltGravity";
 };
 
+/// Of a FreeBody's place on a guide that turns: m u x (u x r). It does not vanish, and Without<> of it
+/// is not held against numbers: prune() says how little it does.
+struct CentrifugalForce {
+  static constexpr const char* name = "CentrifugalForce";
+};
+
+/// What more prune() may leave out: how u and acceleration of a guide vary about their means; of a
+/// Cardan gyro A_1 - B_1 and the moments of inertia of both rings; all loads of the kind L.
+struct GuideUnsteadiness {
+  static constexpr const char* name = "GuideUnsteadiness";
+};
+struct RotorAsymmetry {
+  static constexpr const char* name = "RotorAsymmetry";
+};
+struct RingInertia {
+  static constexpr const char* name = "RingInertia";
+};
+template <class L>
+struct LoadOf {
+  static constexpr const char* name = L::kind;
+};
+
 enum class Axis { x, y, z };
 
 /// Says in a scene's type that a quantity's components about these axes vanish (without axes: all

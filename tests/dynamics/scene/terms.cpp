@@ -242,6 +242,19 @@ BOOST_AUTO_TEST_CASE(of_a_plane_pendulum_do_what_they_are_said_to) {
   holds(terms(general), "m a g'_y: in F", without({{1, 2, 3}, rates, {9, 0, 0}, {}}));
 }
 
+// It does not vanish: that it is left out is what somebody said.
+BOOST_AUTO_TEST_CASE(lack_a_centrifugal_force_that_is_left_out) {
+  const RotatingFrame<> table{{0, 0, 2}};
+  const FreeBody whole(body({0, 0, 0}, 0), table);
+  const FreeBody less(body({0, 0, 0}, 0), table, Without<CentrifugalForce>{});
+  const auto y = whole.to_vector({Eigen::Quaterniond(1, 0, 0, 0), {3, 0, 1}, {}});
+  const auto off = (whole.rates(0, y) - less.rates(0, y)).eval();
+  BOOST_TEST(term(terms(whole), "m u x (u x r)").kept);
+  BOOST_TEST(term(terms(less), "m u x (u x r)").why == "said by Without<CentrifugalForce>");
+  BOOST_TEST(off[10] == 12);  // |u|^2 outwards
+  BOOST_TEST(off.norm() == 12);
+}
+
 BOOST_AUTO_TEST_CASE(print_as_a_table) {
   std::ostringstream text;
   text << terms(HeldBody(body({0, 0, 0.2}, 0), {0, 0, 0}, RestingFrame<>{},
