@@ -43,4 +43,41 @@ namespace kreisel {
   return names;
 }
 
+/// Which directions of a BodySystem's state no search for a steady motion has as unknowns, as places
+/// in eta (study/tangent.hpp): first those of the coordinates, then of the rates.
+struct RuledDirections {
+  std::vector<int> given;      ///< coordinates and rates of drives, locks and regulated rotors
+  std::vector<int> held;       ///< those, angles of all rotors, and speeds of free ones
+  std::vector<int> running;    ///< coordinates that go on by themselves: of rotors and drives
+  std::vector<int> attitudes;  ///< where the three angles of an attitude begin
+
+  [[nodiscard]] static RuledDirections of(const BodyTree& tree) {
+    RuledDirections ruled;
+    const auto note = [rates = tree.rates()](std::vector<int>& places, int rate) {
+      places.insert(places.end(), {rate, rates + rate});
+    };
+    for (const detail::Link& link : tree.links()) {
+      const int count = detail::rate_count(link.kind);
+      if (count >= 3) ruled.attitudes.push_back(link.v);
+      if (link.rule == JointRule::forces) continue;
+      for (int v = link.v; v < link.v + count; ++v) {
+        note(ruled.given, v);
+        note(ruled.held, v);
+        ruled.running.push_back(v);
+      }
+    }
+    for (const detail::RotorLink& rotor : tree.rotors()) {
+      const int v = rotor.link.v;
+      ruled.running.push_back(v);
+      if (rotor.regulated()) note(ruled.given, v);
+      if (rotor.mode != RotorMode::torque) {
+        note(ruled.held, v);
+      } else {
+        ruled.held.push_back(v);
+      }
+    }
+    return ruled;
+  }
+};
+
 }  // namespace kreisel

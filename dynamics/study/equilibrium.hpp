@@ -31,6 +31,39 @@ struct FoundEquilibrium {
   int neutral = 0;  ///< directions in which the equilibrium is not isolated
 };
 
+namespace detail {
+
+/// The places among so many that are not left out.
+///
+/// Throws : InvalidInput for a place that is none
+[[nodiscard]] inline std::vector<int> others(int dimension, const std::vector<int>& left_out) {
+  std::vector<bool> kept(static_cast<std::size_t>(dimension), true);
+  for (const int i : left_out) {
+    if (i < 0 || i >= dimension) {
+      std::ostringstream text;
+      text << "equilibrium: there is no component " << i << " among " << dimension;
+      throw InvalidInput(text.str());
+    }
+    kept[static_cast<std::size_t>(i)] = false;
+  }
+  std::vector<int> places;
+  for (int i = 0; i < dimension; ++i) {
+    if (kept[static_cast<std::size_t>(i)]) places.push_back(i);
+  }
+  return places;
+}
+
+/// x at the places, 0 elsewhere. By a loop: in Eigen's assignment to places g++ 12 sees memory freed
+/// that is none.
+[[nodiscard]] inline Eigen::VectorXd scattered(int dimension, const std::vector<int>& places,
+                                               const Eigen::VectorXd& x) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(dimension);
+  for (Eigen::Index i = 0; i < x.size(); ++i) result[places[static_cast<std::size_t>(i)]] = x[i];
+  return result;
+}
+
+}  // namespace detail
+
 /// Newton's method with the exact Jacobian, halving steps that lead uphill. Where equations or
 /// unknowns are redundant the shortest step is taken: the equilibrium nearest to the guess.
 ///
@@ -44,24 +77,8 @@ template <class Scene>
     const Scene& scene, double t, const typename Scene::Vector& guess,
     const EquilibriumSearch& search = {}) {
   const Tangent tangent = detail::tangent_of(scene, guess.size(), search.quaternions);
-  const auto others = [&](const std::vector<int>& left_out) {
-    std::vector<bool> kept(static_cast<std::size_t>(tangent.dimension()), true);
-    for (const int i : left_out) {
-      if (i < 0 || i >= tangent.dimension()) {
-        std::ostringstream text;
-        text << "equilibrium: there is no component " << i << " among " << tangent.dimension();
-        throw InvalidInput(text.str());
-      }
-      kept[static_cast<std::size_t>(i)] = false;
-    }
-    std::vector<int> places;
-    for (int i = 0; i < tangent.dimension(); ++i) {
-      if (kept[static_cast<std::size_t>(i)]) places.push_back(i);
-    }
-    return places;
-  };
-  const std::vector<int> unknown = others(search.held);
-  const std::vector<int> wanted = others(search.running);
+  const std::vector<int> unknown = detail::others(tangent.dimension(), search.held);
+  const std::vector<int> wanted = detail::others(tangent.dimension(), search.running);
   const auto rates = [&](const typename Scene::Vector& y) {
     const Eigen::VectorXd f = scene.rates(t, y);
     return Eigen::VectorXd((tangent.inverse(y) * f)(wanted));
@@ -75,17 +92,16 @@ template <class Scene>
   Eigen::VectorXd f = rates(guess);
   for (; result.iterations < search.most_iterations; ++result.iterations) {
     const typename Scene::Vector& y = result.state;
-    const auto d = detail::derivatives(scene, t, y, tangent.basis(y));
+    const auto d = detail::derivatives(scene, t, y, tangent.basis(y), detail::InTime::no);
     const Eigen::MatrixXd A = detail::reduced(tangent, y, d).A(wanted, unknown);
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(A);
     result.neutral = static_cast<int>(A.cols() - factors.rank());
     const Eigen::VectorXd newton = -factors.solve(f);
-    Eigen::VectorXd eta = Eigen::VectorXd::Zero(tangent.dimension());
+    const Eigen::VectorXd eta = detail::scattered(tangent.dimension(), unknown, newton);
     double share = 1;
     bool falls = false;
     for (; share > 1e-4 && !falls; share /= 2) {
-      eta(unknown) = share * newton;
-      const typename Scene::Vector next = tangent.moved(y, eta);
+      const typename Scene::Vector next = tangent.moved(y, Eigen::VectorXd(share * eta));
       const Eigen::VectorXd f_next = rates(next);
       falls = f_next.norm() < f.norm();
       if (!falls) continue;

@@ -61,13 +61,16 @@ namespace detail {
 /// f(t, y) and its derivatives along t and along the columns of E.
 struct Derivatives {
   Eigen::VectorXd f;
-  Eigen::VectorXd along_time;
+  Eigen::VectorXd along_time;  ///< 0 where it is not asked for
   Eigen::MatrixXd along;
 };
 
+/// Without the derivative in time no other time is looked at: t may be the first that a guide has.
+enum class InTime { yes, no };
+
 template <class Scene>
 [[nodiscard]] Derivatives derivatives(const Scene& scene, double t, const typename Scene::Vector& y,
-                                      const Eigen::MatrixXd& E) {
+                                      const Eigen::MatrixXd& E, InTime in_time = InTime::yes) {
   static_assert(Differentiable<Scene>,
                 "the scene's rates(t, y) does not take dual numbers: make it a template on the "
                 "number type of t and y");
@@ -75,9 +78,9 @@ template <class Scene>
   using Number = Duals<at_once>;
   Derivatives d;
   d.along.resize(y.size(), E.cols());
-  d.along_time.resize(y.size());
+  d.along_time.setZero(y.size());
   d.f.resize(y.size());
-  const Eigen::Index columns = E.cols() + 1;
+  const Eigen::Index columns = E.cols() + (in_time == InTime::yes ? 1 : 0);
   for (Eigen::Index begin = 0; begin < columns; begin += at_once) {
     Number now(t);
     StateOf<Scene, Number> state(y.size());

@@ -79,25 +79,25 @@ template <class... Words>
 /// The modes of  x' = A x,  slowest oscillation first; of two conjugate ones first that with
 /// root.imag() > 0.
 ///
-/// Error  : reported for each: 8 u |A| times the condition 1/|y.x| of the root, y and x its left
-///          and right vectors; for a root that is (nearly) multiple and has too few vectors
+/// error  : of A itself, as a norm
+/// Error  : reported for each: 8 u |A| and `error` times the condition 1/|y.x| of the root, y and x
+///          its left and right vectors; for a root that is (nearly) multiple and has too few vectors
 ///          u^(1/n) |A|, which is what such a root moves by
 /// Throws : InvalidInput if A is not square or not finite; ComputationFailed if QR does not
 ///          converge
-[[nodiscard]] inline std::vector<Mode> spectrum(const Eigen::MatrixXd& A) {
+[[nodiscard]] inline std::vector<Mode> spectrum(const Eigen::MatrixXd& A, double error = 0) {
   if (A.rows() != A.cols() || !(A - A).isZero(0)) {
     detail::refuse_spectrum("the state matrix is not square or not finite");
   }
   const auto [roots, V] = detail::eigenpairs(A);
   const std::optional<Eigen::MatrixXcd> left = detail::inverse(V);
-  const double u = std::numeric_limits<double>::epsilon() / 2;
   const double size = A.norm();
+  const double u = std::numeric_limits<double>::epsilon() / 2 + (size > 0 ? error / (8 * size) : 0);
   const double most = std::pow(u, 1 / std::max(2.0, double(A.rows()))) * size;
   std::vector<Mode> modes;
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     const double condition = left ? left->row(i).norm() * V.col(i).norm() : 0;
-    const double error = left ? std::min(8 * u * size * condition, most) : most;
-    modes.push_back({roots[i], error, V.col(i)});
+    modes.push_back({roots[i], left ? std::min(8 * u * size * condition, most) : most, V.col(i)});
     detail::take_phase_out(modes.back().shape);
   }
   std::stable_sort(modes.begin(), modes.end(),

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+#include <dynamics/step/explicit.hpp>
+#include <dynamics/study/equilibrium.hpp>
+
+namespace kreisel {
+
+/// How a motion depends on where it begins, in the directions eta in which its state can move
+/// (study/tangent.hpp).
+struct TangentTransition {
+  Eigen::VectorXd state;   ///< y(t_end)
+  Eigen::MatrixXd matrix;  ///< d eta(t_end) / d eta(t_begin)
+
+  /// Of each entry of the matrix: what steps with a hundred times the error change.
+  Eigen::MatrixXd error;
+};
+
+namespace detail {
+
+/// y and, behind it, the columns of the transition matrix.
+template <class Scene>
+[[nodiscard]] Eigen::VectorXd with_tangents(const Scene& scene, double t_begin,
+                                            const Eigen::VectorXd& y, double t_end,
+                                            const Accuracy& accuracy) {
+  const Tangent tangent = tangent_of(scene, y.size(), {});
+  const Eigen::Index n = y.size(), d = tangent.dimension();
+  const auto field = [&, n, d](double t, const Eigen::VectorXd& z, Eigen::VectorXd& rate) {
+    const Eigen::VectorXd now = z.head(n);
+    const Derivatives at = derivatives(scene, t, now, tangent.basis(now), InTime::no);
+    rate.head(n) = at.f;
+    Eigen::Map<Eigen::MatrixXd>(rate.data() + n, d, d).noalias() =
+        reduced(tangent, now, at).A * Eigen::Map<const Eigen::MatrixXd>(z.data() + n, d, d);
+  };
+  const std::vector<int> of_state = scene.blocks();
+  std::vector<int> of_column;
+  for (int begin = 0; const int size : of_state) {
+    const auto& balls = tangent.quaternions();
+    const bool ball = std::find(balls.begin(), balls.end(), begin) != balls.end();
+    of_column.push_back(ball ? size - 1 : size);
+    begin += size;
+  }
+  std::vector<int> blocks = of_state;
+  for (Eigen::Index j = 0; j < d; ++j) {
+    blocks.insert(blocks.end(), of_column.begin(), of_column.end());
+  }
+  Eigen::VectorXd start(n + d * d);
+  start.head(n) = y;
+  Eigen::Map<Eigen::MatrixXd>(start.data() + n, d, d).setIdentity();
+  ExplicitSteps steps(field, t_begin, start, accuracy, blocks);
+  return steps.advance_to(t_end);
+}
+
+}  // namespace detail
+
+/// The motion of a scene whose state has no size known when compiled, and its transition matrix
+/// from the variational equations  X' = A(t) X,  X(t_begin) = 1, with A as linearize() has it.
+///
+/// Scene  : Differentiable, with a tree() or quaternions(), and blocks()
+/// Error  : reported entry by entry
+/// Throws : as ExplicitSteps and the scene's rates() do
+template <class Scene>
+[[nodiscard]] TangentTransition tangent_transition(const Scene& scene, double t_begin,
+                                                   const Eigen::VectorXd& y, double t_end,
+                                                   const Accuracy& accuracy = {.relative = 1e-12}) {
+  Accuracy coarse = accuracy;
+  coarse.relative = std::min(100 * accuracy.relative, 1e-2);
+  const Eigen::VectorXd fine = detail::with_tangents(scene, t_begin, y, t_end, accuracy);
+  const Eigen::VectorXd rough = detail::with_tangents(scene, t_begin, y, t_end, coarse);
+  const Eigen::Index d = detail::tangent_of(scene, y.size(), {}).dimension();
+  const auto matrix = [&y, d](const Eigen::VectorXd& z) {
+    return Eigen::MatrixXd(Eigen::Map<const Eigen::MatrixXd>(z.data() + y.size(), d, d));
+  };
+  return {fine.head(y.size()), matrix(fine), (matrix(fine) - matrix(rough)).cwiseAbs()};
+}
+
+/// A motion that repeats itself after a period, but for what runs.
+struct PeriodicMotion {
+  Eigen::VectorXd start;
+  TangentTransition period;  ///< by which its neighbours grow
+  double residual = 0;       ///< of the return, greatest component
+  int iterations = 0;
+};
+
+/// Shooting: Newton's method on  y(t + period) = y(t)  with the transition matrix as its Jacobian.
+/// Where equations or unknowns are redundant the shortest step is taken.
+///
+/// search : `held` and `running` as find_equilibrium() has them; running components may advance
+/// Error  : residual, of the size of the steps' own error
+/// Throws : as tangent_transition(); ComputationFailed with what is left where no motion of this
+///          period is near
+template <class Scene>
+[[nodiscard]] PeriodicMotion periodic_motion(const Scene& scene, double t, double period,
+                                             const Eigen::VectorXd& guess,
+                                             const EquilibriumSearch& search = {},
+                                             const Accuracy& accuracy = {.relative = 1e-12}) {
+  const Tangent tangent = detail::tangent_of(scene, guess.size(), {});
+  const std::vector<int> unknown = detail::others(tangent.dimension(), search.held);
+  const std::vector<int> wanted = detail::others(tangent.dimension(), search.running);
+  PeriodicMotion motion;
+  motion.start = guess;
+  for (; motion.iterations < search.most_iterations; ++motion.iterations) {
+    motion.period = tangent_transition(scene, t, motion.start, t + period, accuracy);
+    const Eigen::VectorXd away =
+        tangent.inverse(motion.start) * (motion.period.state - motion.start);
+    const Eigen::VectorXd off = away(wanted);
+    motion.residual = off.size() > 0 ? off.cwiseAbs().maxCoeff() : 0;
+    const double size = 1 + motion.start.cwiseAbs().maxCoeff();
+    if (motion.residual <= 1e3 * accuracy.relative * size) return motion;
+    const Eigen::MatrixXd identity =
+        Eigen::MatrixXd::Identity(tangent.dimension(), tangent.dimension());
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+    factors.setThreshold(1e-9);  // the matrix errs by its steps, not by rounding
+    factors.compute(Eigen::MatrixXd((motion.period.matrix - identity)(wanted, unknown)));
+    const Eigen::VectorXd step = -factors.solve(off);
+    motion.start =
+        tangent.moved(motion.start, detail::scattered(tangent.dimension(), unknown, step));
+  }
+  std::ostringstream text;
+  text.precision(10);
+  text << "periodic motion: none of the period " << period << " s reached in " << motion.iterations
+       << " steps; it misses its start by " << motion.residual;
+  throw ComputationFailed(text.str());
+}
+
+}  // namespace kreisel
