@@ -7,6 +7,7 @@
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/earth_gravitation.hpp>
 
 namespace kreisel {
@@ -59,9 +60,10 @@ struct SiteWeight {
   SceneGuide site;
   double magnitude;
 
-  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {
-    const Vector3<double> g(magnitude, 0, 0);
-    return UniformGravity<Inertial>{site(s.t).X.value.rotation * g}(s);
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+    const Vector3<N> g(N(magnitude), N(0), N(0));
+    return UniformGravity<Inertial, N>{detail::guide_at<N>(site, s.t).X.value.rotation * g}(s);
   }
 };
 

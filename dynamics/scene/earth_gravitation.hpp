@@ -1,7 +1,10 @@
 #pragma once
 
+#include <type_traits>
+
 #include <dynamics/guide/normal_gravity.hpp>
 #include <dynamics/scene/load.hpp>
+#include <dynamics/step/lanes.hpp>
 
 namespace kreisel {
 
@@ -12,15 +15,19 @@ namespace kreisel {
 /// earth has turned does not matter to a body of revolution. The centrifugal part of gravity is not
 /// in it: that is the guide's motion. The field's gradient over the body is left out (see
 /// OblateGravitation).
+///
+/// Error  : in dual numbers the field's gradient is a difference: 2e-12 of it
 struct EarthGravitation {
   static constexpr const char* kind = "gravitation of the earth";
   static constexpr bool ignores_spin = true;
 
-  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {
-    const Vector3<double> centre = s.centre();
-    const Vector3<double> g =
-        s.on_body_axes<Inertial>(detail::gravitation(s.place<Inertial>(centre)));
-    const Vector3<double> weight = s.inertia.value.mass * g;
+  template <class N>
+  requires(!detail::is_pack<N>) [[nodiscard]] Force<Body, N> operator()(
+      const Situation<N>& s) const {
+    const Vector3<N> centre = s.centre();
+    const Vector3<N> g =
+        s.template on_body_axes<Inertial>(field(Vector3<N>(s.template place<Inertial>(centre))));
+    const Vector3<N> weight = s.inertia.value.mass * g;
     return {{weight, centre.cross(weight)}};
   }
 
@@ -29,6 +36,20 @@ struct EarthGravitation {
     Vector3<double> g;
     const auto& field = GeographicLib::NormalGravity::WGS84();
     return -s.inertia.value.mass * field.V0(p.x(), p.y(), p.z(), g.x(), g.y(), g.z());
+  }
+
+ private:
+  template <class N>
+  [[nodiscard]] static Vector3<N> field(const Vector3<N>& p) {
+    if constexpr (std::is_same_v<N, double>) {
+      return detail::gravitation(p);
+    } else {
+      const Vector3<double> at(p.x().value(), p.y().value(), p.z().value());
+      const Matrix3<double> gradient =
+          detail::gravitation_gradient(at, Matrix3<double>::Identity());
+      return detail::gravitation(at).template cast<N>() +
+             gradient.template cast<N>() * (p - at.template cast<N>());
+    }
   }
 };
 

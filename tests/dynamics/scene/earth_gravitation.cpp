@@ -11,6 +11,7 @@
 #include <dynamics/scene/held_body.hpp>
 #include <dynamics/scene/oblate_gravitation.hpp>
 #include <dynamics/step/advance.hpp>
+#include <dynamics/study/linearize.hpp>
 #include <motor/attitude.hpp>
 
 #include <support/near.hpp>
@@ -86,6 +87,17 @@ BOOST_AUTO_TEST_CASE(keeps_the_energy_of_an_orbit) {
   };
   const double e0 = energy(start);
   BOOST_TEST(near(energy(Advance(body, 0, start).to(6000)), e0, std::abs(e0), 200));
+}
+
+// In linear equations: the free-air gradient, with the centrifugal part of the guide in it, and half
+// of it back to the plumb line on either side.
+BOOST_AUTO_TEST_CASE(grows_downwards_by_the_free_air_gradient) {
+  const FreeBody body(ball, earth_frame(munich), EarthGravitation{});
+  const auto linear = linearize<Guide, Body>(body, 0, body.to_vector({}));
+  const auto at = [&](Eigen::Index k) { return linear.A(9 + k, 3 + k); };
+  BOOST_TEST(std::abs(at(0) - 3.086e-6) < 3e-9);
+  BOOST_TEST(std::abs(at(1) + 1.54e-6) < 1e-8);
+  BOOST_TEST(std::abs(at(2) + 1.54e-6) < 1e-8);
 }
 
 // Of the ellipsoid's field, J2 leaves the terms from J4 on: 3 parts in a million.
