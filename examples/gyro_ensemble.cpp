@@ -1,7 +1,6 @@
 // gyro_ensemble: how far many gyros in Cardan's suspension drift whose tilt, knock and moments of
 // inertia are scattered about those of one drawing.
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -23,6 +22,7 @@
 #include <dynamics/file/atomic_file.hpp>
 #include <dynamics/scene/cardan_gyro_laws.hpp>
 
+#include "shared/command_line.hpp"
 #include "shared/progress.hpp"
 
 #ifdef KREISEL_WITH_MPI
@@ -270,14 +270,7 @@ std::optional<Request> read_request(int argc, char** argv) {
                  "keep results in parts, and go on from those that are there; with mpirun all "
                  "ranks share the work")
       ->type_name("FOLDER");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return {};
-  } catch (const CLI::ParseError& error) {
-    throw InvalidInput(error.what());
-  }
+  if (!command_line::parse(app, argc, argv)) return {};
   return request;
 }
 

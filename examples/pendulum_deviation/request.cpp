@@ -1,29 +1,20 @@
 #include "request.hpp"
 
-#include <CLI/CLI.hpp>
-#include <fmt/core.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 
 #include <dynamics/file/csv.hpp>
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
 
+#include "../shared/command_line.hpp"
+
 using kreisel::InvalidInput;
 
 namespace {
 
-/// Throws : InvalidInput unless the whole text is a finite number
 Real number(const std::string& what, const std::string& text) {
-  char* end = nullptr;
-  const Real value = std::strtold(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw InvalidInput(fmt::format("{} = '{}' is not a finite number", what, text));
-  }
-  return value;
+  return command_line::number<Real>(what, text);
 }
 
 /// The place in the site that an option or a sweep sets.
@@ -196,14 +187,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       ->type_name("FILE.svg|png")
       ->group("Output");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return {};
-  } catch (const CLI::ParseError& error) {
-    throw InvalidInput(error.what());
-  }
+  if (!command_line::parse(app, argc, argv)) return {};
 
   request.body = body.body();
   if (gravity != "normal") request.gravity = number("--gravity", gravity);

@@ -1,15 +1,26 @@
 #pragma once
 
+#include <fmt/core.h>
+
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
+#include <system_error>
 
+#include <dynamics/file/atomic_file.hpp>
 #include <motor/error.hpp>
 
-/// gnuplot, as both programs call it for --plot.
+/// gnuplot, as the programs call it for --plot.
 namespace gnuplot {
+
+/// For the pictures of scene files; texts are taken as they are.
+inline constexpr const char* style =
+    "set termoption noenhanced\nset grid xtics ytics lt 1 lc rgb '#dddddd'\n"
+    "set border 31 lc rgb '#555555'\n"
+    "set tics tc rgb '#333333'\n";
 
 /// A string of gnuplot's, in which nothing has a meaning.
 inline std::string quoted(const std::string& text) {
@@ -39,6 +50,30 @@ inline void run(const std::string& script) {
   if (pipe == nullptr) throw kreisel::ComputationFailed("--plot: gnuplot does not start");
   const bool sent = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
   if (pclose(pipe) != 0 || !sent) throw kreisel::ComputationFailed("--plot: gnuplot failed");
+}
+
+/// Makes the folder of --plot.
+///
+/// Throws : kreisel::InvalidInput; and as require_installed()
+inline void open_folder(const std::filesystem::path& folder) {
+  require_installed();
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw kreisel::InvalidInput("--plot " + folder.string() + ": " + error.message());
+}
+
+/// The picture `place`.svg and .png, 800 wide.
+inline void draw(const std::filesystem::path& place, std::size_t height,
+                 const std::string& script) {
+  for (const bool svg : {true, false}) {
+    kreisel::AtomicFile picture(place.string() + (svg ? ".svg" : ".png"));
+    const std::string terminal =
+        svg ? fmt::format("set terminal svg size 800,{} font 'Helvetica,14' background 'white'\n",
+                          height)
+            : fmt::format("set terminal pngcairo size 800,{} font 'Helvetica,11'\n", height);
+    run(fmt::format("{}set output {}\n{}", terminal, quoted(picture.draft().string()), script));
+    picture.commit();
+  }
 }
 
 }  // namespace gnuplot

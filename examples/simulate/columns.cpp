@@ -42,23 +42,6 @@ std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
   return names;
 }
 
-Eigen::Quaterniond attitude(const BodyTree& tree, int body, const JointState& state) {
-  const double* const q = state.coordinates.data() + tree.place(body).q;
-  return (tree.body(body).joint.orientation * Eigen::Quaterniond(q[3], q[0], q[1], q[2]))
-      .normalized();
-}
-
-Eigen::Vector3d place(const BodyTree& tree, int body, const JointState& state) {
-  return tree.body(body).joint.position + state.coordinates.segment<3>(tree.place(body).q + 4);
-}
-
-double drive_torque(const BodyTree& tree, int body, const kreisel::JointReactions& reactions) {
-  const kreisel::BodyDescription& b = tree.body(body);
-  const bool regulated = b.rotor && b.rotor->mode == kreisel::RotorMode::regulated;
-  const bool driven = b.rule == kreisel::JointRule::constant_rate || regulated;
-  return driven ? reactions.drive[tree.place(body).v] : 0;
-}
-
 std::vector<double> row(const Model& model, double t, const JointState& state, bool reactions) {
   const BodyTree& tree = model.tree();
   std::vector<double> values{t};

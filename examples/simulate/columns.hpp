@@ -14,11 +14,3 @@ std::vector<double> row(const Model& model, double t, const JointState& state, b
 
 /// The state in a row.
 JointState state_of(const kreisel::BodyTree& tree, const std::vector<double>& row);
-
-/// Attitude and place of a body against its parent.
-Eigen::Quaterniond attitude(const kreisel::BodyTree& tree, int body, const JointState& state);
-Eigen::Vector3d place(const kreisel::BodyTree& tree, int body, const JointState& state);
-
-/// The torque of what keeps the rate of a joint, 0 where nothing does.
-double drive_torque(const kreisel::BodyTree& tree, int body,
-                    const kreisel::JointReactions& reactions);

@@ -4,12 +4,12 @@
 
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <optional>
 
 #include <motor/error.hpp>
 
+#include "../shared/exit_status.hpp"
 #include "../shared/progress.hpp"
 #include "columns.hpp"
 #include "output.hpp"
@@ -123,22 +123,10 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto fail = [](const std::exception& error, int status) {
-    std::fprintf(stderr, "simulate: %s\n", error.what());  // fmt's may throw
-    return status;
-  };
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, not a death
-  try {
+  return exit_status("simulate", [&] {
     const std::optional<Request> request = read_request(argc, argv);
     return request ? run(*request) : 0;
-  } catch (const kreisel::SceneMistakes& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  } catch (const kreisel::InvalidInput& error) {
-    return fail(error, 2);
-  } catch (const std::exception& error) {
-    return fail(error, 3);
-  }
+  });
 }

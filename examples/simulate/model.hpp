@@ -1,23 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <dynamics/body/reaction.hpp>
-#include <dynamics/file/scene_file.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/task.hpp>
 
-/// Coordinates and rates of all joints, as BodySystem counts them.
-struct JointState {
-  Eigen::VectorXd coordinates;
-  Eigen::VectorXd rates;
-};
+#include "../shared/joints.hpp"
 
 /// The system of a scene, whatever its guide. One virtual call for each run or row, none for each
 /// evaluation.
@@ -52,6 +44,3 @@ class Model {
 /// The two that make_model() chooses from, compiled apart.
 [[nodiscard]] std::unique_ptr<Model> make_resting_model(const kreisel::SceneFile& scene);
 [[nodiscard]] std::unique_ptr<Model> make_moving_model(const kreisel::SceneFile& scene);
-
-/// The state that a scene begins with.
-[[nodiscard]] JointState start_of(const kreisel::SceneFile& scene);

@@ -4,16 +4,17 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 #include <dynamics/solve/report.hpp>
 
-#include "columns.hpp"
+#include "../shared/joint_tables.hpp"
 
-using kreisel::JointKind;
 using nlohmann::ordered_json;
 
 namespace {
+
+using joint_tables::joint;
+using joint_tables::json;
 
 const kreisel::RunReport& report(const Result& result) { return result.run.report; }
 
@@ -55,47 +56,10 @@ std::string gravity_name(const kreisel::SceneFile& scene) {
   return names[scene.gravity.index()];
 }
 
-ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-/// What JSON has no number for is null.
-ordered_json json(double x) { return std::isfinite(x) ? ordered_json(x) : ordered_json(); }
-
-ordered_json json(const kreisel::Motor<>& force) {
-  return {{"force", json(force.resultant)}, {"torque", json(force.moment)}};
-}
-
 ordered_json json(const std::vector<Term>& terms) {
   ordered_json list = ordered_json::array();
   for (const Term& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
   return list;
-}
-
-ordered_json joint(const Result& result, int body, const JointState& state,
-                   const kreisel::JointReactions& reactions) {
-  const kreisel::BodyTree& tree = result.model.tree();
-  const auto [q, q_count, v, v_count] = tree.place(body);
-  const auto pair = [](const Eigen::VectorXd& x, int begin) {
-    return ordered_json{x[begin], x[begin + 1]};
-  };
-  switch (tree.body(body).joint.kind) {
-    case JointKind::fixed: return ordered_json::object();
-    case JointKind::universal:
-      return {{"coordinate", pair(state.coordinates, q)}, {"rate", pair(state.rates, v)}};
-    case JointKind::spherical:
-    case JointKind::free: break;
-    default:
-      return {{"coordinate", state.coordinates[q]},
-              {"rate", state.rates[v]},
-              {"drive_torque", drive_torque(tree, body, reactions)}};
-  }
-  const Eigen::Quaterniond a = attitude(tree, body, state);
-  ordered_json values{{"attitude", {a.w(), a.x(), a.y(), a.z()}},
-                      {"angular_velocity", json(state.rates.segment<3>(v))}};
-  if (q_count == 7) {
-    values["position"] = json(place(tree, body, state));
-    values["velocity"] = json(state.rates.segment<3>(v + 3));
-  }
-  return values;
 }
 
 ordered_json final_state(const Result& result) {
@@ -107,7 +71,7 @@ ordered_json final_state(const Result& result) {
   ordered_json parts = ordered_json::object();
   for (int i = 0; i < bodies(result); ++i) {
     const std::string& name = result.scene.bodies[at(i)].name;
-    joints[name] = joint(result, i, state, reactions);
+    joints[name] = joint(result.model.tree(), i, state, reactions);
     carried[name] = json(reactions.on_body[at(i)].value);
     if (!result.terms) continue;
     const auto terms = result.model.terms(t, state, i);
@@ -119,31 +83,6 @@ ordered_json final_state(const Result& result) {
   if (result.reactions) final["reactions"] = carried;
   if (result.terms) final["terms"] = parts;
   return final;
-}
-
-std::string list(const ordered_json& numbers) {
-  if (numbers.is_number()) return fmt::format("{:.15g}", numbers.get<double>());
-  std::string text;
-  for (const auto& x : numbers) {
-    text += fmt::format("{}{:.15g}", text.empty() ? "" : ", ", x.get<double>());
-  }
-  return "(" + text + ")";
-}
-
-void print_table(const char* title, const ordered_json& table) {
-  fmt::print("\n{}\n", title);
-  for (const auto& [body, values] : table.items()) {
-    for (const auto& [quantity, numbers] : values.items()) {
-      if (numbers.is_object()) {
-        for (const auto& [part, vector] : numbers.items()) {
-          fmt::print("  {:20} {:17} {}\n", body, fmt::format("{} {}", quantity, part),
-                     list(vector));
-        }
-      } else {
-        fmt::print("  {:20} {:17} {}\n", body, quantity, list(numbers));
-      }
-    }
-  }
 }
 
 void print_terms(const char* title, const std::vector<Term>& terms) {
@@ -241,10 +180,10 @@ void print_summary(const Result& result) {
     fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", name, start, largest);
   }
   const ordered_json final = final_state(result);
-  print_table(fmt::format("joints at t = {:.15g} s", final["t"].get<double>()).c_str(),
-              final["joints"]);
-  if (result.reactions) print_table("reactions, N and N m", final["reactions"]);
-  if (result.terms) print_table("terms of the law, N and N m", final["terms"]);
+  joint_tables::print(fmt::format("joints at t = {:.15g} s", final["t"].get<double>()).c_str(),
+                      final["joints"]);
+  if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);
+  if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
   print_terms("terms kept", terms_kept(result.scene));
   print_terms("terms dropped", terms_dropped(result.scene));
 }

@@ -6,9 +6,6 @@
 #include <sstream>
 #include <string>
 
-#include <dynamics/file/atomic_file.hpp>
-#include <motor/error.hpp>
-
 #include "../shared/gnuplot.hpp"
 #include "columns.hpp"
 #include "output.hpp"
@@ -133,11 +130,6 @@ void write_block(std::ostream& s, const char* name, const std::vector<Series>& s
   s << "END\n";
 }
 
-const std::string style =
-    "set termoption noenhanced\nset grid xtics ytics lt 1 lc rgb '#dddddd'\n"
-    "set border 31 lc rgb '#555555'\n"
-    "set tics tc rgb '#333333'\n";
-
 /// All of what does not change at all, with room about it.
 std::string y_range(const Panel& panel) {
   double least = panel.curves.front().values.front();
@@ -161,7 +153,7 @@ std::string over_time(const std::string& title, const Series& times,
     for (const Curve& curve : panels[p].curves) block.push_back(curve.values);
     write_block(s, ("panel" + std::to_string(p)).c_str(), block);
   }
-  s << style << "set xzeroaxis lc rgb '#888888'\nset autoscale xfix\n"
+  s << gnuplot::style << "set xzeroaxis lc rgb '#888888'\nset autoscale xfix\n"
     << "set offsets 0, 0, graph 0.08, graph 0.08\n"
     << "set format y '%.5g'\n";
   const bool has_key = std::any_of(panels.begin(), panels.end(),
@@ -290,7 +282,7 @@ std::string on_sphere(const std::string& title, const std::string& what,
   const std::string marks =
       " with points pt 6 ps 1.3 lw 2 lc rgb '#d55e00' title 'start', ${}end with points pt 8 ps "
       "1.3 lw 2 lc rgb '#009e73' title 'end'\n";
-  s << style << "set key outside bottom center horizontal\n";
+  s << gnuplot::style << "set key outside bottom center horizontal\n";
   fmt::print(s, "set multiplot layout 1,2 title {}\n", quoted(title + ": " + what));
   s << "set size ratio -1\nunset border\nunset tics\nunset grid\nset title 'on the unit sphere, "
        "guide axes'\nset xrange [-1.15:1.15]\nset yrange [-1.15:1.15]\n"
@@ -318,26 +310,10 @@ std::string on_sphere(const std::string& title, const std::string& what,
   return s.str();
 }
 
-void draw_one(const std::filesystem::path& place, std::size_t height, const std::string& script) {
-  for (const bool svg : {true, false}) {
-    kreisel::AtomicFile picture(place.string() + (svg ? ".svg" : ".png"));
-    const std::string terminal =
-        svg ? fmt::format("set terminal svg size 800,{} font 'Helvetica,14' background 'white'\n",
-                          height)
-            : fmt::format("set terminal pngcairo size 800,{} font 'Helvetica,11'\n", height);
-    gnuplot::run(
-        fmt::format("{}set output {}\n{}", terminal, quoted(picture.draft().string()), script));
-    picture.commit();
-  }
-}
-
 }  // namespace
 
 void draw(const Result& result, const std::filesystem::path& folder) {
-  gnuplot::require_installed();
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw kreisel::InvalidInput("--plot " + folder.string() + ": " + error.message());
+  gnuplot::open_folder(folder);
   write_view(result, folder / "view.html");
   const Samples samples(result, most_points);
   const Series times = samples.all([](double t, const JointState&) { return t; });
@@ -347,8 +323,8 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   const std::string& title = result.scene.title;
   const auto over = [&](const char* name, const char* what, const std::vector<Panel>& panels) {
     if (panels.empty()) return;
-    draw_one(folder / name, 110 + 170 * panels.size(),
-             over_time(title.empty() ? what : title + ": " + what, times, panels));
+    gnuplot::draw(folder / name, 110 + 170 * panels.size(),
+                  over_time(title.empty() ? what : title + ": " + what, times, panels));
   };
   const Panels all = panels(result, rows);
   over("coordinates", "coordinates", all.coordinates);
@@ -357,5 +333,5 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   over("invariants", "what should not change", drifts(result, samples));
   std::string what;
   const auto way = path(result, samples, what);
-  if (!way.empty()) draw_one(folder / "axis", 500, on_sphere(title, what, way));
+  if (!way.empty()) gnuplot::draw(folder / "axis", 500, on_sphere(title, what, way));
 }

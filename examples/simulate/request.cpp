@@ -1,27 +1,14 @@
 #include "request.hpp"
 
-#include <CLI/CLI.hpp>
-#include <fmt/core.h>
-
-#include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include <motor/error.hpp>
 
+#include "../shared/command_line.hpp"
+
 using kreisel::InvalidInput;
 
 namespace {
-
-/// Throws : InvalidInput unless the whole text is a finite number
-double number(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw InvalidInput(fmt::format("{} = '{}' is not a finite number", option, text));
-  }
-  return value;
-}
 
 void check(const Request& request) {
   const auto& [t_end, tolerance, method] = request.solve;
@@ -46,7 +33,10 @@ std::optional<Request> read_request(int argc, char** argv) {
   const auto value = [&app](const std::string& option, std::optional<double>& target,
                             const std::string& help) {
     app.add_option_function<std::string>(
-           option, [&target, option](const std::string& text) { target = number(option, text); },
+           option,
+           [&target, option](const std::string& text) {
+             target = command_line::number(option, text);
+           },
            help)
         ->type_name("NUMBER")
         ->group("Instead of the scene's");
@@ -82,14 +72,7 @@ std::optional<Request> read_request(int argc, char** argv) {
                  "pictures of the run, SVG and PNG, by gnuplot; view.html shows it in motion")
       ->type_name("FOLDER")
       ->group("Output");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return {};
-  } catch (const CLI::ParseError& error) {
-    throw InvalidInput(error.what());
-  }
+  if (!command_line::parse(app, argc, argv)) return {};
   request.scene = scene;
   if (!csv.empty()) request.csv = csv;
   if (!plot.empty()) request.plot = plot;

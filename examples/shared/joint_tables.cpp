@@ -1,0 +1,77 @@
+#include "joint_tables.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string>
+
+using kreisel::JointKind;
+using nlohmann::ordered_json;
+
+namespace joint_tables {
+
+namespace {
+
+std::string list(const ordered_json& numbers) {
+  if (numbers.is_number()) return fmt::format("{:.15g}", numbers.get<double>());
+  std::string text;
+  for (const auto& x : numbers) {
+    text += fmt::format("{}{:.15g}", text.empty() ? "" : ", ", x.get<double>());
+  }
+  return "(" + text + ")";
+}
+
+}  // namespace
+
+ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+ordered_json json(double x) { return std::isfinite(x) ? ordered_json(x) : ordered_json(); }
+
+ordered_json json(const kreisel::Motor<>& force) {
+  return {{"force", json(force.resultant)}, {"torque", json(force.moment)}};
+}
+
+ordered_json joint(const kreisel::BodyTree& tree, int body, const JointState& state,
+                   const kreisel::JointReactions& reactions) {
+  const auto [q, q_count, v, v_count] = tree.place(body);
+  const auto pair = [](const Eigen::VectorXd& x, int begin) {
+    return ordered_json{x[begin], x[begin + 1]};
+  };
+  switch (tree.body(body).joint.kind) {
+    case JointKind::fixed: return ordered_json::object();
+    case JointKind::universal:
+      return {{"coordinate", pair(state.coordinates, q)}, {"rate", pair(state.rates, v)}};
+    case JointKind::spherical:
+    case JointKind::free: break;
+    default:
+      return {{"coordinate", state.coordinates[q]},
+              {"rate", state.rates[v]},
+              {"drive_torque", drive_torque(tree, body, reactions)}};
+  }
+  const Eigen::Quaterniond a = attitude(tree, body, state);
+  ordered_json values{{"attitude", {a.w(), a.x(), a.y(), a.z()}},
+                      {"angular_velocity", json(state.rates.segment<3>(v))}};
+  if (q_count == 7) {
+    values["position"] = json(place(tree, body, state));
+    values["velocity"] = json(state.rates.segment<3>(v + 3));
+  }
+  return values;
+}
+
+void print(const char* title, const ordered_json& table) {
+  fmt::print("\n{}\n", title);
+  for (const auto& [body, values] : table.items()) {
+    for (const auto& [quantity, numbers] : values.items()) {
+      if (numbers.is_object()) {
+        for (const auto& [part, vector] : numbers.items()) {
+          fmt::print("  {:20} {:17} {}\n", body, fmt::format("{} {}", quantity, part),
+                     list(vector));
+        }
+      } else {
+        fmt::print("  {:20} {:17} {}\n", body, quantity, list(numbers));
+      }
+    }
+  }
+}
+
+}  // namespace joint_tables

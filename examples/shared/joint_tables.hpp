@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include <motor/motor.hpp>
+
+#include "joints.hpp"
+
+/// Joints and what they carry, for people and for machines.
+namespace joint_tables {
+
+[[nodiscard]] nlohmann::ordered_json json(const Eigen::Vector3d& v);
+
+/// What JSON has no number for is null.
+[[nodiscard]] nlohmann::ordered_json json(double x);
+
+[[nodiscard]] nlohmann::ordered_json json(const kreisel::Motor<>& force);
+
+/// Coordinates and rates of a joint and the torque of its drive, by their names in scene files.
+[[nodiscard]] nlohmann::ordered_json joint(const kreisel::BodyTree& tree, int body,
+                                           const JointState& state,
+                                           const kreisel::JointReactions& reactions);
+
+/// Of objects of numbers, lists or objects of those, by body.
+void print(const char* title, const nlohmann::ordered_json& table);
+
+}  // namespace joint_tables
