@@ -1,0 +1,475 @@
+#include "analysis.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+
+#include <dynamics/study/floquet_bodies.hpp>
+#include <dynamics/study/linearize.hpp>
+#include <dynamics/study/rotor_spectrum.hpp>
+
+#include "../shared/joints.hpp"
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+using kreisel::GyroscopicMode;
+using kreisel::InvalidInput;
+
+namespace {
+
+using Linearisation = kreisel::Linearisation<kreisel::Guide, kreisel::Body>;
+
+Linearisation linearized(const System& system, double t, const VectorXd& y) {
+  return kreisel::linearize<kreisel::Guide, kreisel::Body>(system, t, y);
+}
+
+kreisel::Tangent tangent_of(const System& system, const VectorXd& y) {
+  return {static_cast<int>(y.size()), kreisel::quaternions(system.tree())};
+}
+
+/// A set of directions.
+using Places = std::vector<bool>;
+
+std::vector<int> list(const Places& places, bool in = true) {
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(places.size()); ++i) {
+    if (places[static_cast<std::size_t>(i)] == in) result.push_back(i);
+  }
+  return result;
+}
+
+/// The directions of a state, first those of the coordinates, then of the rates, and what depends
+/// on them.
+struct Directions {
+  int rates;
+  Places given, held, running;  ///< as RuledDirections has them
+  std::vector<int> attitudes;
+
+  explicit Directions(const System& system) : rates(system.tree().rates()) {
+    auto ruled = kreisel::RuledDirections::of(system.tree());
+    given = set(ruled.given);
+    held = set(ruled.held);
+    running = set(ruled.running);
+    attitudes = std::move(ruled.attitudes);
+  }
+
+  [[nodiscard]] Places set(const std::vector<int>& directions) const {
+    Places places(2 * static_cast<std::size_t>(rates), false);
+    for (const int i : directions) places[static_cast<std::size_t>(i)] = true;
+    return places;
+  }
+
+  /// The angles of an attitude are taken as a whole: the first, and how many.
+  [[nodiscard]] std::pair<int, int> group(int direction) const {
+    for (const int first : attitudes) {
+      if (direction >= first && direction < first + 3) return {first, 3};
+    }
+    return {direction, 1};
+  }
+
+  /// Coordinates on which no acceleration depends: at a state and at another, for an equilibrium
+  /// may hide a dependence.
+  [[nodiscard]] Places cyclic(const MatrixXd& here, const MatrixXd& elsewhere) const {
+    Places result(2 * static_cast<std::size_t>(rates), false);
+    const auto counts = [this](const MatrixXd& A, int i) {
+      return A.col(i).tail(rates).cwiseAbs().maxCoeff() > 1e-13 * A.norm();
+    };
+    for (int i = 0; i < rates; ++i) {
+      const auto [first, count] = group(i);
+      bool none = true;
+      for (int k = first; k < first + count; ++k) {
+        none = none && !counts(here, k) && !counts(elsewhere, k);
+      }
+      result[static_cast<std::size_t>(i)] = none;
+    }
+    return result;
+  }
+
+  /// Directions that can be left out, and those that stay keep their roots: what is given, which
+  /// depends on nothing else, and that on which nothing else depends.
+  [[nodiscard]] Places without_roots(const MatrixXd& A) const {
+    Places out(given.size(), false);
+    const double zero = 1e-14 * A.norm();
+    const auto in = [](const Places& places, int i) { return places[static_cast<std::size_t>(i)]; };
+    const auto nothing_depends = [&](int i) {
+      const auto [first, count] = group(i);
+      for (int row = 0; row < 2 * rates; ++row) {
+        const bool own = count > 1 && row >= first && row < first + count;
+        if (!own && !in(out, row) && std::abs(A(row, i)) > zero) return false;
+      }
+      return true;
+    };
+    for (bool more = true; more;) {
+      more = false;
+      for (int i = 0; i < 2 * rates; ++i) {
+        if (in(out, i) || in(given, i)) continue;
+        const auto [first, count] = group(i);
+        bool all = true;
+        for (int k = first; k < first + count; ++k) all = all && nothing_depends(k);
+        if (!all) continue;
+        for (int k = first; k < first + count; ++k) out[static_cast<std::size_t>(k)] = true;
+        more = true;
+      }
+    }
+    for (const int i : list(given)) out[static_cast<std::size_t>(i)] = true;
+    return out;
+  }
+};
+
+Places joined(Places a, const Places& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = a[i] || b[i];
+  return a;
+}
+
+/// A state that has nothing special.
+VectorXd off(const System& system, const VectorXd& y) {
+  const kreisel::Tangent tangent = tangent_of(system, y);
+  VectorXd eta(tangent.dimension());
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    eta[i] = 0.1 * std::cos(2.0 * static_cast<double>(i + 1));
+  }
+  return tangent.moved(y, eta);
+}
+
+/// Whether the linear equations stay what they are along the motion and with time.
+bool stays(const System& system, const Linearisation& linear, double t_end) {
+  const kreisel::Tangent tangent = tangent_of(system, linear.state);
+  const double fastest = linear.rate.cwiseAbs().maxCoeff();
+  std::vector<double> times{0.31 * t_end, 0.77 * t_end};
+  // So that no angle happens to have gone whole turns.
+  if (fastest * t_end > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
+  return std::all_of(times.begin(), times.end(), [&](double t) {
+    const VectorXd later = tangent.moved(linear.state, VectorXd(t * linear.rate));
+    const Linearisation then = linearized(system, t, later);
+    return (then.A - linear.A).norm() <= 1e-9 * linear.A.norm() &&
+           (then.rate - linear.rate).norm() <= 1e-9 * (1 + linear.rate.norm());
+  });
+}
+
+Steady steady_at(const System& system, const Linearisation& linear) {
+  Steady steady;
+  steady.state = linear.state;
+  const Places running = Directions(system).running;
+  const int rates = system.tree().rates();
+  for (int i = 0; i < rates; ++i) {
+    const bool counts = !running[static_cast<std::size_t>(i)];
+    steady.turns = steady.turns || (counts && std::abs(linear.rate[i]) > 1e-9);
+  }
+  return steady;
+}
+
+/// The one at the guess, or next to it.
+Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
+  const Linearisation at_guess = linearized(system, 0, guess);
+  const double change = at_guess.unsteadiness.norm();
+  const bool moves = at_guess.rate.norm() > 0;
+  if (moves && change <= 1e-12 * at_guess.A.norm() * at_guess.rate.norm() &&
+      stays(system, at_guess, t_end)) {
+    Steady steady = steady_at(system, at_guess);
+    steady.kind = Steady::Kind::start;
+    return steady;
+  }
+  const Directions directions(system);
+  const Places cyclic = directions.cyclic(at_guess.A, linearized(system, 0, off(system, guess)).A);
+  Places held = joined(directions.held, cyclic);
+  for (const int first : directions.attitudes) {
+    // Else Newton's steps halve the angular velocity of a body that nothing holds, down to none.
+    const int w = directions.rates + first;
+    Eigen::Index most = 0;
+    const double turns = guess.tail(directions.rates).segment(first, 3).cwiseAbs().maxCoeff(&most);
+    const bool free = cyclic[static_cast<std::size_t>(first)] && turns > 0;
+    if (free) held[static_cast<std::size_t>(w) + static_cast<std::size_t>(most)] = true;
+  }
+  Steady steady;
+  try {
+    const auto found = kreisel::find_equilibrium(
+        system, 0, guess,
+        {.held = list(held), .running = list(joined(directions.running, cyclic))});
+    const Linearisation there = linearized(system, 0, found.state);
+    if (!stays(system, there, t_end)) {
+      steady.reason =
+          "the linear equations change along the motion or with time (if periodically: --period)";
+      return steady;
+    }
+    steady = steady_at(system, there);
+    steady.residual = found.residual;
+    steady.distance = (found.state - guess).cwiseAbs().maxCoeff();
+    const bool same = steady.distance <= 1e-9 * (1 + guess.cwiseAbs().maxCoeff());
+    steady.kind = same ? Steady::Kind::start : Steady::Kind::found;
+  } catch (const kreisel::ComputationFailed& error) {
+    steady.reason = error.what();
+  }
+  return steady;
+}
+
+/// Of roots, or of multipliers by what they are beyond 1.
+template <class Modes, class Growth>
+Verdict verdict(const Modes& modes, bool all_directions, const Growth& growth) {
+  Verdict result = all_directions ? Verdict::stable : Verdict::marginal;
+  for (const auto& mode : modes) {
+    if (growth(mode) > mode.error) return Verdict::unstable;
+    if (growth(mode) >= -mode.error) result = Verdict::marginal;
+  }
+  return result;
+}
+
+Linear linear_about(const System& system, const VectorXd& state) {
+  const Linearisation there = linearized(system, 0, state);
+  const Directions directions(system);
+  const Places out = directions.without_roots(there.A);
+  const std::vector<int> kept = list(out, false);
+  Linear linear;
+  linear.names = there.names;
+  linear.has_rotors = !system.tree().rotors().empty();
+  for (const int i : list(out)) linear.left_out.push_back(there.names[static_cast<std::size_t>(i)]);
+  if (kept.empty()) return linear;
+  const MatrixXd A = there.A(kept, kept);
+  MatrixXd slope = MatrixXd::Zero(A.rows(), A.cols());
+  if (linear.has_rotors) slope = system.momenta_slope(0, state)(kept, kept);
+  for (GyroscopicMode& mode : kreisel::rotor_spectrum(A, slope)) {
+    if (mode.root.imag() < 0) continue;
+    const Eigen::VectorXcd own = mode.shape;
+    mode.shape.setZero(there.A.rows());
+    mode.shape(kept) = own;
+    linear.modes.push_back(std::move(mode));
+  }
+  // What is neither held nor held back by anything drifts off, however slowly.
+  const std::vector<int> left_out = list(out);
+  const bool drifts = std::any_of(left_out.begin(), left_out.end(), [&directions](int i) {
+    return !directions.held[static_cast<std::size_t>(i)];
+  });
+  linear.verdict =
+      verdict(linear.modes, !drifts, [](const GyroscopicMode& mode) { return mode.root.real(); });
+  return linear;
+}
+
+bool oscillates(const GyroscopicMode& mode) { return mode.root.imag() > mode.error; }
+
+/// Takes the modes of one more speed to the curves that they continue, the likest first; the others
+/// begin curves of their own.
+void connect(std::vector<Curve>& curves, std::vector<GyroscopicMode> modes) {
+  struct Pair {
+    double likeness;
+    std::size_t curve, mode;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    if (!curves[c].back()) continue;
+    for (std::size_t m = 0; m < modes.size(); ++m) {
+      pairs.push_back({std::abs(curves[c].back()->shape.dot(modes[m].shape)), c, m});
+    }
+  }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.likeness > b.likeness; });
+  const std::size_t before = curves.empty() ? 0 : curves.front().size();
+  std::vector<bool> taken(modes.size(), false);
+  for (const auto& [likeness, c, m] : pairs) {
+    if (likeness < 0.3 || taken[m] || curves[c].size() > before) continue;
+    curves[c].emplace_back(modes[m]);
+    taken[m] = true;
+  }
+  for (Curve& curve : curves) {
+    if (curve.size() == before) curve.emplace_back();
+  }
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    if (taken[m]) continue;
+    curves.emplace_back(before);
+    curves.back().emplace_back(std::move(modes[m]));
+  }
+}
+
+/// The place of the speed of a body among the state's components.
+Eigen::Index speed_of(const System& system, const std::string& name) {
+  const kreisel::BodyTree& tree = system.tree();
+  const auto& bodies = tree.bodies();
+  const auto is = [&name](const auto& body) { return body.name == name; };
+  if (std::none_of(bodies.begin(), bodies.end(), is)) {
+    throw InvalidInput("--campbell: body '" + name + "' does not exist");
+  }
+  const int body = tree.index(name);
+  const auto& b = tree.body(body);
+  const bool turns = b.joint.kind == kreisel::JointKind::revolute &&
+                     (b.rotor ? b.rotor->mode != kreisel::RotorMode::torque
+                              : b.rule == kreisel::JointRule::constant_rate);
+  if (!turns) {
+    throw InvalidInput("--campbell: body '" + name +
+                       "' is neither a free or regulated rotor nor driven at a constant rate");
+  }
+  return tree.coordinates() + tree.place(body).v;
+}
+
+Campbell sweep(const System& system, const Sweep& asked, VectorXd guess, double t_end) {
+  const Eigen::Index speed = speed_of(system, asked.body);
+  Campbell campbell{asked.body, asked.speeds, !system.tree().rotors().empty(), {}};
+  for (const double now : asked.speeds) {
+    guess[speed] = now;
+    const Steady steady = find_steady(system, guess, t_end);
+    if (!steady.exists()) {
+      throw kreisel::ComputationFailed(
+          fmt::format("--campbell: no steady motion at {:.9g} rad/s: {}", now, steady.reason));
+    }
+    guess = steady.state;
+    std::vector<GyroscopicMode> modes = linear_about(system, steady.state).modes;
+    modes.erase(std::remove_if(modes.begin(), modes.end(),
+                               [](const GyroscopicMode& mode) { return !oscillates(mode); }),
+                modes.end());
+    connect(campbell.curves, std::move(modes));
+  }
+  return campbell;
+}
+
+template <class Kind>
+bool has_link(const kreisel::SceneFile& scene) {
+  return std::any_of(scene.guide.begin(), scene.guide.end(),
+                     [](const auto& link) { return std::holds_alternative<Kind>(link); });
+}
+
+/// Of all oscillations of the guide, if there is but one.
+std::optional<double> frequency_of_guide(const kreisel::SceneFile& scene) {
+  std::optional<double> only;
+  bool several = false;
+  for (const auto& link : scene.guide) {
+    const auto* const harmonic = std::get_if<kreisel::scene_guide::Harmonic>(&link);
+    if (harmonic == nullptr) continue;
+    for (const auto* const series : {&harmonic->angular_velocity, &harmonic->origin_acceleration}) {
+      for (const auto& term : series->terms) {
+        const double w = std::abs(term.frequency);
+        if (w == 0) continue;
+        several = several || (only && std::abs(*only - w) > 1e-12 * w);
+        only = w;
+      }
+    }
+  }
+  return several ? std::nullopt : only;
+}
+
+std::optional<double> period_of(const kreisel::SceneFile& scene, const Request& request) {
+  if (request.period) return request.period;
+  const std::optional<double> w = frequency_of_guide(scene);
+  return w ? std::optional(2 * std::numbers::pi / *w) : std::nullopt;
+}
+
+/// By how much the field is another one after a period, relative.
+double field_misses(const System& system, const VectorXd& start, double period) {
+  const Directions directions(system);
+  const kreisel::Tangent tangent = tangent_of(system, start);
+  double worst = 0;
+  VectorXd y = start;
+  for (const double share : {0.0, 0.3, 0.7}) {
+    const auto turned = [&](double t) {
+      VectorXd eta = VectorXd::Zero(tangent.dimension());
+      for (const int i : list(directions.running)) {
+        eta[i] = t * start[system.tree().coordinates() + i];
+      }
+      return tangent.moved(y, eta);
+    };
+    const double t = share * period;
+    const VectorXd now = system.rates(t, turned(t));
+    const VectorXd then = system.rates(t + period, turned(t + period));
+    worst = std::max(worst, (then - now).norm() / (1 + now.norm()));
+    y = off(system, y);
+  }
+  return worst;
+}
+
+Floquet multipliers(const System& system, const VectorXd& start, double period, double t_of_guide) {
+  Floquet floquet;
+  floquet.period = period;
+  const Directions directions(system);
+  const Places cyclic = directions.cyclic(linearized(system, t_of_guide / 2, start).A,
+                                          linearized(system, t_of_guide / 2, off(system, start)).A);
+  try {
+    const auto motion =
+        kreisel::periodic_motion(system, 0, period, start,
+                                 {.held = list(joined(directions.held, cyclic)),
+                                  .running = list(joined(directions.running, cyclic)),
+                                  .most_iterations = 20});
+    floquet.start = motion.start;
+    floquet.residual = motion.residual;
+    const std::vector<int> kept =
+        list(joined(directions.given, joined(directions.running, cyclic)), false);
+    const MatrixXd X = motion.period.matrix(kept, kept);
+    if (X.size() == 0) return floquet;
+    floquet.multipliers = kreisel::spectrum(X, motion.period.error.norm());
+  } catch (const kreisel::ComputationFailed& error) {
+    floquet.reason = error.what();
+    return floquet;
+  }
+  std::stable_sort(
+      floquet.multipliers.begin(), floquet.multipliers.end(),
+      [](const auto& a, const auto& b) { return std::abs(a.root) > std::abs(b.root); });
+  floquet.verdict =
+      verdict(floquet.multipliers, true, [](const auto& m) { return std::abs(m.root) - 1; });
+  return floquet;
+}
+
+/// A ball that turns at the start but in no equilibrium: what was meant was another motion.
+bool lost_spin(const System& system, const VectorXd& start, const Steady& steady) {
+  if (steady.kind == Steady::Kind::start) return false;
+  const int q = system.tree().coordinates();
+  const auto attitudes = Directions(system).attitudes;
+  return std::any_of(attitudes.begin(), attitudes.end(), [&](int first) {
+    const VectorXd before = start.segment(q + first, 3);
+    if (!steady.exists()) return before.norm() > 0;
+    return (steady.state.segment(q + first, 3) - before).norm() > 0.5 * before.norm();
+  });
+}
+
+}  // namespace
+
+kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& request) {
+  const double period = period_of(scene, request).value_or(0);
+  scene.t_end = std::max({scene.t_end, 3 * period, 1.0});
+  return scene;
+}
+
+Analysis analyze(const System& system, const kreisel::SceneFile& scene, const Request& request) {
+  const auto [coordinates, rates] = start_of(scene);
+  VectorXd start(coordinates.size() + rates.size());
+  start << coordinates, rates;
+  if (rates.size() == 0) throw InvalidInput("nothing in this scene can move");
+  Analysis result;
+  const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
+  const bool logged = has_link<kreisel::scene_guide::Table>(scene);
+  if (logged || swings) {
+    result.steady.reason =
+        logged ? "the guide follows a log" : "the guide swings: the motions that stay repeat it";
+  } else {
+    result.steady = find_steady(system, start, scene.t_end);
+  }
+  if (result.steady.exists()) result.linear = linear_about(system, result.steady.state);
+  if (!logged && !swings && lost_spin(system, start, result.steady)) {
+    result.notes.emplace_back(
+        "a ball or free body turns at the start and not in the equilibrium; its steady turning "
+        "under forces is beyond this program: describe it by gimbals and a rotor");
+  }
+  if (request.campbell) {
+    if (!result.steady.exists()) {
+      throw kreisel::ComputationFailed("--campbell: no steady motion: " + result.steady.reason);
+    }
+    result.campbell = sweep(system, *request.campbell, result.steady.state, scene.t_end);
+  }
+  if (logged && !request.period) {
+    result.notes.emplace_back("the guide follows a log: Floquet multipliers only with --period");
+  } else if (swings && !period_of(scene, request)) {
+    result.notes.emplace_back(
+        "the guide swings with several frequencies: Floquet multipliers only with --period, if "
+        "they have a common one");
+  }
+  if (const auto period = period_of(scene, request)) {
+    if (const double misses = field_misses(system, start, *period); misses > 1e-9) {
+      const std::string why = fmt::format(
+          "after {:.9g} s the equations are not the same: rates differ by {:.1e}", *period, misses);
+      if (request.period) throw InvalidInput("--period: " + why);
+      result.notes.push_back(why + ", so there are no Floquet multipliers");
+    } else {
+      result.floquet = multipliers(system, start, *period, with_longer_guide(scene, request).t_end);
+    }
+  }
+  result.precession = system.precession(start, result.steady.state, scene.t_end);
+  return result;
+}

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <dynamics/study/spectrum.hpp>
+
+#include "request.hpp"
+#include "system.hpp"
+
+/// A state in which the motion does not change, but for angles on which nothing depends.
+struct Steady {
+  enum class Kind {
+    start,  ///< that of the file
+    found,  ///< one next to it
+    none
+  };
+  Kind kind = Kind::none;
+  std::string reason;     ///< why there is none
+  bool turns = false;     ///< more than rotors and drives do
+  Eigen::VectorXd state;  ///< of the system; empty where there is none
+  double distance = 0;    ///< from the file's start, greatest component
+  double residual = 0;    ///< of the rates that should be 0, greatest
+
+  [[nodiscard]] bool exists() const { return kind != Kind::none; }
+};
+
+enum class Verdict { stable, marginal, unstable };
+
+/// The linear equations about a steady motion.
+struct Linear {
+  /// Slowest first; of two conjugate ones that with root.imag() > 0. Shapes in all directions.
+  std::vector<kreisel::GyroscopicMode> modes;
+  std::vector<std::string> names;     ///< of the directions
+  std::vector<std::string> left_out;  ///< those on which nothing depends here, or that are given
+  bool has_rotors = false;            ///< so that modes are of some kind
+  Verdict verdict = Verdict::marginal;
+};
+
+/// Modes that belong together, one for each speed or none.
+using Curve = std::vector<std::optional<kreisel::GyroscopicMode>>;
+
+struct Campbell {
+  std::string body;
+  std::vector<double> speeds;
+  bool has_rotors = false;
+  std::vector<Curve> curves;
+};
+
+/// Of a motion that repeats itself.
+struct Floquet {
+  double period = 0;
+  std::string reason;  ///< why there are no multipliers
+  Eigen::VectorXd start;
+  double residual = 0;                     ///< of the return
+  std::vector<kreisel::Mode> multipliers;  ///< greatest first, of two conjugate ones both
+  Verdict verdict = Verdict::marginal;
+};
+
+struct Analysis {
+  Steady steady;
+  std::optional<Linear> linear;
+  std::optional<Campbell> campbell;
+  std::optional<Floquet> floquet;
+  PrecessionCheck precession;
+  std::vector<std::string> notes;  ///< on what is beyond this program
+};
+
+/// The system of a scene, its guide known as long as the analysis looks at it.
+[[nodiscard]] kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene,
+                                                   const Request& request);
+
+/// Throws : kreisel::InvalidInput for what is asked of a body or period that does not fit the
+///          scene; kreisel::ComputationFailed where a sweep finds no steady motion
+[[nodiscard]] Analysis analyze(const System& system, const kreisel::SceneFile& scene,
+                               const Request& request);

@@ -1,0 +1,33 @@
+// analyze: equilibrium, linear equations, stability and precession check of what a scene file
+// describes.
+
+#include <cstdio>
+
+#include "../shared/exit_status.hpp"
+#include "output.hpp"
+
+namespace {
+
+int run(const Request& request) {
+  const kreisel::SceneFile scene = kreisel::read_scene(request.scene);
+  const System system(with_longer_guide(scene, request));
+  const Analysis analysis = analyze(system, scene, request);
+  const Result result{scene, system, analysis};
+  if (request.plot) draw(result, *request.plot);
+  if (request.json) {
+    print_json(result);
+  } else {
+    print_summary(result);
+  }
+  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return exit_status("analyze", [&] {
+    const std::optional<Request> request = read_request(argc, argv);
+    return request ? run(*request) : 0;
+  });
+}

@@ -1,0 +1,280 @@
+#include "output.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "../shared/joint_tables.hpp"
+
+using kreisel::GyroscopicMode;
+using nlohmann::ordered_json;
+
+namespace {
+
+using joint_tables::json;
+
+const char* const verdicts[] = {"stable", "marginal", "unstable"};
+
+const char* name(Verdict verdict) { return verdicts[static_cast<int>(verdict)]; }
+
+double damping_ratio(const std::complex<double>& root) {
+  return root.real() != 0 ? -root.real() / std::abs(root) : 0;
+}
+
+/// The direction of a coordinate, or a rate, that moves most.
+std::string mostly(const GyroscopicMode& mode, const std::vector<std::string>& names) {
+  const Eigen::Index half = mode.shape.size() / 2;
+  Eigen::Index most = 0;
+  if (mode.shape.head(half).cwiseAbs().maxCoeff(&most) == 0) {
+    mode.shape.cwiseAbs().maxCoeff(&most);
+  }
+  return names[static_cast<std::size_t>(most)];
+}
+
+JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
+  const kreisel::BodyTree& tree = result.system.tree();
+  return {state.head(tree.coordinates()), state.tail(tree.rates())};
+}
+
+ordered_json joints_json(const Result& result, const Eigen::VectorXd& state,
+                         const kreisel::JointReactions& reactions) {
+  const JointState joints = joints_of(result, state);
+  const kreisel::BodyTree& tree = result.system.tree();
+  ordered_json table = ordered_json::object();
+  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
+    table[tree.body(i).name] = joint_tables::joint(tree, i, joints, reactions);
+  }
+  return table;
+}
+
+ordered_json reactions_json(const Result& result, const kreisel::JointReactions& reactions) {
+  ordered_json table = ordered_json::object();
+  for (std::size_t i = 0; i < reactions.on_body.size(); ++i) {
+    table[result.system.tree().bodies()[i].name] = json(reactions.on_body[i].value);
+  }
+  return table;
+}
+
+ordered_json json(const GyroscopicMode& mode, bool has_rotors) {
+  const double w = mode.root.imag();
+  ordered_json result{{"growth_rate", mode.root.real()},
+                      {"frequency", w},
+                      {"frequency_hz", w / (2 * std::numbers::pi)},
+                      {"damping_ratio", damping_ratio(mode.root)},
+                      {"error", mode.error}};
+  if (*kind(mode, has_rotors) != '\0') {
+    result["kind"] = kind(mode, has_rotors);
+    result["spin_growth"] = mode.spin_growth;
+  }
+  return result;
+}
+
+ordered_json json(const Steady& steady, const Result& result) {
+  if (!steady.exists()) return {{"found", "none"}, {"reason", steady.reason}};
+  const kreisel::JointReactions reactions = result.system.reactions(0, steady.state);
+  return {{"found", steady.kind == Steady::Kind::start ? "start" : "from the start"},
+          {"motion", steady.turns ? "steady motion" : "equilibrium"},
+          {"distance", steady.distance},
+          {"residual", steady.residual},
+          {"joints", joints_json(result, steady.state, reactions)},
+          {"reactions", reactions_json(result, reactions)}};
+}
+
+ordered_json json(const Linear& linear) {
+  ordered_json roots = ordered_json::array();
+  for (const GyroscopicMode& mode : linear.modes) {
+    roots.push_back(json(mode, linear.has_rotors));
+    roots.back()["mostly"] = mostly(mode, linear.names);
+  }
+  return {{"verdict", name(linear.verdict)}, {"roots", roots}, {"left_out", linear.left_out}};
+}
+
+ordered_json json(const Campbell& campbell) {
+  ordered_json curves = ordered_json::array();
+  for (const Curve& curve : campbell.curves) {
+    ordered_json modes = ordered_json::array();
+    for (const auto& mode : curve) {
+      modes.push_back(mode ? json(*mode, campbell.has_rotors) : ordered_json());
+    }
+    curves.push_back(modes);
+  }
+  return {{"body", campbell.body}, {"speeds", campbell.speeds}, {"curves", curves}};
+}
+
+ordered_json json(const Floquet& floquet, const Result& result) {
+  if (!floquet.reason.empty()) return {{"period", floquet.period}, {"reason", floquet.reason}};
+  ordered_json multipliers = ordered_json::array();
+  for (const kreisel::Mode& m : floquet.multipliers) {
+    multipliers.push_back({{"real", m.root.real()},
+                           {"imag", m.root.imag()},
+                           {"size", std::abs(m.root)},
+                           {"error", m.error}});
+  }
+  const auto reactions = result.system.reactions(0, floquet.start);
+  return {{"period", floquet.period},
+          {"verdict", name(floquet.verdict)},
+          {"multipliers", multipliers},
+          {"residual", floquet.residual},
+          {"start", joints_json(result, floquet.start, reactions)}};
+}
+
+ordered_json json(const PrecessionCheck& check) {
+  if (!check.beyond.empty()) return {{"reason", check.beyond}};
+  ordered_json result{{"velocities", check.velocities}};
+  if (check.not_tested.empty()) {
+    ordered_json slow = ordered_json::array();
+    for (const auto& root : check.test.slow) {
+      slow.push_back({{"technical", {root.technical.real(), root.technical.imag()}},
+                      {"exact", {root.exact.real(), root.exact.imag()}}});
+    }
+    result["admissible"] = check.test.admissible;
+    if (!check.test.admissible) result["why_not"] = check.test.reason;
+    result["rank"] = check.rank;
+    result["greatest_shift"] = json(check.test.greatest_shift);
+    result["slow_roots"] = slow;
+  } else {
+    result["not_tested"] = check.not_tested;
+  }
+  if (!check.no_motion.empty()) {
+    result["no_bound"] = check.no_motion;
+    return result;
+  }
+  const auto& [end, bound, nutation, valid_until, slow] = check.motion;
+  result["kept_accelerations"] = check.kept;
+  result["bound"] = {{"t", end},
+                     {"error", json(bound)},
+                     {"nutation", json(nutation)},
+                     {"below_0.01_until", valid_until},
+                     {"slow", slow}};
+  return result;
+}
+
+void print(const Steady& steady, const Result& result) {
+  if (!steady.exists()) {
+    fmt::print("no equilibrium and no steady motion: {}\n", steady.reason);
+    return;
+  }
+  const char* const what = steady.turns ? "steady motion" : "equilibrium";
+  if (steady.kind == Steady::Kind::start) {
+    fmt::print("{}: the start of the file\n", what);
+  } else {
+    fmt::print("{}: not the start of the file but found from there, up to {:.3g} away\n", what,
+               steady.distance);
+  }
+  const ordered_json table = json(steady, result);
+  joint_tables::print("joints there", table["joints"]);
+  joint_tables::print("reactions there, N and N m, on the body, its axes", table["reactions"]);
+}
+
+void print(const Linear& linear) {
+  fmt::print("\nlinear equations there: {}\n", name(linear.verdict));
+  if (!linear.modes.empty()) {
+    fmt::print("  {:>16} {:>18} {:>14} {:>12}  {:12} {}\n", "growth, 1/s", "frequency, rad/s", "Hz",
+               "damping", "kind", "mostly");
+  }
+  for (const GyroscopicMode& mode : linear.modes) {
+    fmt::print("  {:16.8g} {:18.10g} {:14.6g} {:12.4g}  {:12} {}\n", mode.root.real(),
+               mode.root.imag(), mode.root.imag() / (2 * std::numbers::pi),
+               damping_ratio(mode.root), kind(mode, linear.has_rotors), mostly(mode, linear.names));
+  }
+  if (linear.left_out.empty()) return;
+  std::string all;
+  for (const std::string& direction : linear.left_out) {
+    all += all.empty() ? "" : ", ";
+    all += direction;
+  }
+  fmt::print("  without roots, given or such that nothing depends on it: {}\n", all);
+}
+
+void print(const Campbell& campbell) {
+  fmt::print("\nfrequencies, rad/s, over the speed of {}, rad/s; * grows\n", campbell.body);
+  for (std::size_t i = 0; i < campbell.speeds.size(); ++i) {
+    fmt::print("  {:12.6g}", campbell.speeds[i]);
+    for (const Curve& curve : campbell.curves) {
+      const bool grows = curve[i] && curve[i]->root.real() > curve[i]->error;
+      fmt::print(" {:>14}{}", curve[i] ? fmt::format("{:.8g}", curve[i]->root.imag()) : "-",
+                 grows ? '*' : ' ');
+    }
+    fmt::print("\n");
+  }
+}
+
+void print(const Floquet& floquet, const Result& result) {
+  fmt::print("\nFloquet, period {:.9g} s: ", floquet.period);
+  if (!floquet.reason.empty()) {
+    fmt::print("none, {}\n", floquet.reason);
+    return;
+  }
+  fmt::print("{}\n  {:>20} {:>20} {:>14} {:>10}\n", name(floquet.verdict), "multiplier", "", "size",
+             "error");
+  for (const kreisel::Mode& m : floquet.multipliers) {
+    fmt::print("  {:20.12g} {:+20.12g} {:14.9g} {:10.1e}\n", m.root.real(), m.root.imag(),
+               std::abs(m.root), m.error);
+  }
+  joint_tables::print("the motion that repeats itself, at t = 0", json(floquet, result)["start"]);
+}
+
+void print(const PrecessionCheck& check, double t_end) {
+  fmt::print("\nprecession equations: ");
+  if (!check.beyond.empty()) {
+    fmt::print("none, {}\n", check.beyond);
+    return;
+  }
+  if (!check.not_tested.empty()) {
+    fmt::print("not tested, {}\n", check.not_tested);
+  } else {
+    fmt::print("{}{}\n  G has rank {} of {}; slow roots are off by up to {:.2g} of their size\n",
+               check.test.admissible ? "admissible" : "not admissible: ", check.test.reason,
+               check.rank, check.velocities, check.test.greatest_shift);
+    for (const auto& [technical, exact] : check.test.slow) {
+      if (technical.imag() < 0) continue;
+      fmt::print("  slow root {:.8g} {:+.8g}i, exact {:.8g} {:+.8g}i\n", technical.real(),
+                 technical.imag(), exact.real(), exact.imag());
+    }
+  }
+  if (!check.no_motion.empty()) {
+    fmt::print("  no bound: {}\n", check.no_motion);
+    return;
+  }
+  const auto& [end, bound, nutation, valid_until, slow] = check.motion;
+  fmt::print(
+      "  from the file's start off by at most {:.2g} in {:.6g} s, nutation {:.2g}, {} of {} "
+      "accelerations kept\n",
+      bound, end, nutation, check.kept, check.velocities);
+  if (!slow) {
+    fmt::print("  broken off there, before t_end = {:.6g} s: the motion is not slow\n", t_end);
+  } else if (valid_until < end) {
+    fmt::print("  below 0.01 until {:.6g} s\n", valid_until);
+  }
+}
+
+}  // namespace
+
+const char* kind(const GyroscopicMode& mode, bool has_rotors) {
+  static constexpr const char* kinds[] = {"nutation", "precession", "oscillation"};
+  const bool oscillates = mode.root.imag() > mode.error;
+  return has_rotors && oscillates ? kinds[static_cast<int>(mode.kind())] : "";
+}
+
+void print_json(const Result& result) {
+  const Analysis& a = result.analysis;
+  ordered_json all{{"title", result.scene.title}, {"steady", json(a.steady, result)}};
+  if (a.linear) all["linear"] = json(*a.linear);
+  if (a.campbell) all["campbell"] = json(*a.campbell);
+  if (a.floquet) all["floquet"] = json(*a.floquet, result);
+  all["precession"] = json(a.precession);
+  all["notes"] = a.notes;
+  fmt::print("{}\n", all.dump(2));
+}
+
+void print_summary(const Result& result) {
+  const Analysis& a = result.analysis;
+  if (!result.scene.title.empty()) fmt::print("{}\n\n", result.scene.title);
+  print(a.steady, result);
+  if (a.linear) print(*a.linear);
+  if (a.campbell) print(*a.campbell);
+  if (a.floquet) print(*a.floquet, result);
+  print(a.precession, result.scene.t_end);
+  for (const std::string& note : a.notes) fmt::print("\nnote: {}\n", note);
+}

@@ -1,0 +1,164 @@
+#include <fmt/core.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../shared/gnuplot.hpp"
+#include "output.hpp"
+
+using gnuplot::quoted;
+using kreisel::GyroscopicMode;
+
+namespace {
+
+/// Okabe and Ito's colours and a mark each for nutations, precessions and the rest.
+struct Look {
+  const char* kind;
+  const char* name;
+  const char* colour;
+  int point;
+};
+constexpr Look looks[] = {{"nutation", "nutation", "#0072b2", 7},
+                          {"precession", "precession", "#d55e00", 5},
+                          {"oscillation", "oscillation", "#009e73", 9},
+                          {"", "root", "#000000", 2}};
+
+std::string title_of(const Result& result, const std::string& what) {
+  const std::string& title = result.scene.title;
+  return quoted(title.empty() ? what : title + ": " + what);
+}
+
+/// A block of gnuplot's data for each look, never empty; `rows` writes those of the k-th.
+template <class Rows>
+void write_blocks(std::ostream& s, const Rows& rows) {
+  for (std::size_t k = 0; k < std::size(looks); ++k) {
+    fmt::print(s, "$look{} << END\nNaN NaN\n", k);
+    rows(k);
+    s << "END\n";
+  }
+}
+
+bool looks_so(const GyroscopicMode& mode, bool has_rotors, std::size_t k) {
+  return std::string(looks[k].kind) == kind(mode, has_rotors);
+}
+
+/// Of the blocks that hold anything.
+std::string points(const std::vector<bool>& shown, double size) {
+  std::string list;
+  for (std::size_t k = 0; k < std::size(looks); ++k) {
+    if (!shown[k]) continue;
+    list += fmt::format("{}$look{} with points pt {} ps {} lc rgb '{}' title {}",
+                        list.empty() ? "" : ", ", k, looks[k].point, size, looks[k].colour,
+                        quoted(looks[k].name));
+  }
+  return list;
+}
+
+std::string roots(const Result& result, const Linear& linear) {
+  std::ostringstream s;
+  std::vector<bool> shown(std::size(looks), false);
+  write_blocks(s, [&](std::size_t k) {
+    for (const GyroscopicMode& mode : linear.modes) {
+      if (!looks_so(mode, linear.has_rotors, k)) continue;
+      shown[k] = true;
+      fmt::print(s, "{:.9g} {:.9g}\n", mode.root.real(), mode.root.imag());
+      if (mode.root.imag() > 0) {
+        fmt::print(s, "{:.9g} {:.9g}\n", mode.root.real(), -mode.root.imag());
+      }
+    }
+  });
+  double growth = 0;
+  double size = 0;
+  for (const GyroscopicMode& mode : linear.modes) {
+    growth = std::max(growth, std::abs(mode.root.real()));
+    size = std::max(size, std::abs(mode.root));
+  }
+  s << gnuplot::style << "set zeroaxis lc rgb '#555555'\nset key outside right top\n"
+    << "set format '%.4g'\nset xlabel 'growth rate [1/s]'\nset ylabel 'frequency [rad/s]'\n"
+    << "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
+    << "set title " << title_of(result, "roots of the linear equations") << '\n';
+  // Rounding is no growth to be seen.
+  if (growth < 1e-9 * size) fmt::print(s, "set xrange [{:.3g}:{:.3g}]\n", -0.1 * size, 0.1 * size);
+  s << "plot " << points(shown, 1.4) << "\nunset output\n";
+  return s.str();
+}
+
+std::string campbell_lines(const Result& result, const Campbell& campbell) {
+  std::ostringstream s;
+  std::vector<bool> shown(std::size(looks), false);
+  s << "$lines << END\n";
+  for (const Curve& curve : campbell.curves) {
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      if (curve[i]) {
+        fmt::print(s, "{:.9g} {:.9g}\n", campbell.speeds[i], curve[i]->root.imag());
+      } else {
+        s << '\n';
+      }
+    }
+    s << '\n';
+  }
+  s << "END\n$growing << END\nNaN NaN\n";
+  bool grows = false;
+  for (const Curve& curve : campbell.curves) {
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      if (!curve[i] || curve[i]->root.real() <= curve[i]->error) continue;
+      grows = true;
+      fmt::print(s, "{:.9g} {:.9g}\n", campbell.speeds[i], curve[i]->root.imag());
+    }
+  }
+  s << "END\n";
+  write_blocks(s, [&](std::size_t k) {
+    for (const Curve& curve : campbell.curves) {
+      for (std::size_t i = 0; i < curve.size(); ++i) {
+        if (!curve[i] || !looks_so(*curve[i], campbell.has_rotors, k)) continue;
+        shown[k] = true;
+        fmt::print(s, "{:.9g} {:.9g}\n", campbell.speeds[i], curve[i]->root.imag());
+      }
+    }
+  });
+  s << gnuplot::style << "set key outside right top\nset format '%.4g'\nset autoscale xfix\n"
+    << "set yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\nset ylabel 'frequency [rad/s]'\n"
+    << "set xlabel " << quoted("speed of " + campbell.body + " [rad/s]") << "\nset title "
+    << title_of(result, "Campbell diagram") << '\n';
+  s << "plot $lines with lines lc rgb '#999999' notitle, "
+    << (grows ? "$growing with points pt 6 ps 1.6 lw 2 lc rgb '#cc0000' title 'grows', " : "")
+    << points(shown, 0.6) << "\nunset output\n";
+  return s.str();
+}
+
+std::string multipliers(const Result& result, const Floquet& floquet) {
+  std::ostringstream s;
+  s << "$multipliers << END\n";
+  for (const kreisel::Mode& m : floquet.multipliers) {
+    fmt::print(s, "{:.9g} {:.9g}\n", m.root.real(), m.root.imag());
+  }
+  s << "END\n"
+    << gnuplot::style << "set zeroaxis lc rgb '#555555'\nset size ratio -1\nunset key\n"
+    << "set format '%.4g'\nset xlabel 'real part'\nset ylabel 'imaginary part'\n"
+    << "set parametric\nset trange [0:2*pi]\nset samples 361\n"
+    << "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\nset title "
+    << title_of(result, fmt::format("multipliers over {:.6g} s", floquet.period)) << '\n'
+    << "plot cos(t), sin(t) with lines lc rgb '#999999', $multipliers with points pt 7 ps 1.4 lc "
+       "rgb '#0072b2'\nunset output\n";
+  return s.str();
+}
+
+}  // namespace
+
+void draw(const Result& result, const std::filesystem::path& folder) {
+  gnuplot::open_folder(folder);
+  const Analysis& a = result.analysis;
+  if (a.linear && !a.linear->modes.empty()) {
+    gnuplot::draw(folder / "roots", 560, roots(result, *a.linear));
+  }
+  if (a.campbell && !a.campbell->curves.empty())
+    gnuplot::draw(folder / "campbell", 560, campbell_lines(result, *a.campbell));
+  if (a.floquet && !a.floquet->multipliers.empty()) {
+    gnuplot::draw(folder / "multipliers", 640, multipliers(result, *a.floquet));
+  }
+}

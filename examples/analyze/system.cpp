@@ -1,0 +1,115 @@
+#include "system.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <dynamics/file/scene_system.hpp>
+#include <dynamics/study/linearize.hpp>
+#include <dynamics/study/precession_admissibility.hpp>
+#include <dynamics/study/precession_bodies.hpp>
+#include <dynamics/study/rotor_spectrum.hpp>
+
+using kreisel::KeptAccelerations;
+using kreisel::Obstacle;
+
+/// A guide at rest too is one that a file has named: nothing here is called often enough to gain by
+/// a second type.
+class System::Bodies : public kreisel::BodySystem<kreisel::SceneGuide> {
+ public:
+  using BodySystem::BodySystem;
+};
+
+namespace {
+
+const char* reason(Obstacle obstacle) {
+  switch (obstacle) {
+    case Obstacle::none: return "";
+    case Obstacle::not_determined: return "G + D is singular: it does not determine the velocities";
+    case Obstacle::not_slow: return "the nutations are not fast against the precession";
+    case Obstacle::growing_nutation: return "a nutation grows";
+    case Obstacle::defective: return "what is neglected takes a multiple slow root apart";
+  }
+  return "";
+}
+
+/// Of the velocities without the rotors' speeds.
+bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().maxCoeff() < 1e-9; }
+
+}  // namespace
+
+System::System(const kreisel::SceneFile& scene) {
+  auto [bodies, gravity] = kreisel::bodies_in_gravity(scene);
+  bodies_ = std::make_unique<const Bodies>(kreisel::make_guide(scene), std::move(bodies), gravity);
+}
+
+System::~System() = default;
+
+const kreisel::BodyTree& System::tree() const { return bodies_->tree(); }
+
+System::Vector System::rates(double t, const Vector& y) const { return bodies_->rates(t, y); }
+
+template <class Dual>
+requires(!std::same_as<Dual, double>) System::Numbers<Dual> System::rates(const Dual& t,
+                                                                          const Numbers<Dual>& y)
+const { return bodies_->rates(t, y); }
+
+using Duals = kreisel::detail::Duals<kreisel::detail::directions<System>>;
+template Eigen::Matrix<Duals, Eigen::Dynamic, 1> System::rates(
+    const Duals&, const Eigen::Matrix<Duals, Eigen::Dynamic, 1>&) const;
+
+kreisel::JointReactions System::reactions(double t, const Vector& y) const {
+  kreisel::JointReactions result;
+  kreisel::BodyWorkspace w = bodies_->workspace();
+  bodies_->reactions(t, y, result, w);
+  return result;
+}
+
+Eigen::MatrixXd System::momenta_slope(double t, const Vector& y) const {
+  kreisel::BodyWorkspace w = bodies_->workspace();
+  return kreisel::momenta_slope<kreisel::SceneGuide>(*bodies_, t, y, w);
+}
+
+PrecessionCheck System::precession(const Vector& start, const Vector& rest, double t_end) const {
+  PrecessionCheck check;
+  if (tree().rotors().empty()) {
+    check.beyond = "there is no rotor among the bodies";
+    return check;
+  }
+  kreisel::TechnicalOptions options;
+  try {
+    const kreisel::TechnicalBodies<kreisel::SceneGuide> model(*bodies_);
+    const auto [place, u] = model.start(0, start);
+    check.velocities = static_cast<int>(u.size());
+    if (rest.size() == 0) {
+      check.not_tested = "there is no equilibrium about which";
+    } else if (const auto [middle, still] = model.start(0, rest); !at_rest(still)) {
+      check.not_tested = "the carriers turn in the steady motion; the test is for a rest";
+    } else {
+      const auto a = admissibility(model.forces(0, middle), kreisel::stiffness(model, 0, middle));
+      check.rank = a.rank;
+      check.test = {a.admissible(), reason(a.obstacle), a.greatest_shift, {}};
+      for (const kreisel::SlowRoot& root : a.slow) {
+        check.test.slow.push_back({root.technical, root.exact});
+      }
+      options.kept = a.kept;
+    }
+    try {
+      const auto motion = technical_motion(model, 0, place, u, t_end, options);
+      const kreisel::TechnicalSample& last = motion.samples.back();
+      check.kept = motion.kept;
+      check.motion = {last.t, last.bound, 0, motion.valid_until, motion.slow};
+      for (const auto& sample : motion.samples) {
+        if (sample.nutation.size() == 0) continue;
+        check.motion.nutation =
+            std::max(check.motion.nutation, sample.nutation.cwiseAbs().maxCoeff());
+      }
+    } catch (const kreisel::ComputationFailed& error) {
+      check.no_motion = error.what();
+    }
+  } catch (const kreisel::InvalidInput& error) {
+    check.beyond = error.what();
+  }
+  return check;
+}

@@ -1,0 +1,534 @@
+// The program as its user meets it: scene file in; equilibria, roots, multipliers and bounds out,
+// against closed forms and references.
+
+#include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <support/program.hpp>
+
+using kreisel::test::Outcome;
+using kreisel::test::Scratch;
+using nlohmann::json;
+using std::numbers::pi;
+using Complex = std::complex<double>;
+
+namespace {
+
+Outcome run(const std::string& arguments) {
+  return kreisel::test::run(std::string(KREISEL_ANALYZE) + " " + arguments);
+}
+
+std::string scene(const std::string& name) {
+  return std::string(KREISEL_SCENES) + "/" + name + ".toml";
+}
+
+json answer(const std::string& arguments) {
+  const Outcome outcome = run(arguments + " --json");
+  BOOST_REQUIRE_MESSAGE(outcome.status == 0, arguments << ": " << outcome.err);
+  return json::parse(outcome.out);
+}
+
+json answer_to(const std::string& text, const std::string& arguments = "") {
+  const Scratch folder;
+  return answer(folder.write("scene.toml", text).string() + " " + arguments);
+}
+
+json reference(const std::string& name) {
+  std::ifstream file(std::string(KREISEL_TEST_DATA) + "/" + name);
+  return json::parse(file);
+}
+
+double number(const json& x) {
+  return x.is_string() ? std::stod(x.get<std::string>()) : x.get<double>();
+}
+
+void check_near(const std::string& what, double found, double wanted, double bound) {
+  BOOST_TEST(std::abs(found - wanted) <= bound, what << ": " << found << " differs from " << wanted
+                                                     << " by " << found - wanted << ", allowed "
+                                                     << bound);
+}
+
+/// With the conjugates that the program leaves out.
+std::vector<Complex> roots(const json& result) {
+  std::vector<Complex> all;
+  for (const json& root : result.at("linear").at("roots")) {
+    const double growth = root.at("growth_rate").get<double>();
+    const double frequency = root.at("frequency").get<double>();
+    all.emplace_back(growth, frequency);
+    if (frequency > 0) all.emplace_back(growth, -frequency);
+  }
+  return all;
+}
+
+double distance(const std::vector<Complex>& found, const Complex& wanted) {
+  double least = 1e300;
+  for (const Complex& s : found) least = std::min(least, std::abs(s - wanted));
+  return least;
+}
+
+/// Oscillations, slowest first.
+std::vector<double> frequencies(const json& result) {
+  std::vector<double> all;
+  for (const json& root : result.at("linear").at("roots")) {
+    if (root.at("frequency").get<double>() > 0) all.push_back(root.at("frequency"));
+  }
+  return all;
+}
+
+std::string list(const json& numbers) {
+  std::string text;
+  for (const json& x : numbers) {
+    text += text.empty() ? "[" : ", ";
+    text += x.is_string() ? x.get<std::string>() : x.dump();
+  }
+  return text + "]";
+}
+
+/// A model of rotors.json as a scene; `joints` are the keys besides, by the body's name.
+std::string scene_of(const std::string& model, const std::string& root, double speed,
+                     const json& joints, const std::string& mode = "regulated") {
+  const json all = reference("rotors.json").at("models").at(model);
+  std::ostringstream text;
+  const auto inertia = [&text](const json& body) {
+    const json& tensor = body.at("I");
+    text << "mass = " << body.at("m").get<std::string>() << "\ncentre = " << list(body.at("c"))
+         << "\ninertia = "
+         << list({tensor[0][0], tensor[1][1], tensor[2][2], tensor[0][1], tensor[0][2],
+                  tensor[1][2]})
+         << '\n';
+  };
+  if (!root.empty()) {
+    text << "[[body]]\nname = \"root\"\njoint = { kind = \"" << root << "\" }\n";
+    inertia(all.at("root"));
+  }
+  const json& bodies = all.at("bodies");
+  for (const json& body : bodies) {
+    const int parent = body.at("parent");
+    const std::string name = body.at("name");
+    text << "[[body]]\nname = \"" << name << "\"\nparent = \""
+         << (parent >= 0    ? bodies[static_cast<std::size_t>(parent)].at("name").get<std::string>()
+             : root.empty() ? "guide"
+                            : "root")
+         << "\"\njoint = { kind = \"revolute\", axis = " << list(body.at("axis"))
+         << ", position = " << list(body.at("r")) << " }\n";
+    inertia(body);
+    if (body.at("rotor").get<bool>()) {
+      text << "rotor = { mode = \"" << mode << "\", speed = " << speed << " }\n";
+    } else if (joints.contains(name)) {
+      text << joints.at(name).get<std::string>() << '\n';
+    }
+  }
+  text << "[solve]\nt_end = 1\n";
+  return text.str();
+}
+
+/// Springs and dampers of the reference in the frames of the platform.
+std::string platform(const json& c, double speed) {
+  json joints;
+  for (std::size_t i = 0;
+       const char* const frame : {"frame4", "housing5", "housing7", "frame9", "housing10"}) {
+    joints[frame] = "spring = { stiffness = " + c.at("frame_stiffness")[i].get<std::string>() +
+                    " }\ndamping = " + c.at("frame_damping")[i].get<std::string>();
+    ++i;
+  }
+  return scene_of("platform", "spherical", speed, joints);
+}
+
+/// A rotor with the moments A, B, C between two springs in rings without mass, driven at a constant
+/// speed.
+std::string unsymmetric_rotor(const json& p) {
+  std::ostringstream text;
+  const auto ring = [&](const char* name, const char* parent, const char* axis, const json& k) {
+    text << "[[body]]\nname = \"" << name << "\"\nparent = \"" << parent
+         << "\"\njoint = { kind = \"revolute\", axis = " << axis
+         << " }\nmass = 0\ninertia = [0, 0, 0]\nspring = { stiffness = " << number(k) << " }\n";
+  };
+  ring("outer", "guide", "[1, 0, 0]", p.at("ca"));
+  ring("inner", "outer", "[0, 1, 0]", p.at("cb"));
+  text << "[[body]]\nname = \"rotor\"\nparent = \"inner\"\njoint = { kind = \"revolute\", axis = "
+          "[0, 0, 1] }\nmass = 1\ninertia = "
+       << list({p.at("A"), p.at("B"), p.at("C")})
+       << "\ndrive = \"constant-rate\"\ninitial = { rate = " << p.at("Om").get<std::string>()
+       << " }\n[solve]\nt_end = 1\n";
+  return text.str();
+}
+
+const std::string rod = R"(
+[gravity]
+kind = "uniform"
+vector = [0, 0, -9.81]
+[[body]]
+name = "rod"
+joint = { kind = "revolute", axis = [0, 1, 0] }
+mass = 2
+centre = [0, 0, -1]
+inertia = [0.2, 0.2, 0.2]
+initial = { angle = 0.5 }
+[solve]
+t_end = 2
+)";
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(analyze_against_closed_forms)
+
+BOOST_AUTO_TEST_CASE(pendulum) {
+  const json result = answer_to(rod);
+  const json& steady = result.at("steady");
+  BOOST_TEST(steady.at("found") == "from the start");
+  BOOST_TEST(steady.at("motion") == "equilibrium");
+  check_near("distance", steady.at("distance"), 0.5, 1e-15);
+  check_near("weight", steady.at("reactions").at("rod").at("force").at(2), 2 * 9.81, 1e-14);
+  const json& root = result.at("linear").at("roots").at(0);
+  const double w = std::sqrt(2 * 9.81 / 2.2);
+  check_near("frequency", root.at("frequency"), w, 1e-14);
+  check_near("in Hz", root.at("frequency_hz"), w / (2 * pi), 1e-14);
+  check_near("growth", root.at("growth_rate"), 0, 1e-14);
+  BOOST_TEST(result.at("linear").at("roots").size() == 1U);
+  BOOST_TEST(result.at("linear").at("verdict") == "marginal");
+  BOOST_TEST(result.at("precession").at("reason") == "there is no rotor among the bodies");
+
+  std::string upright = rod;
+  upright.replace(upright.find("0.5"), 3, "3.1");
+  const json unstable = answer_to(upright);
+  BOOST_TEST(unstable.at("linear").at("verdict") == "unstable");
+  BOOST_TEST(distance(roots(unstable), w) < 1e-13);
+}
+
+BOOST_AUTO_TEST_CASE(damped_slide) {
+  const json result = answer(scene("damped_slide"));
+  check_near("place", result.at("steady").at("joints").at("slide").at("coordinate"), 0.04, 1e-16);
+  const json& root = result.at("linear").at("roots").at(0);
+  check_near("growth", root.at("growth_rate"), -1, 1e-14);
+  check_near("frequency", root.at("frequency"), 7, 1e-13);
+  check_near("damping", root.at("damping_ratio"), 1 / std::sqrt(50.0), 1e-14);
+  BOOST_TEST(result.at("linear").at("verdict") == "stable");
+}
+
+// Paper 002's rod, 13 digits of the README; and the plane of swing, which turns by u sin(latitude).
+BOOST_AUTO_TEST_CASE(pendulums_on_the_earth) {
+  const json hanging = answer(scene("earth_pendulum"));
+  check_near("deviation", hanging.at("steady").at("joints").at("rod").at("coordinate"),
+             1.355120825006e-10, 1e-21);
+  const auto two = frequencies(answer(scene("foucault_pendulum")));
+  BOOST_REQUIRE(two.size() == 2U);
+  const double u = 7.292115e-5 * std::sin(48.846222 * pi / 180);
+  check_near("Foucault", two[1] - two[0], 2 * u, 1e-6 * u);
+}
+
+BOOST_AUTO_TEST_CASE(gyrocompass) {
+  const json result = answer(scene("gyrocompass"));
+  check_near("north", result.at("steady").at("joints").at("ring").at("coordinate"), 0, 1e-12);
+  const double horizontal = 7.292115e-5 * std::cos(50 * pi / 180);
+  const auto one = frequencies(result);
+  BOOST_REQUIRE(one.size() == 1U);
+  check_near("swing", one[0], std::sqrt(5e-3 * 2400 * horizontal / 5e-3), 1e-6 * one[0]);
+}
+
+// Asleep it stands as long as (C w)^2 > 4 A k; on its own axes it nutates with nu - w.
+BOOST_AUTO_TEST_CASE(sleeping_top) {
+  const double A = 0.3, C = 0.1, k = 2.5, limit = 2 * std::sqrt(A * k) / C;
+  for (const double w : {0.5 * limit, 2 * limit}) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -10]\n[[body]]\nname = \"top\"\njoint "
+            "= { kind = \"spherical\" }\nmass = 0.5\ncentre = [0, 0, 0.5]\ninertia = [0.175, 0.175,"
+            " 0.1]\ninitial = { angular_velocity = [0, 0, "
+         << w << "] }\n[solve]\nt_end = 1\n";
+    const json result = answer_to(text.str());
+    BOOST_TEST(result.at("steady").at("found") == "start");
+    BOOST_TEST(result.at("steady").at("motion") == "steady motion");
+    const Complex D = std::sqrt(Complex(C * C * w * w - 4 * A * k));
+    for (const Complex& nu : {(C * w + D) / (2 * A), (C * w - D) / (2 * A)}) {
+      BOOST_TEST(distance(roots(result), Complex(0, 1) * (nu - w)) < 1e-9 * w);
+    }
+    BOOST_TEST((result.at("linear").at("verdict") == "unstable") == (w < limit));
+  }
+}
+
+// Free of torque about the middle axis: s^2 = w^2 (C - B)(B - A)/(A C). Nothing stays about a body
+// that a thruster turns.
+BOOST_AUTO_TEST_CASE(tumbling_and_thrust) {
+  const json result = answer(scene("tumbling_body"));
+  BOOST_TEST(result.at("steady").at("motion") == "steady motion");
+  BOOST_TEST(distance(roots(result), 2 * std::sqrt(1.0 / 3)) < 1e-5);
+  BOOST_TEST(result.at("linear").at("verdict") == "unstable");
+  const json none = answer(scene("satellite"));
+  BOOST_TEST(none.at("steady").at("found") == "none");
+  BOOST_TEST(none.at("steady").at("reason").get<std::string>().find("equilibrium: none reached") ==
+             0U);
+  BOOST_TEST(!none.contains("linear"));
+  // A motor's torque and the bearing's friction: tau/d = 10 rad/s, decaying by d/C = 1/s.
+  const json wheel = answer(scene("wheel_spun_up"));
+  check_near("speed", wheel.at("steady").at("joints").at("wheel").at("rate"), 10, 1e-13);
+  check_near("decay", wheel.at("linear").at("roots").at(0).at("growth_rate"), -1, 1e-14);
+}
+
+/// Both frequencies of a gyro between springs:  A B w^4 - (A k_b + B k_a + H^2) w^2 + k_a k_b = 0.
+std::array<double, 2> gyro(double speed) {
+  const double A = 0.006 + 0.002 + 0.005, B = 0.0015 + 0.005, H = 0.008 * speed;
+  const double a = 2.0, b = 1.5;
+  const double p = A * b + B * a + H * H;
+  const double faster = (p + std::sqrt(p * p - 4 * A * B * a * b)) / (2 * A * B);
+  return {std::sqrt(a * b / (A * B) / faster), std::sqrt(faster)};
+}
+
+BOOST_AUTO_TEST_CASE(campbell_diagram_of_a_gyro_on_springs) {
+  const json result =
+      answer(scene("cardan_gyro_springs") + " --campbell rotor --speeds 5:105:11").at("campbell");
+  BOOST_REQUIRE(result.at("curves").size() == 2U);
+  for (std::size_t i = 0; i < 11; ++i) {
+    const double speed = 5 + 10 * static_cast<double>(i);
+    check_near("speed", result.at("speeds").at(i), speed, 1e-12);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const json& mode = result.at("curves").at(k).at(i);
+      check_near("frequency", mode.at("frequency"), gyro(speed).at(k), 1e-11);
+      const double h = 1e-4;
+      const double growth = std::log(gyro(speed * (1 + h)).at(k) / gyro(speed * (1 - h)).at(k)) /
+                            std::log((1 + h) / (1 - h));
+      check_near("d ln w / d ln L", mode.at("spin_growth"), growth, 1e-7);
+      const std::string kind = mode.at("kind");
+      BOOST_TEST(kind == (std::abs(growth) <= 0.5 ? "oscillation"
+                          : growth > 0            ? "nutation"
+                                                  : "precession"));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(analyze_against_references)
+
+// 32 digits. How roots go with the momenta is the difference of two such scenes, damped or not.
+BOOST_AUTO_TEST_CASE(platform_with_three_gyros) {
+  const json all = reference("rotors.json").at("eigenvalues");
+  for (const char* const name : {"P_free_base_springs_only", "P_free_base_springs_dampers"}) {
+    const json& c = all.at(name);
+    const json result = answer_to(platform(c, 1000));
+    BOOST_TEST(result.at("steady").at("found") == "start");
+    const auto found = roots(result);
+    std::size_t count = 0;
+    for (const json& root : c.at("eig_corrected_regulated")) {
+      const Complex truth(number(root[0]), number(root[1]));
+      if (std::abs(truth) < 1e-9) continue;
+      ++count;
+      BOOST_TEST(distance(found, truth) < 1e-12 * std::abs(truth), name << ": " << truth);
+    }
+    BOOST_TEST(std::count_if(found.begin(), found.end(), [](const Complex& s) {
+                 return std::abs(s) > 1e-9;
+               }) == static_cast<std::ptrdiff_t>(count));
+    const double h = 1e-4;
+    const auto more = roots(answer_to(platform(c, 1000 * (1 + h))));
+    const auto less = roots(answer_to(platform(c, 1000 * (1 - h))));
+    std::size_t kinds = 0;
+    for (const json& root : result.at("linear").at("roots")) {
+      if (!root.contains("kind")) continue;
+      ++kinds;
+      const Complex s(root.at("growth_rate"), root.at("frequency"));
+      const auto size = [&s](const std::vector<Complex>& list) {
+        return std::abs(*std::min_element(list.begin(), list.end(), [&s](auto a, auto b) {
+          return std::abs(a - s) < std::abs(b - s);
+        }));
+      };
+      const double growth = std::log(size(more) / size(less)) / (2 * h);
+      check_near("d ln|s| / d ln L", root.at("spin_growth"), growth, 1e-5);
+    }
+    BOOST_TEST(kinds >= 6U);
+  }
+}
+
+// tests/data/floquet.json: multipliers over half a turn of rotors that a body can have.
+BOOST_AUTO_TEST_CASE(unsymmetric_rotors) {
+  const json all = reference("floquet.json").at("points");
+  int count = 0;
+  for (const json& point : all) {
+    const json& p = point.at("params");
+    if (point.at("printed").get<bool>() || p.size() != 6) continue;
+    const double A = number(p.at("A")), B = number(p.at("B")), C = number(p.at("C"));
+    if (A > B + C || B > A + C || C > A + B) continue;
+    ++count;
+    std::ostringstream period;
+    period.precision(17);
+    period << "--period " << pi / number(p.at("Om"));
+    const json result = answer_to(unsymmetric_rotor(p), period.str());
+    BOOST_TEST((result.at("steady").at("found") == "none") == (A != B));
+    const json& floquet = result.at("floquet");
+    std::vector<Complex> found;
+    double allowed = 0;
+    for (const json& m : floquet.at("multipliers")) {
+      found.emplace_back(m.at("real"), m.at("imag"));
+      allowed = std::max(allowed, m.at("error").get<double>());
+    }
+    BOOST_TEST(found.size() == 4U);
+    BOOST_TEST(allowed < 1e-4);
+    for (const json& m : point.at("multipliers")) {
+      BOOST_TEST(distance(found, {number(m[0]), number(m[1])}) <= allowed);
+    }
+    const bool grows = number(point.at("rho")) > 1 + 1e-6;
+    BOOST_TEST((floquet.at("verdict") == "unstable") == grows, point.at("name"));
+  }
+  BOOST_TEST(count >= 3);
+}
+
+// Mathieu's pendulum, shaken along its length, upright: the equation by classical Runge-Kutta steps.
+BOOST_AUTO_TEST_CASE(pendulum_shaken_upright) {
+  std::string text = rod;
+  text.replace(text.find("0.5"), 3, "3.141592653589793");
+  const std::string shaken = R"([guide]
+kind = "harmonic"
+origin_acceleration = { terms = [ { amplitude = [0, 0, 800], frequency = 60, phase = 0.3 } ] }
+)" + text;
+  const json floquet = answer_to(shaken).at("floquet");
+  check_near("period", floquet.at("period"), 2 * pi / 60, 1e-15);
+  const auto slope = [](double t, double x) {
+    return 2 / 2.2 * (9.81 + 800 * std::sin(60 * t + 0.3)) * x;
+  };
+  double trace = 0;
+  for (const int column : {0, 1}) {
+    double x = column == 0, v = column == 1, t = 0;
+    const int steps = 4000;
+    const double h = 2 * pi / 60 / steps;
+    for (int i = 0; i < steps; ++i, t = i * h) {
+      const double k1 = slope(t, x), k2 = slope(t + h / 2, x + h / 2 * v);
+      const double k3 = slope(t + h / 2, x + h / 2 * (v + h / 2 * k1));
+      const double k4 = slope(t + h, x + h * (v + h / 2 * k2));
+      x += h * (v + h / 6 * (k1 + k2 + k3));
+      v += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+    trace += column == 0 ? x : v;
+  }
+  Complex sum, product = 1;
+  for (const json& m : floquet.at("multipliers")) {
+    const Complex l(m.at("real"), m.at("imag"));
+    sum += l;
+    product *= l;
+  }
+  check_near("trace", sum.real(), trace, 1e-9);
+  check_near("determinant", std::abs(product), 1, 1e-9);
+  BOOST_TEST((floquet.at("verdict") == "unstable") == (std::abs(trace) > 2));
+}
+
+// rotors.json, T13: the distance of the exact and the technical motion of a gyro on springs.
+BOOST_AUTO_TEST_CASE(precession_of_a_gyro_on_springs) {
+  const json c =
+      reference("rotors.json").at("trajectories").at("T13_cardan_springs_exact_and_precession");
+  const json result =
+      answer_to(scene_of("cardan", "", 1000,
+                         {{"outer",
+                           "spring = { stiffness = 0.4 }\nforce = 0.02\ninitial = { angle "
+                           "= 0.2 }"},
+                          {"inner",
+                           "spring = { stiffness = 0.3 }\nforce = -0.01\ninitial = { "
+                           "angle = -0.1 }"}}));
+  double off = 0;
+  for (std::size_t i = 0; i < c.at("exact").size(); ++i) {
+    const auto q = [&](const char* which, std::size_t k) {
+      return number(c.at(which).at(i).at("q").at(k));
+    };
+    off = std::max(
+        off, std::hypot(q("exact", 0) - q("precession", 0), q("exact", 1) - q("precession", 1)));
+  }
+  const json& check = result.at("precession");
+  BOOST_TEST(check.at("admissible").get<bool>());
+  BOOST_TEST(check.at("rank") == 2);
+  const double bound = check.at("bound").at("error");
+  BOOST_TEST(check.at("bound").at("t") == 1.0);
+  BOOST_TEST(bound >= off);
+  BOOST_TEST(bound <= 10 * off);
+  // At a tenth of the speed nothing is slow.
+  const json slower = answer_to(scene_of(
+      "cardan", "", 50,
+      {{"outer", "spring = { stiffness = 0.4 }"}, {"inner", "spring = { stiffness = 0.3 }"}}));
+  BOOST_TEST(!slower.at("precession").at("admissible").get<bool>());
+  BOOST_TEST(slower.at("precession").at("why_not").get<std::string>().find("not fast") !=
+             std::string::npos);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(analyze_from_a_command_line)
+
+BOOST_AUTO_TEST_CASE(every_example_scene_has_an_answer) {
+  for (const auto& entry : std::filesystem::directory_iterator(KREISEL_SCENES)) {
+    if (entry.path().extension() != ".toml") continue;
+    const Outcome outcome = run("'" + entry.path().string() + "'");
+    BOOST_TEST(outcome.status == 0, entry.path() << ": " << outcome.err);
+    BOOST_TEST(outcome.err == "");
+    BOOST_TEST(outcome.out.find("precession equations: ") != std::string::npos, entry.path());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(says_what_is_beyond_it_in_a_line) {
+  const auto notes = [](const char* name) { return answer(scene(name)).at("notes").dump(); };
+  BOOST_TEST(notes("heavy_top").find("gimbals and a rotor") != std::string::npos);
+  BOOST_TEST(notes("cardan_gyro_shaken").find("several frequencies") != std::string::npos);
+  BOOST_TEST(notes("device_on_logged_ship").find("log") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_failed_sweeps_with_3) {
+  const Scratch folder;
+  const std::string good = folder.write("scene.toml", rod).string();
+  const std::string bad = folder.write("bad.toml", "titel = \"\"\n" + rod).string();
+  const std::string gyro = scene("cardan_gyro_springs");
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "scene is required"},
+      {"none.toml", "none.toml: cannot be read"},
+      {bad, "bad.toml:1:1: titel: is no key here (did you mean 'title'?)"},
+      {good + " --colour red", "--colour"},
+      {good + " --period 0", "--period must be above 0"},
+      {good + " --period nan", "--period = 'nan' is not a finite number"},
+      {gyro + " --campbell rotor", "go together"},
+      {gyro + " --campbell rotor --speeds 1:2", "wanted FROM:TO:N"},
+      {gyro + " --campbell rotor --speeds 1:2:1", "no whole number from 2"},
+      {gyro + " --campbell rotor --speeds 1:1:5", "the same"},
+      {gyro + " --campbell wheel --speeds 1:2:3", "body 'wheel' does not exist"},
+      {gyro + " --campbell 'outer ring' --speeds 1:2:3", "neither a free or regulated rotor"},
+      {scene("cardan_gyro_shaken") + " --period 1", "after 1 s the equations are not the same"},
+  };
+  for (const auto& [arguments, reason] : cases) {
+    const Outcome outcome = run(arguments);
+    BOOST_TEST(outcome.status == 2, arguments << " exits with " << outcome.status);
+    BOOST_TEST(outcome.out == "");
+    BOOST_TEST(outcome.err.find(reason) != std::string::npos, arguments << ": " << outcome.err);
+    BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  }
+  const Outcome none = run(scene("satellite") + " --campbell wheel --speeds 1:2:3");
+  BOOST_TEST(none.status == 3);
+  BOOST_TEST(none.err.find("analyze: --campbell: no steady motion") == 0U, none.err);
+  BOOST_TEST(kreisel::test::run("( " + std::string(KREISEL_ANALYZE) + " " + good + " >/dev/full )")
+                 .status == 3);
+}
+
+BOOST_AUTO_TEST_CASE(draws) {
+  const Scratch folder;
+  const auto check_pictures = [&](const std::string& arguments,
+                                  std::initializer_list<const char*> names) {
+    const std::string pictures = (folder.path() / "pictures").string();
+    const Outcome outcome = run(arguments + " --plot " + pictures);
+    BOOST_TEST(outcome.status == 0, outcome.err);
+    for (const char* const name : names) {
+      const std::string path = std::string("pictures/") + name;
+      BOOST_TEST(folder.read(path + ".svg").find("<svg") != std::string::npos, name);
+      BOOST_TEST(folder.read(path + ".png").substr(1, 3) == "PNG", name);
+    }
+  };
+  check_pictures(scene("cardan_gyro_springs") + " --campbell rotor --speeds 0:100:21",
+                 {"roots", "campbell"});
+  const json p{{"A", "1.1"}, {"B", "0.9"}, {"C", "0.5"}, {"ca", "1"}, {"cb", "1"}, {"Om", "1.4"}};
+  check_pictures(
+      folder.write("rotor.toml", unsymmetric_rotor(p)).string() + " --period 2.2439947525641379",
+      {"multipliers"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()
