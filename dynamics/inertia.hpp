@@ -3,9 +3,10 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <type_traits>
 
@@ -182,11 +183,17 @@ template <class S>
 
 namespace detail {
 
-/// What of a tensor given passes as rounding: 1e-12, or more where S has not so many digits.
+/// What of a tensor given passes as rounding: 1e-12 of its greatest entry, or more where the number
+/// has not so many digits.
 template <class S>
-[[nodiscard]] S tensor_slack(const Matrix3<S>& tensor) {
+[[nodiscard]] S tensor_slack(const Symmetric3<S>& t) {
+  using std::abs;
+  S largest(0);
+  for (const S& entry : {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz}) {
+    if (abs(entry) > largest) largest = abs(entry);
+  }
   const S digits = S(64) * std::numeric_limits<S>::epsilon();
-  return (digits > S(1e-12) ? digits : S(1e-12)) * tensor.cwiseAbs().maxCoeff();
+  return (digits > S(1e-12) ? digits : S(1e-12)) * largest;
 }
 
 /// The number in a dual number (Eigen's AutoDiffScalar), which is all that a check looks at; of a
@@ -202,39 +209,49 @@ template <class S>
   }
 }
 
-/// The eigenvalues of a symmetric matrix, ascending, by Jacobi's rotations: Eigen's solver takes the
-/// compiler as long as half a scene.
+/// The eigenvalues, ascending, by Jacobi's rotations: Eigen's solver takes the compiler as long as
+/// half a scene.
 template <class S>
-[[nodiscard]] Vector3<S> principal_moments(Matrix3<S> m) {
+[[nodiscard]] std::array<S, 3> principal_moments(const Symmetric3<S>& t) {
   using std::abs;
   using std::sqrt;
+  S m[3][3] = {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
   constexpr int planes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  for (int sweep = 0; sweep < 16 && (m(0, 1) != S(0) || m(0, 2) != S(0) || m(1, 2) != S(0));
-       ++sweep) {
+  bool diagonal = false;
+  for (int sweep = 0; sweep < 16 && !diagonal; ++sweep) {
+    diagonal = true;
     for (const auto& [p, q] : planes) {
-      const S off = m(p, q);
-      if (abs(off) <= std::numeric_limits<S>::epsilon() * S(1e-3) * (abs(m(p, p)) + abs(m(q, q)))) {
-        m(p, q) = m(q, p) = S(0);
+      const S off = m[p][q];
+      m[p][q] = m[q][p] = S(0);
+      if (abs(off) <= std::numeric_limits<S>::epsilon() / S(1000) * (abs(m[p][p]) + abs(m[q][q]))) {
         continue;
       }
-      const S half = (m(q, q) - m(p, p)) / (S(2) * off);
+      diagonal = false;
+      const S half = (m[q][q] - m[p][p]) / (S(2) * off);
       const S root = abs(half) + sqrt(S(1) + half * half);
       const S tangent = half < S(0) ? S(-1) / root : S(1) / root;
       const S cosine = S(1) / sqrt(S(1) + tangent * tangent);
       const S sine = tangent * cosine;
+      m[p][p] -= tangent * off;
+      m[q][q] += tangent * off;
       const int other = 3 - p - q;
-      const S a = m(p, other);
-      const S b = m(q, other);
-      m(p, p) -= tangent * off;
-      m(q, q) += tangent * off;
-      m(p, q) = m(q, p) = S(0);
-      m(p, other) = m(other, p) = cosine * a - sine * b;
-      m(q, other) = m(other, q) = sine * a + cosine * b;
+      const S a = m[p][other];
+      const S b = m[q][other];
+      m[p][other] = m[other][p] = cosine * a - sine * b;
+      m[q][other] = m[other][q] = sine * a + cosine * b;
     }
   }
-  Vector3<S> moments = m.diagonal();
-  std::sort(moments.data(), moments.data() + 3);
+  std::array<S, 3> moments = {m[0][0], m[1][1], m[2][2]};
+  std::sort(moments.begin(), moments.end());
   return moments;
+}
+
+/// A number as messages say it.
+template <class S>
+[[nodiscard]] std::string in_words(const S& x) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.10g", static_cast<double>(x));
+  return digits;
 }
 
 }  // namespace detail
@@ -251,41 +268,42 @@ enum class Mass { positive, zero_allowed };
 /// Throws : InvalidInput, naming the inequality violated with its numbers
 template <class S>
 void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& what = "inertia") {
-  const auto refuse = [&what](const auto&... words) {
-    std::ostringstream text;
-    text.precision(10);
-    text << what << ": ";
-    (text << ... << words);
-    throw InvalidInput(text.str());
-  };
+  using detail::in_words;
+  using Number = decltype(detail::number_in(T.mass));
+  const auto refuse = [&what](const std::string& why) { throw InvalidInput(what + ": " + why); };
   const Symmetric3<S>& t = T.tensor;
   for (const S& number : {T.mass, T.first_moment.x(), T.first_moment.y(), T.first_moment.z(), t.xx,
                           t.yy, t.zz, t.xy, t.xz, t.yz}) {
     const bool finite = number - number == S(0);
     if (!finite) refuse("not a finite number among mass, first moment and tensor");
   }
-  if (T.mass < S(0)) refuse("mass >= 0 fails: mass = ", T.mass, " kg");
-  if (T.mass == S(0)) {
+  const Number mass = detail::number_in(T.mass);
+  if (mass < Number(0)) refuse("mass >= 0 fails: mass = " + in_words(mass) + " kg");
+  const Vector3<S>& s = T.first_moment;
+  if (mass == Number(0)) {
     if (rule == Mass::positive) refuse("mass > 0 fails: mass = 0 kg");
-    if (T.first_moment != Vector3<S>::Zero()) refuse("mass = 0 kg, but its first moment is not 0");
+    if (!(s.x() == S(0) && s.y() == S(0) && s.z() == S(0))) {
+      refuse("mass = 0 kg, but its first moment is not 0");
+    }
   }
   Symmetric3<S> about_centre = t;
-  if (T.mass > S(0)) {
-    const Vector3<S> r = T.first_moment / T.mass;
-    about_centre = t - offset_product(r, Vector3<S>(T.first_moment / S(2)));
+  if (mass > Number(0)) {
+    const Vector3<S> r(s.x() / T.mass, s.y() / T.mass, s.z() / T.mass);
+    about_centre = t - offset_product(r, Vector3<S>(s.x() / S(2), s.y() / S(2), s.z() / S(2)));
   }
-  using Number = decltype(detail::number_in(T.mass));
-  const Matrix3<Number> centred =
-      about_centre.matrix().unaryExpr([](const S& x) { return detail::number_in(x); });
-  const Vector3<Number> p = detail::principal_moments(centred);
-  const Number slack = detail::number_in(detail::tensor_slack(t.matrix()));
-  if (p[0] < -slack) {
-    refuse("principal moments about the centre of mass >= 0 fails: ", p[0], ", ", p[1], ", ", p[2],
-           " kg m^2");
+  const auto numbers = [](const Symmetric3<S>& m) {
+    const auto in = [](const S& x) -> Number { return detail::number_in(x); };
+    return Symmetric3<Number>{in(m.xx), in(m.yy), in(m.zz), in(m.xy), in(m.xz), in(m.yz)};
+  };
+  const auto [a, b, c] = detail::principal_moments(numbers(about_centre));
+  const Number slack = detail::tensor_slack(numbers(t));
+  if (a < -slack) {
+    refuse("principal moments about the centre of mass >= 0 fails: " + in_words(a) + ", " +
+           in_words(b) + ", " + in_words(c) + " kg m^2");
   }
-  if (p[0] + p[1] < p[2] - slack) {
-    refuse("triangle inequality about the centre of mass fails: ", p[0], " + ", p[1], " >= ", p[2],
-           " kg m^2");
+  if (a + b < c - slack) {
+    refuse("triangle inequality about the centre of mass fails: " + in_words(a) + " + " +
+           in_words(b) + " >= " + in_words(c) + " kg m^2");
   }
 }
 
@@ -329,11 +347,14 @@ struct InertiaTensor {
 
  private:
   [[nodiscard]] static Symmetric3<S> symmetric(const Matrix3<S>& m) {
-    const S skewness = (m - m.transpose()).cwiseAbs().maxCoeff();
-    if (skewness > detail::tensor_slack(m)) {
+    using std::abs;
+    const Symmetric3<S> mean = Symmetric3<S>::from(m);
+    const S slack = detail::tensor_slack(mean);
+    const auto differ = [&](int i, int k) { return abs(S(m(i, k) - m(k, i))) > slack; };
+    if (differ(0, 1) || differ(0, 2) || differ(1, 2)) {
       throw InvalidInput("inertia: the tensor is not symmetric");
     }
-    return Symmetric3<S>::from(m);
+    return mean;
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include <type_traits>
 
-#include <motor/displacement.hpp>
 #include <motor/motor.hpp>
 
 /// Zeros that are known when the program is compiled. Formulas are written once, for all that may

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <motor/absent.hpp>
 #include <motor/motor.hpp>
 #include <motor/tensor.hpp>
 
@@ -107,9 +108,9 @@ template <class S>
   using std::cos;
   using std::sin;
   using std::sqrt;
-  const Vector3<S>& w = A.resultant;
-  const Vector3<S>& v = A.moment;
-  const S t2 = w.squaredNorm();
+  const auto w = detail::components(A.resultant);
+  const auto v = detail::components(A.moment);
+  const S t2 = w.x * w.x + w.y * w.y + w.z * w.z;
   S a;
   S b;
   S c;
@@ -127,26 +128,27 @@ template <class S>
     c = (S(1) - a) / t2;
   }
   const S cosine = S(1) - b * t2;
-  const Vector3<S> bw = b * w;
-  const Vector3<S> aw = a * w;
-  const S xy = bw.x() * w.y();
-  const S xz = bw.x() * w.z();
-  const S yz = bw.y() * w.z();
+  const auto aw = a * w;
+  const auto bw = b * w;
+  const S xy = bw.x * w.y;
+  const S xz = bw.x * w.z;
+  const S yz = bw.y * w.z;
   Pose<S> X;
-  X.rotation(0, 0) = cosine + bw.x() * w.x();
-  X.rotation(1, 0) = xy + aw.z();
-  X.rotation(2, 0) = xz - aw.y();
-  X.rotation(0, 1) = xy - aw.z();
-  X.rotation(1, 1) = cosine + bw.y() * w.y();
-  X.rotation(2, 1) = yz + aw.x();
-  X.rotation(0, 2) = xz + aw.y();
-  X.rotation(1, 2) = yz - aw.x();
-  X.rotation(2, 2) = cosine + bw.z() * w.z();
-  const Vector3<S> wv = w.cross(v);
+  X.rotation(0, 0) = cosine + bw.x * w.x;
+  X.rotation(1, 0) = xy + aw.z;
+  X.rotation(2, 0) = xz - aw.y;
+  X.rotation(0, 1) = xy - aw.z;
+  X.rotation(1, 1) = cosine + bw.y * w.y;
+  X.rotation(2, 1) = yz + aw.x;
+  X.rotation(0, 2) = xz + aw.y;
+  X.rotation(1, 2) = yz - aw.x;
+  X.rotation(2, 2) = cosine + bw.z * w.z;
+  const auto wv = cross(w, v);
   if (t2 < S(1)) {
-    X.translation = v + (b * wv + c * w.cross(wv));
+    X.translation = detail::vector<S>(v + (b * wv + c * cross(w, wv)));
   } else {
-    X.translation = b * wv + (a * v + (c * w.dot(v)) * w);
+    const S along = c * (w.x * v.x + w.y * v.y + w.z * v.z);
+    X.translation = detail::vector<S>(b * wv + (a * v + along * w));
   }
   return X;
 }

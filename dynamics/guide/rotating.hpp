@@ -25,20 +25,23 @@ struct RotatingFrame {
   Vector3<S> origin_velocity = Vector3<S>::Zero();  ///< of the origin against I at t = 0, I's axes
 
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
-    const Vector3<S>& u = angular_velocity;
-    const Vector3<S>& a = origin_acceleration;
-    const Matrix3<S>& axes = X.value.rotation;
-    const Vector3<S> w = u * t;
-    const Pose<S> turn = exp(Motor<S>{w, a * t});  // its translation: the integral of exp(u s) a
+    using detail::components;
+    const auto axes = detail::Turn<S>::from(X.value.rotation);
+    const auto u = components(angular_velocity);
+    const auto a = components(origin_acceleration);
+    const auto w = t * u;
+    // Its translation: the integral of exp(u s) a.
+    const Pose<S> turn = exp(Motor<S>{detail::vector<S>(w), detail::vector<S>(t * a)});
+    const auto v =
+        turned_back(detail::Turn<S>::from(turn.rotation),
+                    turned_back(axes, components(origin_velocity)) + components(turn.translation));
     FrameMotion<G, I, S> motion;
-    motion.X.value.rotation = detail::product(axes, turn.rotation);
-    motion.X.value.translation = X.value.translation + origin_velocity * t +
-                                 detail::product(axes, Vector3<S>(t * t * twice_integrated(w, a)));
-    const Vector3<S> v = detail::transposed_product(
-        turn.rotation,
-        Vector3<S>(detail::transposed_product(axes, origin_velocity) + turn.translation));
-    motion.V.value = {u, v};
-    motion.dV.value = {Vector3<S>::Zero(), a - u.cross(v)};
+    motion.X.value.rotation = detail::product(X.value.rotation, turn.rotation);
+    motion.X.value.translation =
+        detail::vector<S>(components(X.value.translation) + t * components(origin_velocity) +
+                          turned(axes, (t * t) * twice_integrated(w, a)));
+    motion.V.value = {angular_velocity, detail::vector<S>(v)};
+    motion.dV.value = {Vector3<S>::Zero(), detail::vector<S>(a - cross(u, v))};
     return motion;
   }
 
@@ -52,10 +55,11 @@ struct RotatingFrame {
 
  private:
   /// J(w) a, the integral of (1 - s) exp(s skew(w)) a over s from 0 to 1.
-  [[nodiscard]] static Vector3<S> twice_integrated(const Vector3<S>& w, const Vector3<S>& a) {
+  [[nodiscard]] static detail::Components<S> twice_integrated(const detail::Components<S>& w,
+                                                              const detail::Components<S>& a) {
     using std::sin;
     using std::sqrt;
-    const S t2 = w.squaredNorm();
+    const S t2 = w.x * w.x + w.y * w.y + w.z * w.z;
     S c;
     S d;
     if (t2 < S(1)) {
@@ -67,8 +71,8 @@ struct RotatingFrame {
       c = (S(1) - sin(theta) / theta) / t2;
       d = (S(0.5) - S(2) * s * s / t2) / t2;
     }
-    const Vector3<S> wa = w.cross(a);
-    return a / S(2) + (c * wa + d * w.cross(wa));
+    const auto wa = cross(w, a);
+    return a / S(2) + (c * wa + d * cross(w, wa));
   }
 
   /// 1/n! - x/(n+2)! + x^2/(n+4)! - ...

@@ -74,6 +74,13 @@ template <class U, class Du, class A, class R>
   return a + cross(du, r) + cross(u, cross(u, r));
 }
 
+/// u/|u|, or 0, also where squares would leave the range. Eigen's takes the compiler longer than all
+/// else here.
+[[nodiscard]] inline Components<double> direction(const Components<double>& u) {
+  const double size = std::hypot(u.x, u.y, u.z);
+  return size > 0 ? u / size : Components<double>{};
+}
+
 /// A vector at rest in the inertial frame, on the axes of a guide that turns steadily with u = |u| n:
 ///
 ///   exp(-u t) g = n n.g + cos(|u| t) (g - n n.g) + sin(|u| t) g x n
@@ -83,10 +90,9 @@ struct TurningField {
   double rate;
 
   /// `along` is what of g does not turn.
-  TurningField(const Vector3<double>& g, const Vector3<double>& along, const Vector3<double>& u)
-      : across(components(Vector3<double>(g - along))),
-        aside(components(Vector3<double>(g.cross(u.stableNormalized())))),
-        rate(u.stableNorm()) {}
+  TurningField(const Components<double>& g, const Components<double>& along,
+               const Components<double>& u)
+      : across(g - along), aside(cross(g, direction(u))), rate(std::hypot(u.x, u.y, u.z)) {}
 
   template <class N>
   [[nodiscard]] Components<N> at(const N& t) const {
@@ -139,11 +145,13 @@ template <bool gravity, class P, class M, class... Loads>
       if constexpr (has_field<Inertial, Loads...> && !U::absent) {
         static_assert(!restricts_felt_gravity<Loads...>,
                       "gravity that rests in the inertial frame turns in this guide");
-        const Vector3<double> all = vector<double>(inertial);
-        const Vector3<double> n = vector<double>(u).stableNormalized();
-        const Vector3<double> along = n.isZero(0) ? all : Vector3<double>(n.dot(all) * n);
+        const Components<double> n = direction(components(vector<double>(u)));
+        const Components<double> all = components(vector<double>(inertial));
+        const bool turns = n.x != 0 || n.y != 0 || n.z != 0;
+        const Components<double> along =
+            turns ? (all.x * n.x + all.y * n.y + all.z * n.z) * n : all;
         return Known<U, Components<double>, TurningField>{
-            u, in_guide + components(along), TurningField(all, along, vector<double>(u))};
+            u, in_guide + along, TurningField(all, along, components(vector<double>(u)))};
       } else {
         const auto all = in_guide + inertial;
         check_vanishing<FeltGravity, Loads...>(vector<double>(all), what + ", felt gravity");

@@ -106,7 +106,7 @@ class PruningEffect {
       const Vector& x = fine.states[i];
       off = std::max(off, distance(x + coarse.departures[i], x + fine.departures[i]));
     }
-    return caution * fine.worst + 2 * off + error_of_pair(0, rounding, fine.steps);
+    return caution * fine.worst + 2 * off + error_of_pair(0, times_finer, rounding, fine.steps);
   }
 
   [[nodiscard]] double evaluations() const { return evaluations_; }
