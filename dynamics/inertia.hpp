@@ -39,9 +39,9 @@ struct Symmetric3 {
   /// R m R^t. Cost: 75 flops, of the six different numbers alone.
   [[nodiscard]] Symmetric3 turned(const Matrix3<S>& R) const {
     using detail::component;
-    const Vector3<S> x = *this * Vector3<S>(R.row(0));
-    const Vector3<S> y = *this * Vector3<S>(R.row(1));
-    const Vector3<S> z = *this * Vector3<S>(R.row(2));
+    const Vector3<S> x = *this * Vector3<S>(R(0, 0), R(0, 1), R(0, 2));
+    const Vector3<S> y = *this * Vector3<S>(R(1, 0), R(1, 1), R(1, 2));
+    const Vector3<S> z = *this * Vector3<S>(R(2, 0), R(2, 1), R(2, 2));
     return {component(R, 0, x), component(R, 1, y), component(R, 2, z),
             component(R, 1, x), component(R, 2, x), component(R, 2, y)};
   }
@@ -331,7 +331,8 @@ struct InertiaTensor {
                                                   Mass rule = Mass::positive) {
     const Inertia<S> centred{mass, Vector3<S>::Zero(), symmetric(tensor)};
     check(centred, rule);
-    return {Pose<S>{Matrix3<S>::Identity(), centre} * centred};
+    const Vector3<S> s(mass * centre.x(), mass * centre.y(), mass * centre.z());
+    return {{mass, s, centred.tensor + offset_product(centre, Vector3<S>(s / S(2)))}};
   }
 
   /// From mass, centre of mass and the tensor about the origin of In.
@@ -340,7 +341,8 @@ struct InertiaTensor {
   [[nodiscard]] static InertiaTensor about_origin(const S& mass, const Vector3<S>& centre,
                                                   const Matrix3<S>& tensor,
                                                   Mass rule = Mass::positive) {
-    const Inertia<S> inertia{mass, mass * centre, symmetric(tensor)};
+    const Inertia<S> inertia{
+        mass, {mass * centre.x(), mass * centre.y(), mass * centre.z()}, symmetric(tensor)};
     check(inertia, rule);
     return {inertia};
   }

@@ -35,9 +35,9 @@ template <class S>
 template <class S>
 [[nodiscard, gnu::always_inline]] inline Matrix3<S> product(const Matrix3<S>& A,
                                                             const Matrix3<S>& B) {
-  const Vector3<S> x = product(A, Vector3<S>(B.col(0)));
-  const Vector3<S> y = product(A, Vector3<S>(B.col(1)));
-  const Vector3<S> z = product(A, Vector3<S>(B.col(2)));
+  const Vector3<S> x = product(A, Vector3<S>(B(0, 0), B(1, 0), B(2, 0)));
+  const Vector3<S> y = product(A, Vector3<S>(B(0, 1), B(1, 1), B(2, 1)));
+  const Vector3<S> z = product(A, Vector3<S>(B(0, 2), B(1, 2), B(2, 2)));
   return (Matrix3<S>() << x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()).finished();
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <array>
@@ -75,14 +74,11 @@ class HeldBody {
     detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
                                                    "held body, first moment");
     if (!(point - point).isZero(0)) throw InvalidInput("held body: the point is not finite");
-    const Eigen::SelfAdjointEigenSolver<Matrix3<S>> eigen(inertia.value.tensor.matrix(),
-                                                          Eigen::EigenvaluesOnly);
-    const Vector3<S>& moments = eigen.eigenvalues();
+    const auto moments = detail::principal_moments(inertia.value.tensor);
     if (!(moments[0] > std::numeric_limits<S>::epsilon() * moments[2])) {
       throw InvalidInput(
           "held body: the inertia about an axis through the held point is 0 (a needle, or all mass "
-          "in "
-          "that point): the rotation about it is not determined by the torque");
+          "in that point): the rotation about it is not determined by the torque");
     }
   }
 
@@ -235,11 +231,13 @@ class HeldBody {
   static constexpr std::array names = {"q_x", "q_y", "q_z", "q_w", "u'_x", "u'_y", "u'_z"};
 
   [[nodiscard]] static Vector to_vector(const State& state) {
-    return (Vector() << state.attitude.coeffs(), state.angular_velocity).finished();
+    const Eigen::Quaternion<S>& q = state.attitude;
+    const Vector3<S>& u = state.angular_velocity;
+    return Vector(q.x(), q.y(), q.z(), q.w(), u.x(), u.y(), u.z());
   }
 
   [[nodiscard]] static State from_vector(const Vector& y) {
-    return {Eigen::Quaternion<S>(Eigen::Vector4d(y.head<4>())), y.tail<3>()};
+    return {Eigen::Quaternion<S>(y[3], y[0], y[1], y[2]), {y[4], y[5], y[6]}};
   }
 
  private:

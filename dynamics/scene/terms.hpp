@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iomanip>
 #include <ostream>
 #include <string>
 #include <utility>
@@ -55,16 +54,15 @@ inline std::ostream& operator<<(std::ostream& out, const Terms& terms) {
     part = std::max(part, term.part.size());
     name = std::max(name, term.name.size());
   }
-  const auto column = [](std::size_t width) { return std::setw(static_cast<int>(width) + 2); };
-  const std::ios_base::fmtflags before = out.flags();
-  out << std::left;
+  const auto column = [](std::string text, std::size_t width) {
+    text.resize(width + 2, ' ');
+    return text;
+  };
   for (const Term& term : terms) {
-    out << column(part) << term.part << column(name) << term.name
-        << (term.kept ? "kept" : "dropped");
+    out << column(term.part, part) << column(term.name, name) << (term.kept ? "kept" : "dropped");
     if (!term.why.empty()) out << ": " << term.why;
     out << '\n';
   }
-  out.flags(before);
   return out;
 }
 
