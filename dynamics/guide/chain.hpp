@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -34,7 +35,8 @@ class Chain {
   explicit Chain(Links... links) : links_(std::move(links)...) {}
 
   template <class S>
-  [[nodiscard]] auto operator()(const S& t) const {
+  requires(std::invocable<const Links&, const S&>&&...) [[nodiscard]] auto operator()(
+      const S& t) const {
     return std::apply(
         [&t](const auto& first, const auto&... rest) { return joined(first(t), rest(t)...); },
         links_);
