@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <boost/test/data/monomorphic.hpp>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
