@@ -39,7 +39,8 @@ template <class M>
     rates.push_back(tree.rates() + rate);
   }
   const Eigen::MatrixXd answer = -Eigen::MatrixXd(m.A_eff(own, own)).ldlt().solve(m.G_R(own, own));
-  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(2 * tree.rates(), 2 * tree.rates());
+  const int size = 2 * tree.rates();
+  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(size, size);
   slope(rates, rates) = answer;
   for (std::size_t i = 0; i < tree.rotors().size(); ++i) {
     const detail::RotorLink& rotor = tree.rotors()[i];
