@@ -109,7 +109,7 @@ struct Turn {
 
   /// Of a quaternion of any norm, as Pose::from.
   [[nodiscard]] static Turn from(const Eigen::Quaternion<S>& q) {
-    const S x = q.x(), y = q.y(), z = q.z(), w = q.w();
+    const S &x = q.x(), &y = q.y(), &z = q.z(), &w = q.w();
     const S scale = S(2) / S(x * x + y * y + z * z + w * w);
     const S sx = scale * x, sy = scale * y, sz = scale * z;
     return {S(S(1) - (sy * y + sz * z)), S(sx * y - sz * w),          S(sx * z + sy * w),
