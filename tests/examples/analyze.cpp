@@ -16,8 +16,11 @@
 #include <vector>
 
 #include <support/program.hpp>
+#include <support/reference_file.hpp>
 
+using kreisel::test::number;
 using kreisel::test::Outcome;
+using kreisel::test::reference_file;
 using kreisel::test::Scratch;
 using nlohmann::json;
 using std::numbers::pi;
@@ -42,15 +45,6 @@ json answer(const std::string& arguments) {
 json answer_to(const std::string& text, const std::string& arguments = "") {
   const Scratch folder;
   return answer(folder.write("scene.toml", text).string() + " " + arguments);
-}
-
-json reference(const std::string& name) {
-  std::ifstream file(std::string(KREISEL_TEST_DATA) + "/" + name);
-  return json::parse(file);
-}
-
-double number(const json& x) {
-  return x.is_string() ? std::stod(x.get<std::string>()) : x.get<double>();
 }
 
 void check_near(const std::string& what, double found, double wanted, double bound) {
@@ -98,7 +92,7 @@ std::string list(const json& numbers) {
 /// A model of rotors.json as a scene; `joints` are the keys besides, by the body's name.
 std::string scene_of(const std::string& model, const std::string& root, double speed,
                      const json& joints, const std::string& mode = "regulated") {
-  const json all = reference("rotors.json").at("models").at(model);
+  const json all = reference_file("rotors.json").at("models").at(model);
   std::ostringstream text;
   const auto inertia = [&text](const json& body) {
     const json& tensor = body.at("I");
@@ -312,7 +306,7 @@ BOOST_AUTO_TEST_SUITE(analyze_against_references)
 
 // 32 digits. How roots go with the momenta is the difference of two such scenes, damped or not.
 BOOST_AUTO_TEST_CASE(platform_with_three_gyros) {
-  const json all = reference("rotors.json").at("eigenvalues");
+  const json all = reference_file("rotors.json").at("eigenvalues");
   for (const char* const name : {"P_free_base_springs_only", "P_free_base_springs_dampers"}) {
     const json& c = all.at(name);
     const json result = answer_to(platform(c, 1000));
@@ -350,7 +344,7 @@ BOOST_AUTO_TEST_CASE(platform_with_three_gyros) {
 
 // tests/data/floquet.json: multipliers over half a turn of rotors that a body can have.
 BOOST_AUTO_TEST_CASE(unsymmetric_rotors) {
-  const json all = reference("floquet.json").at("points");
+  const json all = reference_file("floquet.json").at("points");
   int count = 0;
   for (const json& point : all) {
     const json& p = point.at("params");
@@ -421,8 +415,9 @@ origin_acceleration = { terms = [ { amplitude = [0, 0, 800], frequency = 60, pha
 
 // rotors.json, T13: the distance of the exact and the technical motion of a gyro on springs.
 BOOST_AUTO_TEST_CASE(precession_of_a_gyro_on_springs) {
-  const json c =
-      reference("rotors.json").at("trajectories").at("T13_cardan_springs_exact_and_precession");
+  const json c = reference_file("rotors.json")
+                     .at("trajectories")
+                     .at("T13_cardan_springs_exact_and_precession");
   const json result =
       answer_to(scene_of("cardan", "", 1000,
                          {{"outer",

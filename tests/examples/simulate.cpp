@@ -17,10 +17,13 @@
 #include <dynamics/solve/solve.hpp>
 
 #include <support/program.hpp>
+#include <support/reference_file.hpp>
 
 using namespace kreisel;
 using nlohmann::json;
+using test::number;
 using test::Outcome;
+using test::reference_file;
 using test::Scratch;
 
 namespace {
@@ -37,15 +40,6 @@ json answer(const std::string& arguments) {
   const Outcome outcome = run(arguments + " --json");
   BOOST_REQUIRE_MESSAGE(outcome.status == 0, arguments << ": " << outcome.err);
   return json::parse(outcome.out);
-}
-
-json reference(const std::string& name) {
-  std::ifstream file(std::string(KREISEL_TEST_DATA) + "/" + name);
-  return json::parse(file);
-}
-
-double number(const json& x) {
-  return x.is_string() ? std::stod(x.get<std::string>()) : x.get<double>();
 }
 
 void check_near(const std::string& what, double found, double wanted, double bound) {
@@ -67,7 +61,7 @@ BOOST_AUTO_TEST_SUITE(simulate_against_references)
 
 // 25 digits by two programs in 44 and 54 digits; see the file.
 BOOST_AUTO_TEST_CASE(gyros_in_cardan_suspension) {
-  const json cases = reference("cardan-gyro.json").at("trajectories");
+  const json cases = reference_file("cardan-gyro.json").at("trajectories");
   const std::pair<const char*, const char*> names[] = {
       {"cardan_gyro_free", "T1_free_symmetric"},
       {"cardan_gyro_springs", "T4b_springs_large"},
@@ -105,7 +99,7 @@ BOOST_AUTO_TEST_CASE(gyros_in_cardan_suspension) {
 }
 
 BOOST_AUTO_TEST_CASE(tops_and_a_pendulum) {
-  const json scenes = reference("ode-scenes.json").at("scenes");
+  const json scenes = reference_file("ode-scenes.json").at("scenes");
   const auto state = [&scenes](const char* name) {
     std::vector<double> numbers;
     for (const json& x : scenes.at(name).at("states").at(0)) numbers.push_back(number(x));

@@ -1,13 +1,11 @@
 #include <Eigen/LU>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -23,30 +21,25 @@
 #include <dynamics/step/jacobian.hpp>
 
 #include <support/near.hpp>
+#include <support/reference_file.hpp>
 #include <support/sample.hpp>
 
 using namespace kreisel;
+using test::Json;
 using test::near;
+using test::number;
 using test::Sample;
 
 namespace {
 
-using Json = nlohmann::json;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-double number(const Json& json) {
-  return json.is_string() ? std::stod(json.get<std::string>()) : json.get<double>();
-}
 
 Vector3<double> vector(const Json& list) {
   return {number(list.at(0)), number(list.at(1)), number(list.at(2))};
 }
 
 const Json& reference() {
-  static const Json json = [] {
-    std::ifstream file(std::string(KREISEL_TEST_DATA) + "/cardan-gyro.json");
-    return Json::parse(file);
-  }();
+  static const Json json = test::reference_file("cardan-gyro.json");
   return json;
 }
 

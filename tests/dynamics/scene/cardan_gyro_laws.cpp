@@ -3,12 +3,10 @@
 
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 #include <unsupported/Eigen/AutoDiff>
 
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -20,26 +18,21 @@
 #include <motor/displacement.hpp>
 
 #include <support/near.hpp>
+#include <support/reference_file.hpp>
 #include <support/sample.hpp>
 
 using namespace kreisel;
+using test::Json;
 using test::near;
+using test::number;
 using test::Sample;
 
 namespace {
 
-using Json = nlohmann::json;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-double number(const Json& json) {
-  return json.is_string() ? std::stod(json.get<std::string>()) : json.get<double>();
-}
-
 const Json& reference() {
-  static const Json json = [] {
-    std::ifstream file(std::string(KREISEL_TEST_DATA) + "/cardan-gyro.json");
-    return Json::parse(file);
-  }();
+  static const Json json = test::reference_file("cardan-gyro.json");
   return json;
 }
 

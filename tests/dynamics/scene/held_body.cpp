@@ -1,9 +1,7 @@
 #include <boost/test/data/monomorphic.hpp>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -22,17 +20,16 @@
 #include <motor/attitude.hpp>
 
 #include <support/near.hpp>
+#include <support/reference_file.hpp>
 #include <support/sample.hpp>
 
 using namespace kreisel;
+using test::Json;
 using test::near;
+using test::number;
 namespace data = boost::unit_test::data;
 
 namespace {
-
-using Json = nlohmann::json;
-
-double number(const Json& text) { return std::stod(text.get<std::string>()); }
 
 Vector3<double> vector(const Json& list) {
   return {number(list.at(0)), number(list.at(1)), number(list.at(2))};
@@ -81,10 +78,7 @@ struct ReferenceGuide {
   }
 };
 
-std::vector<Json> reference_cases() {
-  std::ifstream in(std::string(KREISEL_TEST_DATA) + "/fixed-point.json");
-  return Json::parse(in).at("cases");
-}
+std::vector<Json> reference_cases() { return test::reference_file("fixed-point.json").at("cases"); }
 
 auto reference_body(const Json& c) {
   return HeldBody(InertiaTensor<Body>::about_origin(number(c.at("mass")), vector(c.at("r_s")),

@@ -1,25 +1,19 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
 #include <cstddef>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include <dynamics/scene/body_system.hpp>
 
+#include <support/reference_file.hpp>
+
 /// The systems of tests/data/rotors.json: models with rotors in exact decimals, and what plain
 /// Newton-Euler says of them in 66 digits.
 
 namespace kreisel::test {
-
-using Json = nlohmann::json;
-
-[[nodiscard]] inline double number(const Json& json) {
-  return json.is_string() ? std::stod(json.get<std::string>()) : json.get<double>();
-}
 
 [[nodiscard]] inline Eigen::VectorXd numbers(const Json& json) {
   Eigen::VectorXd v(static_cast<Eigen::Index>(json.size()));
@@ -34,10 +28,7 @@ using Json = nlohmann::json;
 }
 
 [[nodiscard]] inline const Json& rotors_reference() {
-  static const Json json = [] {
-    std::ifstream file(std::string(KREISEL_TEST_DATA) + "/rotors.json");
-    return Json::parse(file);
-  }();
+  static const Json json = reference_file("rotors.json");
   return json;
 }
 

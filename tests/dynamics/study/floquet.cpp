@@ -3,14 +3,12 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -20,25 +18,20 @@
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/stability_boundaries.hpp>
 
+#include <support/reference_file.hpp>
+
 using namespace kreisel;
+using test::Json;
+using test::number;
 
 namespace {
 
 /// Enough for boundaries: the multipliers still err by 1e-15 only.
 constexpr Accuracy quick{.relative = 1e-12};
 
-using Json = nlohmann::json;
-
 const Json& reference() {
-  static const Json json = [] {
-    std::ifstream file(KREISEL_TEST_DATA "/floquet.json");
-    return Json::parse(file);
-  }();
+  static const Json json = test::reference_file("floquet.json");
   return json;
-}
-
-double number(const Json& json) {
-  return json.is_string() ? std::stod(json.get<std::string>()) : json.get<double>();
 }
 
 double parameter(const Json& c, const char* name) {

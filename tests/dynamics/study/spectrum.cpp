@@ -2,12 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,11 +16,14 @@
 #include <dynamics/study/spectrum.hpp>
 #include <motor/motor.hpp>
 
+#include <support/reference_file.hpp>
+
 using namespace kreisel;
+using test::Json;
+using test::number;
 
 namespace {
 
-using Json = nlohmann::json;
 using Complex = std::complex<double>;
 
 struct Coefficients {
@@ -30,14 +31,9 @@ struct Coefficients {
 };
 
 const Json& rotors() {
-  static const Json json = [] {
-    std::ifstream file(KREISEL_TEST_DATA "/rotors.json");
-    return Json::parse(file);
-  }();
+  static const Json json = test::reference_file("rotors.json");
   return json;
 }
-
-double number(const Json& json) { return std::stod(json.get<std::string>()); }
 
 Vector3<double> vector(const Json& json) {
   return {number(json.at(0)), number(json.at(1)), number(json.at(2))};
