@@ -13,7 +13,7 @@ namespace kreisel {
 ///
 /// Read as a change of coordinates it takes components written in a frame B to components written
 /// in a frame A: R turns B axes into A axes, x is the origin of B written in A. The rotation is a
-/// matrix: displacing and composing cost less than with a quaternion (benchmarks/report.md).
+/// matrix: displacing costs less than with a quaternion (benchmarks/kernels.cpp).
 ///
 /// Units  : [translation] = metre
 template <class S = double>

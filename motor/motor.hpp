@@ -13,8 +13,8 @@ using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
 // The kernels of this folder and of dynamics/inertia.hpp are written out component by component and
 // always inline. Eigen's own sums and products of three numbers go through packed registers and wait
-// for what has just been stored one by one, and g++ makes calls and loops of them at -O2: together
-// two to five times the work (benchmarks/report.md).
+// for what has just been stored one by one, and g++ makes calls and loops of them at -O2
+// (benchmarks/kernels.cpp).
 
 namespace detail {
 

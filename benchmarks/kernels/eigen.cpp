@@ -1,4 +1,5 @@
-// Matrices of six rows and columns, as those write it who have no type for a motor.
+// Matrices of six rows and columns, as those write it who have no type for a motor; and rotations as
+// quaternions.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -55,11 +56,20 @@ std::vector<double> of_inertia(const Matrix6& T) {
 struct Forms {
   Vector6 a, b;
   Matrix6 X, Y, inverse, T;
+  Eigen::Quaterniond turn;
+  Eigen::Vector3d shift;
 };
 
 Forms forms(const Numbers& n) {
   const Matrix6 X = displacement(n.pose);
-  return {vector(n.a), vector(n.b), X, displacement(n.other), X.inverse(), inertia(n)};
+  return {vector(n.a),
+          vector(n.b),
+          X,
+          displacement(n.other),
+          X.inverse(),
+          inertia(n),
+          Eigen::Quaterniond(Eigen::Matrix3d(n.pose.data())),
+          Eigen::Vector3d(n.pose.data() + 9)};
 }
 
 Matrix6 product(const Vector6& V) { return matrix(skew(V.head<3>()), skew(V.tail<3>())); }
@@ -75,6 +85,16 @@ std::vector<Contender> eigen(const All& numbers) {
       work("motor product", of_vector, [](const Forms& n) { return Vector6(product(n.a) * n.b); }),
       work("inertia times motor", of_vector, [](const Forms& n) { return Vector6(n.T * n.a); }),
       work("displace a motor", of_vector, [](const Forms& n) { return Vector6(n.X * n.a); }),
+      contender(
+          "displace a motor", "quaternion", all,
+          [](const Forms& n) {
+            Vector6 result;
+            result.head<3>() = n.turn * Eigen::Vector3d(n.a.head<3>());
+            result.tail<3>() = n.turn * Eigen::Vector3d(n.a.tail<3>()) +
+                               n.shift.cross(Eigen::Vector3d(result.head<3>()));
+            return result;
+          },
+          of_vector),
       work("displace an inertia", of_inertia,
            [](const Forms& n) { return Matrix6(n.X * n.T * n.inverse); }),
       work("compose displacements", of_displacement,
