@@ -450,7 +450,7 @@ BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
   }
   BOOST_TEST(rows.at(0) == columns);
   BOOST_TEST_REQUIRE(shown.at("rows").size() == rows.size() - 1);
-  for (const std::size_t i : {0, 57, 200}) {
+  for (const std::size_t i : {0UL, 57UL, 200UL}) {
     std::istringstream row(rows.at(i + 1));
     for (const json& x : shown.at("rows").at(i)) {
       std::string field;
