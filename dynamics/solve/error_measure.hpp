@@ -48,6 +48,11 @@ class ErrorMeasure {
   /// For scenes that all have the same blocks.
   explicit ErrorMeasure(double smallest) : ErrorMeasure(Scene::blocks, smallest) {}
 
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(size_);
+  }
+
   double operator()(const Vector& a, const Vector& b) {
     double worst = 0;
     int begin = 0;

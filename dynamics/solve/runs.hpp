@@ -30,7 +30,8 @@
 ///   finer_by(x)           how many times finer that is
 ///   digits_lost(x, n)     what rounding in n steps does to the state, in units of its last digit: a
 ///                         random walk; 0 where the method errs by more
-///   run(x, scene, start)  with on_the_way(t, end) -> State and effort()
+///   run(x, scene, start)  with on_the_way(t, end) -> State and effort(); and pass(bookmark), where it
+///                         can go on from what it has noted there
 namespace kreisel::detail {
 
 /// The Jacobian of a scene's field: exact, where the field takes dual numbers.
@@ -97,6 +98,11 @@ class VernerRuns : public AdaptiveRuns {
     [[nodiscard]] bool stiff() const { return stiff_; }
     [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
 
+    template <class Bookmark>
+    void pass(Bookmark& bookmark) {
+      bookmark(looks_, steps_);
+    }
+
    private:
     /// Whether it is stability that keeps the steps short, or, looked at once, something that is
     /// damped away soon. What is fast and not damped has to be resolved by any method.
@@ -146,6 +152,11 @@ class RadauRuns : public AdaptiveRuns {
       return scene->from_vector(steps.at(t));
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+
+    template <class Bookmark>
+    void pass(Bookmark& bookmark) {
+      bookmark(steps);
+    }
   };
 
   [[nodiscard]] Run run(double setting, const Scene& scene,
@@ -164,6 +175,11 @@ struct EqualLength {
   /// Of the run beside which this one goes on, with at least one step more between any two outputs:
   /// else the two would be the same, and tell nothing of their error.
   double beside = std::numeric_limits<double>::infinity();
+
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(longest, beside);
+  }
 
   [[nodiscard]] double over(double interval) const {
     return std::min(longest, interval / (std::ceil(interval / beside) + 1));
@@ -253,6 +269,11 @@ class GaussRuns : public FixedRuns {
       return scene->from_vector(steps.y());
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+
+    template <class Bookmark>
+    void pass(Bookmark& bookmark) {
+      bookmark(steps);
+    }
   };
 
   [[nodiscard]] Run run(const EqualLength& length, const Scene& scene,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/runs.hpp>
 #include <dynamics/solve/task.hpp>
+#include <dynamics/step/bookmark.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -38,6 +40,11 @@ class InvariantWatch {
             std::max(drifts_[i].largest, std::abs(now[i].second - drifts_[i].start));
       }
     }
+  }
+
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    for (InvariantDrift& drift : drifts_) bookmark(drift.start, drift.largest);
   }
 
   [[nodiscard]] const std::vector<InvariantDrift>& drifts() const { return drifts_; }
@@ -108,10 +115,12 @@ template <class Scene>
 /// exceeds the tolerance the run begins again with shorter steps, until rounding stops it.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
+///
+/// Throws : InvalidInput for a bookmark that is none of these runs; an empty one is of their begin
 template <class Scene, class Runs>
 [[nodiscard]] std::optional<Trajectory<typename Scene::State>> solve_in_pairs(
     const Scene& scene, const Runs& runs, const typename Scene::State& start, const Task& task,
-    double& spent) {
+    const std::vector<double>& bookmark, double& spent) {
   const Clock::time_point clock = Clock::now();
 
   Trajectory<typename Scene::State> result;
@@ -121,6 +130,15 @@ template <class Scene, class Runs>
   const std::optional<Scene> changed = off_by_last_digits(scene);
   double digits = digits_off(task);
   auto setting = runs.first();
+  std::optional<Bookmark> from;
+  if (!bookmark.empty()) from.emplace(bookmark);
+  const auto kind = static_cast<double>(Runs::method);
+  const auto pass_setting = [&](Bookmark& numbers) {
+    double own = kind;
+    numbers(own, setting, digits, spent);
+    if (own != kind) refuse_task("the bookmark is of another method");
+  };
+  if (from) pass_setting(*from);
   while (true) {
     result = {};
     RunReport& report = result.report;
@@ -133,9 +151,27 @@ template <class Scene, class Runs>
     auto fine = runs.run(runs.finer(setting), changed ? *changed : scene,
                          off_by_last_digits(scene, start, digits));
     watch.note(task.begin, start);
+    std::size_t done = 0;
+    const auto pass_run = [&](Bookmark& numbers) {
+      if constexpr (requires { coarse.pass(numbers); }) {
+        numbers(done, report.error_estimate, distance, watch, coarse, fine);
+      }
+    };
+    const auto bookmark_here = [&] {
+      Bookmark numbers;
+      pass_setting(numbers);
+      pass_run(numbers);
+      return numbers.numbers();
+    };
+    if (from) {
+      pass_run(*from);
+      from->finish();
+      from.reset();
+    }
     bool too_coarse = false;
     try {
-      for (const double t : task.times) {
+      while (done < task.times.size()) {
+        const double t = task.times[done];
         const typename Scene::State state = coarse.on_the_way(t, end);
         if constexpr (requires { coarse.stiff(); }) {
           if (coarse.stiff()) {
@@ -152,11 +188,16 @@ template <class Scene, class Runs>
         too_coarse = report.error_estimate > task.tolerance && !last_try;
         if (too_coarse) break;
         if (!output(result, watch, task, t, state)) break;
+        ++done;
+        if constexpr (requires(Bookmark & numbers) { coarse.pass(numbers); }) {
+          const bool offers = task.offer_bookmark && done < task.times.size();
+          if (offers) task.offer_bookmark(std::cref(bookmark_here));
+        }
       }
     } catch (const ComputationFailed& error) {
       report.status = RunStatus::failed;
       // What a load or a guide throws knows no time.
-      const double last_good = result.times.empty() ? task.begin : result.times.back();
+      const double last_good = done == 0 ? task.begin : task.times[done - 1];
       std::ostringstream text;
       text.precision(17);
       text << error.what() << "; the last output is that of t = " << last_good << " s";
@@ -217,11 +258,12 @@ template <class Scene>
   const typename Scene::State start = start_of_steps(scene, given, task.smallest);
   const bool automatic = task.method == Method::automatic;
   double spent = 0;
-  const auto with = [&](const auto& runs) {
-    auto result = solve_in_pairs(scene, runs, start, task, spent);
+  const auto go_on = [&](const auto& runs, const Task& asked, const std::vector<double>& bookmark) {
+    auto result = solve_in_pairs(scene, runs, start, asked, bookmark, spent);
     if (result) result->report.run_time = seconds_since(clock);
     return result;
   };
+  const auto with = [&](const auto& runs) { return go_on(runs, task, task.bookmark); };
 
   if constexpr (std::is_same_v<Scene, EulerTop>) {
     const bool pays = automatic && splits(scene) && is_fast(scene, start);
@@ -229,13 +271,18 @@ template <class Scene>
   }
   if (task.method == Method::radau13) return *with(RadauRuns<Scene>(task));
   if (task.method == Method::gauss16) return *with(GaussRuns(scene, task, start));
+  const bool was_stiff = automatic && !task.bookmark.empty() &&
+                         task.bookmark.front() == static_cast<double>(Method::radau13);
+  if (was_stiff) return *with(RadauRuns<Scene>(task));
   const auto explicitly = with(VernerRuns<Scene>(task));
-  if (!explicitly) return *with(RadauRuns<Scene>(task));
+  if (!explicitly) return *go_on(RadauRuns<Scene>(task), task, {});
   // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
   const RunReport& report = explicitly->report;
   const bool long_run = report.status == RunStatus::complete && report.effort.steps > 1e5;
   if (automatic && long_run && !report.tolerance_kept && task.jumps.empty()) {
-    auto fixed = with(GaussRuns(scene, task, start));
+    Task alone = task;  // a bookmark would not know the other trajectory
+    alone.offer_bookmark = nullptr;
+    auto fixed = go_on(GaussRuns(scene, alone, start), alone, {});
     if (fixed->report.status == RunStatus::complete &&
         fixed->report.error_estimate < report.error_estimate) {
       return *fixed;

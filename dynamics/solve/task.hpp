@@ -50,6 +50,16 @@ struct Task {
 
   /// Called at every output with the time; false cancels the run. What was computed is kept.
   std::function<bool(double t)> progress = nullptr;
+
+  /// Called after every output but the last with what gives a bookmark, for whoever wants to keep
+  /// one. Verner98, gauss16 and radau13 have them, closed forms and splitting need none.
+  std::function<void(const std::function<std::vector<double>()>& bookmark)> offer_bookmark =
+      nullptr;
+
+  /// The run goes on behind the output after which this was taken, as it did then to the last bit:
+  /// scene, start and the rest of the task have to be the same. The trajectory is the part that is
+  /// new, or all of it where the run begins again with shorter steps; the report is of the whole.
+  std::vector<double> bookmark = {};
 };
 
 namespace detail {

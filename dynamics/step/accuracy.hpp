@@ -109,6 +109,11 @@ class BlockSizes {
     for (Block& block : blocks_) block.size = larger(block.size, norm(y, block));
   }
 
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    for (Block& block : blocks_) bookmark(block.size, block.noise);
+  }
+
   /// What rounding of the state leaves uncertain of its rate.
   void note_noise(const Vector& rate) {
     for (Block& block : blocks_) block.noise = norm(rate, block);

@@ -83,6 +83,12 @@ class Advance {
   /// Announces times at which the scene's guide or loads jump.
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
+  /// What the steps go on from.
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(steps_);
+  }
+
   [[nodiscard]] double t() const { return steps_.t(); }
   [[nodiscard]] State state() const { return scene_->from_vector(steps_.y()); }
   [[nodiscard]] const Effort& effort() const { return steps_.effort(); }

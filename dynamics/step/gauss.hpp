@@ -180,6 +180,12 @@ class GaussSteps {
     return y();
   }
 
+  /// What the steps go on from.
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(step_, h_, time_, state_, stage_, continues_, effort_);
+  }
+
  private:
   using Stages = Eigen::Matrix<Scalar, Vector::RowsAtCompileTime, stages>;
   using Square = Eigen::Matrix<Scalar, stages, stages>;

@@ -232,6 +232,14 @@ class RadauSteps {
     h_before_ = 0;
   }
 
+  /// What the steps go on from, outputs within the last step included.
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
+             step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst, rate_,
+             stages_.value, tangent_, effort_);
+  }
+
  private:
   struct Begin {
     detail::Compensated<double> time;

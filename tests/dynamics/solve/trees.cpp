@@ -77,4 +77,69 @@ BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
   }
 }
 
+// From whichever output, of whichever attempt: the same states and the same report.
+BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
+  const InertiaTensor<Body> bob{{2, {0, 0, -1}, {0.6, 0.6, 0.1}}};
+  const BodyDescription swinging{
+      .name = "rod", .joint = {.kind = JointKind::revolute, .axis = {1, 0, 0}}, .inertia = bob};
+  const BodyDescription free{.name = "top",
+                             .parent = "rod",
+                             .joint = {.kind = JointKind::spherical, .position = {0, 0, -2}},
+                             .inertia = {{1, {0, 0, 0.1}, {0.2, 0.3, 0.4}}}};
+  BodyDescription creeping = swinging;
+  creeping.forces = {{.stiffness = 1e6, .damping = 1e7}};
+  struct Case {
+    std::vector<BodyDescription> bodies;
+    Task task;
+    const char* method;
+    bool begins_again;
+  };
+  const std::vector<double> times{0.3, 0.31, 0.32, 0.33, 0.4, 1, 3, 4.5};
+  std::vector<double> long_times = times;
+  long_times.push_back(30);
+  const Case cases[] = {
+      {{swinging, free}, {.times = times}, "verner98", false},
+      {{swinging, free}, {.times = long_times}, "verner98", true},
+      {{swinging, free}, {.times = times, .method = Method::gauss16}, "gauss16", false},
+      {{swinging, free}, {.times = times, .method = Method::radau13}, "radau13", false},
+      {{creeping, free}, {.times = times}, "radau13", false}};
+  for (Case c : cases) {
+    const BodySystem system(RestingFrame<>{}, c.bodies, UniformGravity<Guide>{{0, 0, -9.81}});
+    auto start = system.rest();
+    start.coordinates[0] = 0.7;
+    start.rates << 0, 1, 3, 0.1;
+    std::vector<std::vector<double>> bookmarks;
+    c.task.offer_bookmark = [&](const auto& bookmark) { bookmarks.push_back(bookmark()); };
+    const auto whole = solve(system, start, c.task);
+    BOOST_TEST(whole.report.method == c.method);
+    BOOST_TEST((bookmarks.size() >= c.task.times.size()) == c.begins_again, bookmarks.size());
+    for (const auto& bookmark : bookmarks) {
+      Task rest = c.task;
+      rest.offer_bookmark = nullptr;
+      rest.bookmark = bookmark;
+      const auto found = solve(system, start, rest);
+      const std::size_t before = whole.times.size() - found.times.size();
+      for (std::size_t i = 0; i < found.times.size(); ++i) {
+        BOOST_TEST(found.times[i] == whole.times[before + i]);
+        BOOST_TEST(found.states[i].coordinates == whole.states[before + i].coordinates);
+        BOOST_TEST(found.states[i].rates == whole.states[before + i].rates);
+      }
+      BOOST_TEST(found.report.error_estimate == whole.report.error_estimate);
+      BOOST_TEST(found.report.effort.steps == whole.report.effort.steps);
+      BOOST_TEST(found.report.effort.evaluations == whole.report.effort.evaluations);
+      BOOST_TEST(found.report.all_evaluations == whole.report.all_evaluations);
+      BOOST_TEST(found.report.invariants.size() == whole.report.invariants.size());
+      for (std::size_t i = 0; i < found.report.invariants.size(); ++i) {
+        BOOST_TEST(found.report.invariants[i].largest == whole.report.invariants[i].largest);
+      }
+      rest.bookmark.pop_back();
+      BOOST_CHECK_THROW((void)solve(system, start, rest), InvalidInput);
+    }
+    Task other = c.task;
+    other.bookmark = bookmarks.front();
+    other.method = c.task.method == Method::gauss16 ? Method::radau13 : Method::gauss16;
+    BOOST_CHECK_THROW((void)solve(system, start, other), InvalidInput);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <dynamics/step/accuracy.hpp>
+#include <dynamics/step/compensated.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel::detail {
+
+/// The numbers from which steps go on as if they had not stopped. Steps pass theirs to it in one
+/// order, whether it takes them down or sets them.
+class Bookmark {
+ public:
+  /// Takes down.
+  Bookmark() = default;
+
+  /// Sets.
+  explicit Bookmark(std::vector<double> numbers) : numbers_(std::move(numbers)), sets_(true) {}
+
+  [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
+
+  /// Throws : InvalidInput where these are the numbers of other steps
+  template <class... Values>
+  void operator()(Values&... values) {
+    (pass(values), ...);
+  }
+
+  void finish() const { require(next_ == numbers_.size()); }
+
+ private:
+  static void require(bool fits) {
+    if (!fits) throw InvalidInput("the bookmark is not of this run");
+  }
+
+  void pass(double& x) {
+    if (!sets_) {
+      numbers_.push_back(x);
+      return;
+    }
+    require(next_ < numbers_.size());
+    x = numbers_[next_++];
+  }
+
+  template <class Whole>
+  requires std::is_integral_v<Whole>
+  void pass(Whole& x) {
+    auto number = static_cast<double>(x);
+    pass(number);
+    require(number >= 0 && number <= 9e15);
+    x = static_cast<Whole>(number);
+  }
+
+  template <class Derived>
+  void pass(Eigen::PlainObjectBase<Derived>& m) {
+    Eigen::Index rows = m.rows();
+    Eigen::Index columns = m.cols();
+    pass(rows);
+    pass(columns);
+    if (sets_) {
+      const auto left = static_cast<Eigen::Index>(numbers_.size() - next_);
+      require(rows <= left && columns <= left);
+      constexpr int fixed_rows = Derived::RowsAtCompileTime;
+      constexpr int fixed_columns = Derived::ColsAtCompileTime;
+      require(fixed_rows == Eigen::Dynamic || fixed_rows == rows);
+      require(fixed_columns == Eigen::Dynamic || fixed_columns == columns);
+      m.resize(rows, columns);
+    }
+    for (Eigen::Index i = 0; i < m.size(); ++i) pass(m.data()[i]);
+  }
+
+  template <class T, class Allocator>
+  void pass(std::vector<T, Allocator>& list) {
+    for (T& x : list) pass(x);
+  }
+
+  template <class T>
+  void pass(Compensated<T>& sum) {
+    pass(sum.value);
+    pass(sum.rest);
+  }
+
+  void pass(Effort& effort) {
+    (*this)(effort.steps, effort.rejected, effort.evaluations, effort.jacobians);
+  }
+
+  template <class T>
+  requires requires(T& whole, Bookmark& bookmark) { whole.pass(bookmark); }
+  void pass(T& whole) { whole.pass(*this); }
+
+  std::vector<double> numbers_;
+  std::size_t next_ = 0;
+  bool sets_ = false;
+};
+
+}  // namespace kreisel::detail
