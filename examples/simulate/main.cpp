@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <motor/error.hpp>
 
@@ -14,6 +18,7 @@
 #include "columns.hpp"
 #include "output.hpp"
 #include "request.hpp"
+#include "resume_file.hpp"
 #include "row_file.hpp"
 
 namespace {
@@ -24,33 +29,94 @@ volatile std::sig_atomic_t interrupted = 0;
 
 extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
-/// A run as far as the rows of a file go.
+/// Where a run begins, or goes on.
 struct Begin {
-  double t = 0;
+  kreisel::Task task;
   JointState state;
+  double latest = -std::numeric_limits<double>::infinity();  ///< of the rows that are there
+  std::vector<std::vector<double>> rows = {};                ///< those that are kept
 };
 
-/// Throws : kreisel::InvalidInput where the file's rows are not of this scene
-Begin last_row(const Model& model, RowFile& file, const kreisel::SceneFile& scene, bool reactions) {
-  const auto rows = file.keep_rows();
-  const JointState start = start_of(scene);
-  if (rows.front().front() == 0 && rows.front() != row(model, 0, start, reactions)) {
-    throw kreisel::InvalidInput("--resume: the rows begin with another state than the scene");
+Begin from_the_start(const kreisel::SceneFile& scene) {
+  Begin begin{{}, start_of(scene)};
+  begin.task.times = scene.output_times;
+  if (begin.task.times.empty() || begin.task.times.back() < scene.t_end) {
+    begin.task.times.push_back(scene.t_end);
   }
-  const double t = rows.back().front();
-  if (t > scene.t_end) throw kreisel::InvalidInput("--resume: the rows go on after t_end");
-  return {t, state_of(model.tree(), rows.back())};
+  begin.task.tolerance = scene.tolerance;
+  begin.task.method = scene.method;
+  return begin;
 }
 
-/// The output times after `begin`, and the end.
-std::vector<double> times(const kreisel::SceneFile& scene, double begin, bool resumed) {
-  std::vector<double> result;
-  for (const double t : scene.output_times) {
-    if (!resumed || t > begin) result.push_back(t);
+/// Goes on with the rows of a file, from the bookmark if there is one of them.
+///
+/// Throws : kreisel::InvalidInput where the file's rows are not of this scene
+Begin from_rows(const Model& model, RowFile& file, const ResumeFile& resume,
+                const kreisel::SceneFile& scene) {
+  Begin begin = from_the_start(scene);
+  auto rows = file.keep_rows();
+  if (rows.empty()) return begin;
+  if (rows.front().front() == 0 && rows.front() != row(model, 0, begin.state, scene.reactions)) {
+    throw kreisel::InvalidInput("--resume: the rows begin with another state than the scene");
   }
-  if (result.empty() || result.back() < scene.t_end) result.push_back(scene.t_end);
-  return result;
+  if (rows.back().front() > scene.t_end) {
+    throw kreisel::InvalidInput("--resume: the rows go on after t_end");
+  }
+  auto bookmark = resume.read();
+  if (bookmark && file.go_on_behind(bookmark->bytes)) {
+    std::erase_if(rows, [&](const auto& row) { return row.front() > bookmark->t; });
+    begin.task.bookmark = std::move(bookmark->numbers);
+    begin.latest = bookmark->t;
+    fmt::print(stderr, "simulate: going on from t = {:.17g} s\n", begin.latest);
+  } else {
+    begin.latest = rows.back().front();
+    begin.task.begin = begin.latest;
+    begin.state = state_of(model.tree(), rows.back());
+    std::erase_if(begin.task.times, [&](double t) { return t <= begin.latest; });
+    if (begin.task.times.empty()) begin.task.times.push_back(scene.t_end);
+    fmt::print(stderr,
+               "simulate: going on from t = {:.17g} s with new steps, for {}.resume is missing or "
+               "of another run; how what the rows are off by grows from there is not in the error "
+               "estimate\n",
+               begin.latest, file.place().string());
+  }
+  begin.rows = std::move(rows);
+  return begin;
 }
+
+/// The states of rows before those of a run that went on with them.
+void put_before(kreisel::Trajectory<JointState>& run, const Model& model,
+                const std::vector<std::vector<double>>& rows) {
+  std::vector<double> times;
+  std::vector<JointState> states;
+  for (const auto& row : rows) {
+    if (row.front() >= run.times.front()) break;
+    times.push_back(row.front());
+    states.push_back(state_of(model.tree(), row));
+  }
+  run.times.insert(run.times.begin(), times.begin(), times.end());
+  run.states.insert(run.states.begin(), states.begin(), states.end());
+}
+
+/// Takes down where the run is, every fifth of a second.
+class Bookmarks {
+ public:
+  explicit Bookmarks(const ResumeFile& file) : file_(file) {}
+
+  void begin_again() { latest_ = {}; }
+
+  template <class Take>
+  void offer(double t, long long bytes, const Take& take) {
+    const auto now = std::chrono::steady_clock::now();
+    if (latest_ && now - *latest_ < std::chrono::milliseconds(200)) return;
+    latest_ = now;
+    file_.write({t, bytes, take()});
+  }
+
+ private:
+  const ResumeFile& file_;
+  std::optional<std::chrono::steady_clock::time_point> latest_;
+};
 
 int run(const Request& request) {
   kreisel::SceneFile scene = kreisel::read_scene(request.scene, request.solve);
@@ -58,33 +124,38 @@ int run(const Request& request) {
   scene.terms = scene.terms || request.terms;
   const std::unique_ptr<Model> model = make_model(scene);
   std::optional<RowFile> file;
-  if (request.csv) file.emplace(*request.csv, columns(model->tree(), scene.reactions));
-  Begin begin{0, start_of(scene)};
-  if (request.resume) {
-    begin = last_row(*model, *file, scene, scene.reactions);
-    fmt::print(stderr,
-               "simulate: going on from t = {:.17g} s; how what the rows are off by grows from "
-               "there is not in the error estimate\n",
-               begin.t);
+  std::optional<ResumeFile> resume;
+  std::optional<Bookmarks> bookmarks;
+  if (request.csv) {
+    file.emplace(*request.csv, columns(model->tree(), scene.reactions));
+    resume.emplace(*request.csv, identity(request.scene, scene));
+    bookmarks.emplace(*resume);
   }
-
-  kreisel::Task task;
-  task.begin = begin.t;
-  task.times = times(scene, begin.t, request.resume);
-  task.tolerance = scene.tolerance;
-  task.method = scene.method;
+  Begin begin = request.resume ? from_rows(*model, *file, *resume, scene) : from_the_start(scene);
+  kreisel::Task& task = begin.task;
   const bool end_is_a_row = !scene.output_times.empty() && scene.output_times.back() == scene.t_end;
-  double latest = -std::numeric_limits<double>::infinity();
+  double latest = begin.latest;
+  if (bookmarks) {
+    task.offer_bookmark = [&](const auto& take) {
+      const auto bytes = file->bytes();
+      if (bytes) bookmarks->offer(latest, *bytes, take);
+    };
+  }
   kreisel::Trajectory<JointState> trajectory;
   {
     Progress progress;
     const auto listener = [&](double t, const JointState& state) {
-      if (file && t <= latest) file->begin_again();
+      if (file && t <= latest) {
+        file->begin_again();
+        bookmarks->begin_again();
+      }
       latest = t;
-      const bool is_new = !request.resume || t > begin.t;
-      const bool is_row = is_new && (end_is_a_row || t < scene.t_end);
-      if (file && is_row) file->write(row(*model, t, state, scene.reactions));
-      progress.report((t - begin.t) / (scene.t_end - begin.t),
+      const bool is_there =
+          task.begin > 0 && t == task.begin;  // the end of a run that was complete
+      if (file && !is_there && (end_is_a_row || t < scene.t_end)) {
+        file->write(row(*model, t, state, scene.reactions));
+      }
+      progress.report(t / scene.t_end,
                       [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
       return interrupted == 0;
     };
@@ -92,18 +163,20 @@ int run(const Request& request) {
   }
   if (file) file->close();
   const kreisel::RunReport& report = trajectory.report;
-  const double reached = trajectory.times.empty() ? begin.t : trajectory.times.back();
+  const double reached =
+      trajectory.times.empty() ? std::max(0.0, begin.latest) : trajectory.times.back();
   if (interrupted != 0 && !(reached == scene.t_end && report.status == RunStatus::complete)) {
-    fmt::print(stderr,
-               "simulate: interrupted after t = {:.9g} of {:.9g} s; rows up to there are "
-               "kept\n",
-               reached, scene.t_end);
+    fmt::print(stderr, "simulate: interrupted after t = {:.9g} of {:.9g} s{}\n", reached,
+               scene.t_end,
+               file ? "; rows up to there are kept, and --resume goes on with them" : "");
     return 130;
   }
   if (report.status == RunStatus::failed) {
     throw kreisel::ComputationFailed(
         fmt::format("failed after t = {:.9g} s: {}", reached, report.message));
   }
+  if (resume) resume->remove();
+  put_before(trajectory, *model, begin.rows);
   const Result result{scene, *model, trajectory, scene.reactions, scene.terms};
   if (request.plot) draw(result, *request.plot);
   if (request.json) {

@@ -47,11 +47,13 @@ std::vector<std::vector<double>> RowFile::keep_rows() {
   std::ifstream file(place_, std::ios::binary);
   if (!file || std::filesystem::is_directory(place_)) refuse("cannot be read");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (text.empty()) return {};
   std::string_view rest = text;
   const std::string head = line(columns_);
   if (!rest.starts_with(head)) refuse("its columns are not those of this scene");
   rest.remove_prefix(head.size());
-  kept_ = static_cast<long long>(head.size());
+  head_ = static_cast<long long>(head.size());
+  kept_ = head_;
   std::vector<std::vector<double>> rows;
   for (std::size_t end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n')) {
     std::vector<double> row;
@@ -74,9 +76,21 @@ std::vector<std::vector<double>> RowFile::keep_rows() {
     rest.remove_prefix(end + 1);
     kept_ += static_cast<long long>(end) + 1;
   }
-  if (rows.empty()) refuse("holds no row to go on from");
   keeps_ = true;
+  begin_ = kept_;
   return rows;
+}
+
+bool RowFile::go_on_behind(long long bytes) {
+  if (!(bytes >= head_ && bytes <= kept_)) return false;
+  begin_ = bytes;
+  kept_ = head_;
+  return true;
+}
+
+std::optional<long long> RowFile::bytes() const {
+  if (file_ < 0 || !is_regular_) return std::nullopt;
+  return written_;
 }
 
 void RowFile::open() {
@@ -88,9 +102,9 @@ void RowFile::open() {
   struct stat status = {};
   is_regular_ = ::fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
   if (is_regular_) {
-    if (::ftruncate(file_, keeps_ ? kept_ : 0) != 0) fail(std::strerror(errno));
+    if (::ftruncate(file_, begin_) != 0) fail(std::strerror(errno));
     ::lseek(file_, 0, SEEK_END);
-    written_ = kept_;
+    written_ = begin_;
   }
   if (keeps_) return;
   const std::string head = line(columns_);
@@ -126,6 +140,7 @@ void RowFile::write(const std::vector<double>& row) {
 }
 
 void RowFile::begin_again() {
+  begin_ = kept_;
   if (file_ < 0) return;
   if (!is_regular_) {
     held_.resize(static_cast<std::size_t>(kept_));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,20 @@ class RowFile {
   RowFile& operator=(const RowFile&) = delete;
   ~RowFile();
 
+  [[nodiscard]] const std::filesystem::path& place() const { return place_; }
+
   /// Keeps the rows that are there, but for a last one cut off, and returns them.
   ///
-  /// Throws : kreisel::InvalidInput where the file cannot be read, has other columns, no rows, or
-  ///          times that do not increase
+  /// Throws : kreisel::InvalidInput where the file cannot be read, has other columns, or times that
+  ///          do not increase
   std::vector<std::vector<double>> keep_rows();
+
+  /// Of the rows that are kept only the first so many bytes, and those not for good: begin_again()
+  /// takes them back. Says whether there are so many.
+  [[nodiscard]] bool go_on_behind(long long bytes);
+
+  /// Of head and rows that have been written; nothing where the file is none that grows.
+  [[nodiscard]] std::optional<long long> bytes() const;
 
   /// Throws : kreisel::InvalidInput where the file cannot be opened, kreisel::ComputationFailed
   ///          where it does not take the row
@@ -41,7 +51,9 @@ class RowFile {
   std::string held_;  ///< where all is written in the end
   int file_ = -1;
   bool is_regular_ = true;
-  long long kept_ = 0;     ///< bytes of head and rows that stay
+  long long head_ = 0;     ///< bytes of the head that was found
+  long long begin_ = 0;    ///< bytes of head and rows behind which the first one is written
+  long long kept_ = 0;     ///< of these the bytes that stay
   long long written_ = 0;  ///< bytes of whole rows
   bool keeps_ = false;
 };

@@ -268,7 +268,46 @@ BOOST_AUTO_TEST_CASE(tells_reactions_and_terms_when_asked) {
   BOOST_TEST(text.err == "");
 }
 
-// What was cut off is computed again from the last whole row, to the tolerance.
+// Rows and report, wherever the run was when it was killed, and killed twice.
+BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
+  const Scratch folder;
+  std::string longer = two_rods;
+  longer.replace(longer.find("output_step = 0.01"), 18, "output_step = 0.05");
+  // As far as this machine comes in a second, which is five bookmarks.
+  const std::string short_one = folder.write("short.toml", longer).string();
+  const double taken = answer(short_one + " --t-end 40").at("run_time_s");
+  const int t_end = static_cast<int>(40 / taken);
+  longer.replace(longer.find("t_end = 2"), 9, "t_end = " + std::to_string(t_end));
+  const std::string file = folder.write("scene.toml", longer).string();
+  const json whole = answer(file + " --csv " + (folder.path() / "whole.csv").string());
+  const std::string csv = (folder.path() / "part.csv").string();
+  // Once it has taken down a bookmark that is not of its first row, or a later one than before.
+  const auto kill = [&](const std::string& option, const std::string& after) {
+    return test::run("( " + std::string(KREISEL_SIMULATE) + " " + file + option + " --csv " + csv +
+                     " & pid=$!; until awk 'NR == 1 && $3 > " + after +
+                     " { found = 1 } END { exit !found }' " + csv +
+                     ".resume 2>/dev/null || ! kill -0 $pid; do sleep 0.02; done; "
+                     "kill -KILL $pid; wait $pid )");
+  };
+  BOOST_TEST(kill("", "0").status == 137);
+  const std::size_t first = folder.read("part.csv").size();
+  BOOST_TEST(first < folder.read("whole.csv").size());
+  BOOST_TEST(kill(" --resume", std::to_string(t_end / 2)).status == 137);
+  BOOST_TEST(folder.read("part.csv").size() > first);
+  const Outcome outcome = run(file + " --json --resume --csv " + csv);
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(outcome.err.find("going on from t = ") != std::string::npos, outcome.err);
+  BOOST_TEST((folder.read("part.csv") == folder.read("whole.csv")));
+  const json resumed = json::parse(outcome.out);
+  for (const char* const key : {"final", "steps", "rejected", "evaluations", "all_evaluations",
+                                "error_estimate", "invariants", "method"}) {
+    BOOST_TEST(resumed.at(key) == whole.at(key), key);
+  }
+  BOOST_TEST(!std::filesystem::exists(csv + ".resume"));
+}
+
+// Rows without a bookmark: what was cut off is computed again from the last whole one, to the
+// tolerance.
 BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
   const Scratch folder;
   const std::string file = folder.write("scene.toml", two_rods).string();
@@ -278,7 +317,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
   const auto part = folder.write("part.csv", all.substr(0, middle));
   const Outcome outcome = run(file + " --json --resume --csv " + part.string());
   BOOST_TEST(outcome.status == 0, outcome.err);
-  BOOST_TEST(outcome.err.find("going on from t = ") != std::string::npos);
+  BOOST_TEST(outcome.err.find(" s with new steps, for ") != std::string::npos, outcome.err);
   const json rest = json::parse(outcome.out);
   for (const char* const body : {"upper", "lower"}) {
     for (const char* const quantity : {"coordinate", "rate"}) {
