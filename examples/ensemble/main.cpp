@@ -1,0 +1,263 @@
+// ensemble: a scene file run many times with numbers of it varied, and where the members end.
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <dynamics/ensemble/workers.hpp>
+#include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/csv.hpp>
+#include <dynamics/file/scene_numbers.hpp>
+#include <motor/error.hpp>
+
+#include "../shared/exit_status.hpp"
+#include "../shared/progress.hpp"
+#include "../simulate/columns.hpp"
+#include "request.hpp"
+
+namespace {
+
+using kreisel::RunStatus;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
+
+struct Member {
+  RunStatus status = RunStatus::cancelled;
+  std::string message;         ///< of one that failed
+  std::vector<double> varied;  ///< in the order of the keys
+  std::vector<double> joints;  ///< at the end, as simulate's rows have them
+  double error = 0;
+  bool tolerance_kept = false;
+};
+
+/// The scene, with which numbers are varied, and what its members have in common.
+struct Scene {
+  const Request& request;
+  std::vector<std::string> keys;  ///< of the numbers that are varied
+  kreisel::SceneNumbers numbers;
+  std::vector<std::string> columns;
+};
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Scene read(const Request& request) {
+  // Mistakes that all members would make.
+  const kreisel::SceneFile file = kreisel::read_scene(request.scene, request.solve);
+  std::vector<std::string> keys;
+  for (const Variation& variation : request.variations) {
+    keys.insert(keys.end(), variation.keys.begin(), variation.keys.end());
+  }
+  std::vector<std::string> names = columns(make_model(file)->tree(), false);
+  names.erase(names.begin());  // the time
+  return {request, keys, kreisel::SceneNumbers(text_of(request.scene), keys), std::move(names)};
+}
+
+/// As simulate runs a file in which the numbers that were drawn stand.
+Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& stop) {
+  const Request& request = scene.request;
+  Member member;
+  kreisel::MemberRandom random(request.seed, index);
+  const double share = request.members == 1
+                           ? 0
+                           : static_cast<double>(index) / static_cast<double>(request.members - 1);
+  for (const Variation& variation : request.variations) {
+    const double drawn = variation.drawn(share, random);
+    for (std::size_t k = 0; k < variation.keys.size(); ++k) {
+      const double given = scene.numbers.values()[member.varied.size()];
+      member.varied.push_back(variation.applied(given, drawn));
+    }
+  }
+  try {
+    const kreisel::SceneFile file =
+        kreisel::parse_scene(scene.numbers.with(member.varied), request.scene, request.solve);
+    const auto model = make_model(file);
+    kreisel::Task task;
+    task.times = file.output_times;
+    if (task.times.empty() || task.times.back() < file.t_end) task.times.push_back(file.t_end);
+    task.tolerance = file.tolerance;
+    task.method = file.method;
+    const auto ends = [&stop] { return stop || interrupted != 0; };
+    const auto run = model->solve(
+        task, start_of(file), [&](double, const JointState&) { return !ends(); }, ends);
+    if (ends() && run.times.size() < task.times.size()) return member;
+    member.status = run.report.status;
+    member.message = run.report.message;
+    if (run.report.status != RunStatus::complete) return member;
+    member.joints = row(*model, file.t_end, run.states.back(), false);
+    member.joints.erase(member.joints.begin());
+    member.error = run.report.error_estimate;
+    member.tolerance_kept = run.report.tolerance_kept;
+  } catch (const std::exception& error) {
+    member.status = RunStatus::failed;
+    member.message = error.what();  // of a scene several lines
+    std::replace(member.message.begin(), member.message.end(), '\n', ';');
+  }
+  return member;
+}
+
+std::vector<Member> compute(const Scene& scene) {
+  std::vector<Member> members(scene.request.members);
+  Progress progress;
+  [[maybe_unused]] const bool all = kreisel::detail::share_out(
+      members.size(), scene.request.threads,
+      [&](double share) {
+        progress.report(share, [&] { return fmt::format("of {} members", members.size()); });
+        return interrupted == 0;
+      },
+      [&](std::size_t i, const std::atomic<bool>& stop) { members[i] = compute(scene, i, stop); });
+  return members;
+}
+
+void write_csv(const Scene& scene, const std::vector<Member>& members) {
+  kreisel::AtomicFile file(*scene.request.csv);
+  std::ostream& out = file.stream();
+  out << "member";
+  for (const std::string& key : scene.keys) out << ',' << kreisel::csv_field(key);
+  for (const std::string& name : scene.columns) out << ',' << kreisel::csv_field(name);
+  out << ",error_estimate,message\n";
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member& member = members[i];
+    if (member.status == RunStatus::cancelled) continue;
+    out << i;
+    for (const double x : member.varied) out << fmt::format(",{:.17g}", x);
+    for (std::size_t k = 0; k < scene.columns.size(); ++k) {
+      out << (member.joints.empty() ? "," : fmt::format(",{:.17g}", member.joints[k]));
+    }
+    if (member.status == RunStatus::complete) {
+      out << fmt::format(",{:.17g},\n", member.error);
+    } else {
+      out << ",," << kreisel::csv_field(member.message) << '\n';
+    }
+  }
+  file.commit();
+}
+
+/// Of a column, added up in the order of members.
+struct Statistics {
+  std::string name;
+  double count = 0, mean = 0, squares = 0;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -std::numeric_limits<double>::infinity();
+
+  void add(double x) {
+    count += 1;
+    const double off = x - mean;
+    mean += off / count;
+    squares += off * (x - mean);
+    least = std::min(least, x);
+    greatest = std::max(greatest, x);
+  }
+  [[nodiscard]] double deviation() const { return std::sqrt(squares / std::max(1.0, count - 1)); }
+};
+
+/// How many members there are of each kind, and how the complete ones are spread.
+struct Summary {
+  std::size_t complete = 0, failed = 0, off = 0;
+  double error = 0;
+  std::string message;  ///< of the first that failed
+  std::vector<Statistics> columns;
+};
+
+Summary summary(const Scene& scene, const std::vector<Member>& members) {
+  Summary result;
+  for (const std::string& key : scene.keys) result.columns.push_back({key});
+  for (const std::string& name : scene.columns) result.columns.push_back({name});
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member& member = members[i];
+    if (member.status == RunStatus::failed) {
+      if (result.failed++ == 0) result.message = fmt::format("member {}: {}", i, member.message);
+    }
+    if (member.status != RunStatus::complete) continue;
+    ++result.complete;
+    if (!member.tolerance_kept) ++result.off;
+    result.error = std::max(result.error, member.error);
+    auto column = result.columns.begin();
+    for (const double x : member.varied) (column++)->add(x);
+    for (const double x : member.joints) (column++)->add(x);
+  }
+  return result;
+}
+
+void print_json(const Request& request, const Summary& all) {
+  nlohmann::ordered_json columns = nlohmann::ordered_json::object();
+  for (const Statistics& column : all.columns) {
+    if (column.count == 0) continue;
+    columns[column.name] = {{"mean", column.mean},
+                            {"deviation", column.deviation()},
+                            {"least", column.least},
+                            {"greatest", column.greatest}};
+  }
+  const nlohmann::ordered_json text{{"members", request.members}, {"complete", all.complete},
+                                    {"failed", all.failed},       {"tolerance_not_kept", all.off},
+                                    {"seed", request.seed},       {"error_estimate", all.error},
+                                    {"columns", columns}};
+  fmt::print("{}\n", text.dump(2));
+}
+
+void print_summary(const Request& request, const Summary& all) {
+  fmt::print("{} of {} members, {} failed; greatest error {:.1e}, estimated\n\n", all.complete,
+             request.members, all.failed, all.error);
+  std::size_t width = 0;
+  for (const Statistics& column : all.columns) width = std::max(width, column.name.size());
+  fmt::print("{:{}} {:>14} {:>14} {:>14} {:>14}\n", "", width, "mean", "deviation", "least",
+             "greatest");
+  for (const Statistics& column : all.columns) {
+    if (column.count == 0) continue;
+    fmt::print("{:{}} {:14.6g} {:14.6g} {:14.6g} {:14.6g}\n", column.name, width, column.mean,
+               column.deviation(), column.least, column.greatest);
+  }
+}
+
+int run(const Request& request) {
+  const Scene scene = read(request);
+  const std::vector<Member> members = compute(scene);
+  if (request.csv) write_csv(scene, members);
+  const Summary all = summary(scene, members);
+  if (request.json) {
+    print_json(request, all);
+  } else {
+    print_summary(request, all);
+  }
+  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  if (all.failed > 0) {
+    fmt::print(stderr, "ensemble: {} of {} members failed; {}\n", all.failed, request.members,
+               all.message);
+  }
+  if (all.off > 0) {
+    fmt::print(stderr, "ensemble: {} of {} members did not reach the tolerance\n", all.off,
+               request.members);
+  }
+  if (interrupted != 0 && all.complete + all.failed < request.members) {
+    fmt::print(stderr, "ensemble: interrupted; {} of {} members were computed\n",
+               all.complete + all.failed, request.members);
+    return 130;
+  }
+  return all.complete > 0 ? 0 : 3;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  return exit_status("ensemble", [&] {
+    const std::optional<Request> request = read_request(argc, argv);
+    return request ? run(*request) : 0;
+  });
+}
