@@ -22,7 +22,7 @@ enum class Crossing { any, rising, falling };
 /// Steps  : has step_towards, t, y, at and back_to, as ExplicitSteps
 /// Error  : of the time 4 units in its last place beside that of the trajectory
 ///          (tests/dynamics/step/events.cpp)
-/// Cost   : 16 evaluations of g a step; 51 more of the field in steps that are sampled
+/// Cost   : 16 evaluations of g a step, and 10 more of the field
 /// Throws : ComputationFailed naming the time where g is not finite, and as the steps do
 template <class Steps, class Function>
 [[nodiscard]] std::optional<typename Steps::Scalar> advance_to_event(

@@ -26,9 +26,8 @@ namespace kreisel {
 /// so a field that only exists in a region is not left; the last good time and state stay readable.
 ///
 /// Output between the ends of a step is of the method's full order and does not disturb the steps:
-/// at() takes a part of the last step anew (16 evaluations); from the third output in one step on
-/// it reads a polynomial through five such points and their derivatives (51 evaluations a step in
-/// all).
+/// at() reads a polynomial, which takes ten evaluations for the first output in a step and none for
+/// more.
 ///
 /// Vector : Eigen::Matrix<S, n, 1>; n may be Eigen::Dynamic, and then all memory is asked for when
 ///          the steps are made, none while they go on
@@ -60,7 +59,7 @@ class ExplicitSteps {
         stage_(y),
         sizes_(blocks, Scalar(accuracy.smallest), y),
         before_{time_, state_, zero(y)} {
-    difference_.fill(zero(y));
+    coefficient_.fill(zero(y));
     detail::check(accuracy);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
@@ -103,7 +102,7 @@ class ExplicitSteps {
     before_.state = state_;
     before_.rate = Memory::own(stage_[0]);
     if (step_ == Scalar(0)) step_ = first_step(goal);
-    dense_points_ = 0;
+    polynomial_known_ = false;
     while (true) {
       const Scalar left = (goal - time_.value) - time_.rest;
       const bool last = abs(left) <= abs(step_);
@@ -144,11 +143,10 @@ class ExplicitSteps {
       result = y();
     } else if (time == from) {
       result = before_.state.value;
-    } else if (++dense_points_ < 3) {
-      part_of_step(time, result);
     } else {
-      if (dense_points_ == 3) fit_polynomial();
-      polynomial(time, result);
+      if (!polynomial_known_) fit_polynomial();
+      polynomial_known_ = true;
+      polynomial(((time - from) - before_.time.rest) / before_.length, result);
     }
   }
 
@@ -180,6 +178,7 @@ class ExplicitSteps {
     Compensated<Scalar> time;
     Compensated<Vector> state;
     Vector rate;
+    Scalar length = Scalar(0);
   };
 
   /// The last try at this step, if it did not stand.
@@ -189,9 +188,7 @@ class ExplicitSteps {
     int in_vain = 0;
   };
 
-  static constexpr std::size_t nodes = 5;
-
-  using Memory = detail::StageMemory<Vector, Tableau::stages>;
+  using Memory = detail::StageMemory<Vector, Tableau::stages + Tableau::later_stages>;
 
   static Vector zero(const Vector& y) { return Vector::Zero(y.size()); }
 
@@ -243,34 +240,28 @@ class ExplicitSteps {
   template <std::size_t i>
   static constexpr auto row = Tableau::a[i];
 
-  /// result = from + h rate
-  template <class Rate>
-  static void move(const Compensated<Vector>& from, const Scalar& h, const Rate& rate,
-                   Vector& result) {
-    result = from.value + (h * Memory::own(rate) + from.rest);
+  /// The time of a stage in a step from `time` on, not past where the step sees the field.
+  [[nodiscard]] Scalar stage_time(const Compensated<Scalar>& time, const Scalar& h,
+                                  long double node) const {
+    const Scalar stage_time = time.value + (static_cast<Scalar>(node) * h + time.rest);
+    const bool late = h > Scalar(0) ? stage_time > last_stage_time_ : stage_time < last_stage_time_;
+    return late ? last_stage_time_ : stage_time;
   }
 
   /// All stages but the first of a step of length h.
   template <std::size_t... i>
-  void fill_stages(const Compensated<Scalar>& time, const Compensated<Vector>& state,
-                   const Scalar& h, std::index_sequence<i...>) {
+  void fill_stages(const Scalar& h, std::index_sequence<i...>) {
     const auto fill = [&]<std::size_t k>() {
-      const Scalar c = static_cast<Scalar>(Tableau::node[k]);
-      const Scalar stage_time = time.value + (c * h + time.rest);
-      const bool late =
-          h > Scalar(0) ? stage_time > last_stage_time_ : stage_time < last_stage_time_;
       // Only the last stage is waited for.
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
       typename Memory::Passing point = stage_.point();
-      move(state, h, combined<row<k>, 1>(), point);
+      point = state_.value + (h * Memory::own(combined<row<k>, 1>()) + state_.rest);
       point += weight * Memory::own(stage_[last]);
-      fill_stage(k, late ? last_stage_time_ : stage_time, point);
+      fill_stage(k, stage_time(time_, h, Tableau::node[k]), point);
     };
     (fill.template operator()<i + 1>(), ...);
   }
-
-  using AllButFirst = std::make_index_sequence<Tableau::stages - 1>;
 
   /// The part of the time in which the rates change that a method of this order takes at a time, if
   /// that is longer than what the rates themselves suggest; felt out by steps of Euler's, each a
@@ -312,7 +303,7 @@ class ExplicitSteps {
     if (effort_.evaluations > accuracy_.most_evaluations) {
       detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
-    fill_stages(time_, state_, h, AllButFirst());
+    fill_stages(h, std::make_index_sequence<Tableau::stages - 1>());
     typename Memory::Passing change = stage_.change();
     typename Memory::Passing error = stage_.error();
     change = h * Memory::own(combined<Tableau::b>());
@@ -342,6 +333,7 @@ class ExplicitSteps {
     if (std::fmod(effort_.steps, 64) == 16) note_noise();
     state_.set_sum(before_.state, change);
     time_.add(h);
+    before_.length = h;
     sizes_.note(y());
     return true;
   }
@@ -384,65 +376,78 @@ class ExplicitSteps {
     if ((rate - rate).isZero(Scalar(0))) sizes_.note_noise(rate);
   }
 
-  /// The last step taken anew up to a time within it: of full order.
-  void part_of_step(const Scalar& time, Vector& result) {
-    const Scalar h = (time - before_.time.value) - before_.time.rest;
-    stage_.keep(0, before_.rate);
-    fill_stages(before_.time, before_.state, h, AllButFirst());
-    move(before_.state, h, combined<Tableau::b>(), result);
+  void fill_later_stages() {
+    const Scalar& h = before_.length;
+    typename Memory::Passing sum = stage_.change();
+    typename Memory::Passing point = stage_.point();
+    for (std::size_t i = 0; i < Tableau::later_stages; ++i) {
+      sum.setZero();
+      for (std::size_t j = 0; j < Tableau::stages + i; ++j) {
+        const auto a = static_cast<Scalar>(Tableau::later[i][j]);
+        if (a != Scalar(0)) sum += a * Memory::own(stage_[j]);
+      }
+      point = before_.state.value + (h * sum + before_.state.rest);
+      fill_stage(Tableau::stages + i, stage_time(before_.time, h, Tableau::later_node[i]), point);
+    }
   }
 
-  [[nodiscard]] Scalar node_time(std::size_t i) const {
-    const Scalar share = Scalar(static_cast<double>(i)) / Scalar(static_cast<double>(nodes - 1));
-    return before_.time.value + share * (t() - before_.time.value);
+  /// The part of the step at which a stage stands that the polynomial meets.
+  static constexpr long double met(std::size_t i) {
+    const std::size_t stage = Tableau::met[i];
+    return stage == 0 ? 0 : Tableau::later_node[stage - Tableau::stages];
   }
 
-  /// Newton's divided differences through five states of the last step and their derivatives, each
-  /// point twice: degree 9. Kept relative to the state at the step's begin, lest rounding grow.
+  static constexpr std::size_t coefficients = Tableau::met.size() + 2;
+
+  /// By row the powers from 1 on of  N_m(x) = int_0^x prod_{i<m} (s - x_i) ds,  x_i of met() and 0.
+  static constexpr auto newton = [] {
+    std::array<std::array<long double, coefficients>, coefficients> N{};
+    std::array<long double, coefficients + 1> product{1};
+    for (std::size_t m = 0; m < coefficients; ++m) {
+      for (std::size_t j = 0; j <= m; ++j) {
+        N[m][j] = product[j] / static_cast<long double>(j + 1);
+      }
+      const long double x = m < Tableau::met.size() ? met(m) : 0;
+      for (std::size_t j = m + 1; j > 0; --j) product[j] = product[j - 1] - x * product[j];
+      product[0] *= -x;
+    }
+    return N;
+  }();
+
+  [[nodiscard]] static Scalar newton_at(std::size_t m, const Scalar& x) {
+    Scalar sum(0);
+    for (std::size_t j = m + 1; j-- > 0;) sum = (sum + static_cast<Scalar>(newton[m][j])) * x;
+    return sum;
+  }
+
+  /// The polynomial through the last step,  y = y0 + sum_m power_m N_m(x):  by Newton's divided
+  /// differences of rates, the ninth power of all stages, and the state at the step's end.
   void fit_polynomial() {
-    for (std::size_t i = 0; i < nodes; ++i) {
-      const Scalar time = node_time(i);
-      Vector& value = difference_[2 * i];
-      Vector& rate = difference_[2 * i + 1];
-      if (i == 0) {
-        value = before_.state.value;
-        rate = before_.rate;
-      } else if (i == nodes - 1) {
-        value = y();
-        evaluate(last_stage_time_for(time), value, rate);
-      } else {
-        part_of_step(time, value);
-        evaluate(time, value, rate);
+    fill_later_stages();
+    constexpr std::size_t rates = Tableau::met.size();
+    for (std::size_t i = 0; i < rates; ++i) {
+      coefficient_[i] = before_.length * Memory::own(stage_[Tableau::met[i]]);
+    }
+    for (std::size_t order = 1; order < rates; ++order) {
+      for (std::size_t i = rates - 1; i >= order; --i) {
+        coefficient_[i] =
+            (coefficient_[i] - coefficient_[i - 1]) / static_cast<Scalar>(met(i) - met(i - order));
       }
     }
-    for (std::size_t i = 0; i < nodes; ++i) difference_[2 * i] -= before_.state.value;
-    // Between the two at one node there stands the rate already.
-    for (std::size_t i = nodes - 1; i >= 1; --i) divide(difference_[2 * i], 2 * i - 2, i - 1, i);
-    for (std::size_t order = 2; order < 2 * nodes; ++order) {
-      for (std::size_t i = 2 * nodes - 1; i >= order; --i) {
-        divide(difference_[i], i - 1, (i - order) / 2, i / 2);
-      }
+    const Scalar ninth = Scalar(Tableau::order) * before_.length;
+    coefficient_[rates + 1] = ninth * Memory::own(combined<Tableau::ninth>());
+    Vector& last = coefficient_[rates];
+    last = (state_.value - before_.state.value) + (state_.rest - before_.state.rest);
+    for (std::size_t m = 0; m < coefficients; ++m) {
+      if (m != rates) last -= newton_at(m, Scalar(1)) * coefficient_[m];
     }
+    last /= newton_at(rates, Scalar(1));
   }
 
-  /// Makes a difference of it and the one at `other`, which lie between two nodes.
-  void divide(Vector& difference, std::size_t other, std::size_t left, std::size_t right) {
-    difference = (difference - difference_[other]) / (node_time(right) - node_time(left));
-  }
-
-  void polynomial(const Scalar& time, Vector& result) const {
-    result = difference_[2 * nodes - 1];
-    for (std::size_t i = 2 * nodes - 1; i-- > 0;) {
-      result = difference_[i] + (time - node_time(i / 2)) * result;
-    }
+  void polynomial(const Scalar& x, Vector& result) const {
+    result = before_.state.rest;
+    for (std::size_t m = coefficients; m-- > 0;) result += newton_at(m, x) * coefficient_[m];
     result += before_.state.value;
-  }
-
-  /// At the end of a step that stops at a jump the field counts as the step saw it.
-  [[nodiscard]] Scalar last_stage_time_for(const Scalar& time) const {
-    const bool forwards = t() > before_.time.value;
-    const bool late = forwards ? time > last_stage_time_ : time < last_stage_time_;
-    return late ? last_stage_time_ : time;
   }
 
   Field field_;
@@ -458,9 +463,9 @@ class ExplicitSteps {
   std::vector<Scalar> jumps_;
   Scalar last_stage_time_ = Scalar(0);  ///< none is later, on the way of the step
   Begin before_;
-  int dense_points_ = 0;
+  bool polynomial_known_ = false;
   int short_steps_ = 0;
-  std::array<Vector, 2 * nodes> difference_;  ///< the polynomial's coefficients
+  std::array<Vector, coefficients> coefficient_;  ///< the polynomial's coefficients
   Effort effort_;
 };
 

@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -76,6 +77,28 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time_twice) {
   }
 }
 
+// The stages of the polynomial: of order 8 each, but for the field's answer to their own error; and
+// the ninth power, which t^8 alone has.
+BOOST_AUTO_TEST_CASE(integrate_powers_of_time_within_the_step) {
+  const auto node = [](std::size_t j) {
+    return j < Verner98::stages ? Verner98::node[j] : Verner98::later_node[j - Verner98::stages];
+  };
+  const auto sum = [&](const Verner98::LaterRow& row, int power) {
+    long double all = 0;
+    for (std::size_t j = 0; j < row.size(); ++j) all += row[j] * std::pow(node(j), power);
+    return all;
+  };
+  for (int power = 0; power < 8; ++power) {
+    for (std::size_t i = 0; i < Verner98::later_stages; ++i) {
+      const long double end = Verner98::later_node[i];
+      const long double integral = std::pow(end, power + 1) / (power + 1);
+      BOOST_TEST(near(sum(Verner98::later[i], power), integral, 2.0L, 4));
+    }
+    BOOST_TEST(std::abs(sum(Verner98::ninth, power)) <= 1e-12L);  // given to 16 digits
+  }
+  BOOST_TEST(std::abs(sum(Verner98::ninth, 8) - 1 / 9.0L) <= 1e-12L);
+}
+
 // A nonlinear field at fixed steps (a wide-open tolerance lets every step stand): halving the step
 // divides the error by 2^9.
 BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_of_the_step) {
@@ -95,6 +118,36 @@ BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_of_the_step) {
   BOOST_TEST_MESSAGE("observed order " << order);
   BOOST_TEST(order > 8.5);
   BOOST_TEST(order < 9.8);
+}
+
+// The same within the steps: no worse than at their ends.
+BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_within_steps_too) {
+  using Wide = Eigen::Matrix<long double, 1, 1>;
+  const auto riccati = [](long double t, const Wide& y) {
+    return Wide(1 + y[0] * y[0] * std::cos(t));
+  };
+  const auto errors = [&](int n) {
+    ExplicitSteps rough(riccati, 0.0L, Wide(0.1L), {.relative = 1e-2, .smallest = 1e6});
+    ExplicitSteps exact(riccati, 0.0L, Wide(0.1L), {.relative = 1e-16});
+    long double within = 0;
+    for (int i = 1; i <= n; ++i) {
+      const long double from = rough.t();
+      rough.advance_to(0.8L * i / n);
+      for (const long double share : {0.1L, 0.3L, 0.5L, 0.7L, 0.9L}) {
+        const long double t = from + share * (rough.t() - from);
+        within = std::max(within, std::abs(rough.at(t)[0] - exact.advance_to(t)[0]));
+      }
+    }
+    BOOST_TEST(rough.effort().evaluations <= 26 * n + 2);
+    return std::array{within, std::abs(rough.y()[0] - exact.advance_to(0.8L)[0])};
+  };
+  const auto [coarse, coarse_end] = errors(4);
+  const auto [fine, fine_end] = errors(8);
+  BOOST_TEST_MESSAGE("within " << coarse << ", " << fine << ", at the end " << coarse_end << ", "
+                               << fine_end);
+  BOOST_TEST(std::log2(static_cast<double>(coarse / fine)) > 8.5);
+  BOOST_TEST(coarse <= 2 * coarse_end);
+  BOOST_TEST(fine <= 2 * fine_end);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
@@ -313,7 +366,7 @@ BOOST_AUTO_TEST_CASE(give_what_those_of_fixed_size_give) {
     compare(fixed.y());
     BOOST_TEST(in_place.effort().evaluations == fixed.effort().evaluations);
   }
-  // Within a step: taken anew twice, then by the polynomial; and on from there.
+  // Within a step, and on from there.
   fixed.step_towards(10);
   in_place.step_towards(10);
   const double length = fixed.t() + 3;
