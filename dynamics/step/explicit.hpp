@@ -294,7 +294,9 @@ class ExplicitSteps {
   /// One step of length h; says whether it stood. Sets the length of the next.
   bool attempt(const Scalar& h) {
     using std::abs;
+    using std::exp;
     using std::isfinite;
+    using std::log;
     using std::max;
     using std::pow;
     if (abs(h) <= Scalar(4) * std::numeric_limits<Scalar>::epsilon() * abs(t()) || h == Scalar(0)) {
@@ -322,15 +324,16 @@ class ExplicitSteps {
     rejected_ = {};
     // PI: the next step answers this one's error and, a little, its change since the step before.
     constexpr Scalar little = Scalar(0.04);
+    const Scalar log_worst = log(max(worst, Scalar(1e-12)));
     const Scalar aim =
-        Scalar(0.9) *
-        pow(max(worst, Scalar(1e-12)), Scalar(0.75) * little - Scalar(1) / Tableau::order) *
-        pow(worst_before_, little);
+        Scalar(0.9) * exp((Scalar(0.75) * little - Scalar(1) / Tableau::order) * log_worst +
+                          little * log_worst_before_);
     step_ = abs(h) * std::clamp(aim, Scalar(0.2), Scalar(5));
-    worst_before_ = max(worst, Scalar(1e-4));
+    log_worst_before_ = max(log_worst, Scalar(-9.21));
     effort_.steps += 1;
-    if (std::fmod(effort_.steps, 8) == 0) look_for_stiffness();
-    if (std::fmod(effort_.steps, 64) == 16) note_noise();
+    steps_taken_ += 1;
+    if (steps_taken_ % 8 == 0) look_for_stiffness();
+    if (steps_taken_ % 64 == 16) note_noise();
     state_.set_sum(before_.state, change);
     time_.add(h);
     before_.length = h;
@@ -455,7 +458,8 @@ class ExplicitSteps {
   Compensated<Scalar> time_;
   Compensated<Vector> state_;
   Scalar step_ = Scalar(0);
-  Scalar worst_before_ = Scalar(1);
+  unsigned steps_taken_ = 0;  ///< or what is left of their number
+  Scalar log_worst_before_ = Scalar(0);
   Rejected rejected_;
   Scalar allowed_;  ///< accuracy_.relative, or what rounding leaves of it
   Memory stage_;
