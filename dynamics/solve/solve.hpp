@@ -129,6 +129,7 @@ template <class Scene, class Runs>
   const double middle = (task.begin + end) / 2;
   const std::optional<Scene> changed = off_by_last_digits(scene);
   double digits = digits_off(task);
+  double known = 0;  // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
   std::optional<Bookmark> from;
   if (!bookmark.empty()) from.emplace(bookmark);
@@ -144,6 +145,7 @@ template <class Scene, class Runs>
     RunReport& report = result.report;
     report.method = name(Runs::method);
     report.tolerance = task.tolerance;
+    report.error_estimate = known;
     InvariantWatch<Scene> watch(scene);
     ErrorMeasure<Scene> distance(scene, task.smallest);
     const bool last_try = runs.last(setting);
@@ -210,9 +212,14 @@ template <class Scene, class Runs>
     if (too_close) digits = lost;
     if (too_coarse) {
       setting = runs.tightened(setting, task.tolerance / (3 * report.error_estimate));
+      known = 0;
       continue;
     }
-    if (too_close && report.status == RunStatus::complete) continue;
+    if (too_close && report.status == RunStatus::complete) {
+      // What the digits grow to may hide what the steps err by.
+      known = report.error_estimate;
+      continue;
+    }
     report.effort = coarse.effort();
     report.all_evaluations = spent;
     report.tolerance_kept =
