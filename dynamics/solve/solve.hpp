@@ -150,6 +150,8 @@ template <class Scene, class Runs>
     ErrorMeasure<Scene> distance(scene, task.smallest);
     const bool last_try = runs.last(setting);
     auto coarse = runs.run(setting, scene, start);
+    // Where rounding is all that is left, a start one digit away is a sample of what it does.
+    if (last_try) digits = std::max(digits, 3 * digits_off(task));
     auto fine = runs.run(runs.finer(setting), changed ? *changed : scene,
                          off_by_last_digits(scene, start, digits));
     watch.note(task.begin, start);
