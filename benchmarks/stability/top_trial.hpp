@@ -4,9 +4,17 @@
 
 #include "trial.hpp"
 
+// Compiled once, in tops.cpp.
+
+namespace kreisel {
+
+extern template Trajectory<EulerTop::State> solve(const EulerTop& scene,
+                                                  const EulerTop::State& start, const Task& task);
+
+}  // namespace kreisel
+
 namespace stability {
 
-/// Compiled once, in tops.cpp: solve() takes a minute.
 extern template Row attempt(const Recorder& out, const Trial<kreisel::EulerTop>& trial,
                             kreisel::Method method);
 

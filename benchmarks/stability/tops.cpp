@@ -10,6 +10,13 @@
 #include "top_trial.hpp"
 #include "truth.hpp"
 
+namespace kreisel {
+
+template Trajectory<EulerTop::State> solve(const EulerTop& scene, const EulerTop::State& start,
+                                           const Task& task);
+
+}  // namespace kreisel
+
 namespace stability {
 
 template Row attempt(const Recorder& out, const Trial<kreisel::EulerTop>& trial,
