@@ -29,7 +29,7 @@ namespace {
 std::vector<Case> chosen(const std::string& wanted) {
   std::vector<Case> all;
   for (const AddCases add : {&tops, &heavy_tops, &held_bodies, &free_bodies, &fast_bodies, &gyros,
-                             &systems, &plane_motions, &steppers, &guides, &inputs}) {
+                             &rotors, &systems, &plane_motions, &steppers, &guides, &inputs}) {
     add(all);
   }
   if (wanted == "all") return all;

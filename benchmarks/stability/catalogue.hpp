@@ -82,6 +82,7 @@ void held_bodies(std::vector<Case>& cases);
 void free_bodies(std::vector<Case>& cases);
 void fast_bodies(std::vector<Case>& cases);
 void gyros(std::vector<Case>& cases);
+void rotors(std::vector<Case>& cases);
 void systems(std::vector<Case>& cases);
 void plane_motions(std::vector<Case>& cases);
 void steppers(std::vector<Case>& cases);

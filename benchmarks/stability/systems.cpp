@@ -2,12 +2,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/body_system.hpp>
 
+#include "platform.hpp"
 #include "trial.hpp"
 
 namespace stability {
@@ -167,6 +171,64 @@ void rigid_limit(const Recorder& out) {
   }
 }
 
+/// Couplings by momenta that let nothing else count, in a frame that is held and in one that is free.
+void platform_motions(const Recorder& out) {
+  using Angles = GyroPlatform::Angles;
+  constexpr std::array<int, 5> angles = {0, 1, 3, 5, 6};  // among the coordinates behind the base
+  constexpr std::array<int, 3> spins = {2, 4, 7};
+  for (const double speed : {0.0, 1e-300, 1.0, 1e6, 1e12}) {
+    const GyroPlatform p = platform(speed);
+    const System held({}, p.bodies({.kind = JointKind::fixed}, RotorMode::regulated));
+    const Angles q = 1e-5 * (Angles() << 0.7, -0.4, 0.9, 0.3, -0.8).finished();
+    const Angles dq = 1e-5 * (Angles() << -0.3, 0.5, 0.2, -0.9, 0.6).finished();
+    State state = held.rest();
+    for (int i = 0; i < 5; ++i) {
+      state.coordinates[angles[std::size_t(i)]] = q[i];
+      state.rates[angles[std::size_t(i)]] = dq[i];
+    }
+    for (const int i : spins) state.rates[i] = speed;
+    const std::string what = fmt::format("{:g} rad/s, platform held", speed);
+    out.begin(what, "BodySystem");
+    const Eigen::VectorXd rates = held.rates(0, System::to_vector(state));
+    const Angles linear =
+        p.linear_accelerations(PlatformEquations::complete, Vector3<double>::Zero(),
+                               Vector3<double>::Zero(), q, dq, Angles::Zero());
+    double worst = 0;
+    for (int i = 0; i < 5; ++i) {
+      worst = std::max(worst, std::abs(rates[8 + angles[std::size_t(i)]] - linear[i]));
+    }
+    expect_below(out, what + ", against the linear equations", "BodySystem", worst,
+                 q.squaredNorm() * linear.cwiseAbs().maxCoeff() + 1e-15,
+                 "angles and rates of 1e-5");
+  }
+  for (const double speed : {1.0, 1e3, 1e6}) {
+    const System free({},
+                      platform(speed).bodies({.kind = JointKind::spherical}, RotorMode::regulated));
+    State start = free.rest();
+    start.rates.setConstant(0.1);
+    for (const int i : spins) start.rates[3 + i] = speed;
+    const std::string what = fmt::format("{:g} rad/s, platform free", speed);
+    const auto run = [&](Method method) {
+      out.begin(what, name(method));
+      return solve(free, start,
+                   {.times = {std::min(300 / speed, 3.0)},
+                    .tolerance = 1e-9,
+                    .method = method,
+                    .most_evaluations = 1e5});
+    };
+    const auto a = run(Method::verner98);
+    const auto b = run(Method::gauss16);
+    if (a.states.empty() || b.states.empty()) {
+      add_refusal(out, what, "verner98", a.report.message + b.report.message);
+      continue;
+    }
+    kreisel::detail::ErrorMeasure<System> distance(free, 1e-3);
+    expect_below(out, what, "verner98",
+                 distance(System::to_vector(a.states[0]), System::to_vector(b.states[0])),
+                 a.report.error_estimate + b.report.error_estimate, "against gauss16");
+  }
+}
+
 }  // namespace
 
 void systems(std::vector<Case>& cases) {
@@ -174,6 +236,8 @@ void systems(std::vector<Case>& cases) {
   cases.push_back({"heavy-end", "1e12 of the mass at the end", &heavy_end});
   cases.push_back(
       {"singular-trees", "bodies without mass, no freedom, gimbal lock", &singular_trees});
+  cases.push_back(
+      {"platform-motions", "momenta of gyros from 1e-300 to 1e12 rad/s", &platform_motions});
   cases.push_back({"rigid-limit", "stiff joints against joints that are held", &rigid_limit});
 }
 
