@@ -4,12 +4,10 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <mujoco/mujoco.h>
 #include <sstream>
-#include <stdexcept>
 
+#include "mujoco_model.hpp"
 #include "peer.hpp"
 
 namespace scenes {
@@ -46,20 +44,6 @@ std::string described(const Chain& chain) {
   for (std::size_t i = 0; i < depth; ++i) xml << "</body>";
   xml << "</worldbody></mujoco>";
   return xml.str();
-}
-
-mjModel* load(const std::string& xml) {
-  const auto files = std::make_unique<mjVFS>();  // megabytes: too large for the stack
-  mj_defaultVFS(files.get());
-  if (mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(xml.size())) != 0)
-    throw std::runtime_error("no room for the model");
-  const int file = mj_findFileVFS(files.get(), "chain.xml");
-  std::memcpy(files->filedata[file], xml.data(), xml.size());
-  std::array<char, 500> error{};
-  mjModel* model = mj_loadXML("chain.xml", files.get(), error.data(), error.size());
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error(error.data());
-  return model;
 }
 
 class Mujoco final : public Peer {
