@@ -163,10 +163,10 @@ class ExplicitSteps {
   /// What the steps go on from, outputs within the last step included.
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
-    bookmark(time_, state_, step_, worst_before_, rejected_.step, rejected_.worst,
+    bookmark(time_, state_, step_, steps_taken_, log_worst_before_, rejected_.step, rejected_.worst,
              rejected_.in_vain, allowed_, sizes_, last_stage_time_, before_.time, before_.state,
-             before_.rate, dense_points_, short_steps_, effort_);
-    for (Vector& coefficient : difference_) bookmark(coefficient);
+             before_.rate, before_.length, polynomial_known_, short_steps_, effort_);
+    for (Vector& coefficient : coefficient_) bookmark(coefficient);
   }
 
  private:
