@@ -12,13 +12,15 @@ namespace kreisel::detail {
 /// The settings of steps that adapt themselves: an accuracy.
 class AdaptiveRuns {
  public:
-  explicit AdaptiveRuns(const Task& task) : task_(task) {}
+  explicit AdaptiveRuns(const Task& task, double finer_by = times_finer)
+      : task_(task), finer_by_(finer_by) {}
 
   [[nodiscard]] double first() const { return std::max(task_.tolerance / 10, 4 * least); }
-  [[nodiscard]] static double finer(double accuracy) {
-    return std::max(accuracy / times_finer, least);
+  [[nodiscard]] double finer(double accuracy) const {
+    return std::max(accuracy / finer_by_, least);
   }
-  [[nodiscard]] static double finer_by(double accuracy) { return accuracy / finer(accuracy); }
+  [[nodiscard]] double finer_by(double accuracy) const { return accuracy / finer(accuracy); }
+  [[nodiscard]] bool goes_on(double accuracy) const { return finer(accuracy) > 4 * least; }
   [[nodiscard]] static double digits_lost(double accuracy, double steps) {
     return accuracy <= 1e-13 ? 0.08 * std::sqrt(steps) : 0;
   }
@@ -38,6 +40,7 @@ class AdaptiveRuns {
   static constexpr double least = 1e-16;
 
   const Task& task_;
+  double finer_by_;
 };
 
 }  // namespace kreisel::detail

@@ -19,15 +19,16 @@
 #include <dynamics/step/splitting.hpp>
 
 /// The integrators as solve() sees them: each a kind of run that has one setting, an accuracy or a
-/// step, which can be made finer by thirty times in the error.
+/// step, which can be made finer by ten or thirty times in the error.
 ///
 /// A kind is made from (task), one of fixed steps from (scene, task, start), and has
 ///   first()               the setting to begin with
-///   finer(x)              of the run beside, whose error is a thirtieth
+///   finer(x)              of the run beside
 ///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
 ///   last(x)               whether rounding leaves nothing to gain beyond
 ///   rounding              of one step where nothing grows, in units of 2^-53
 ///   finer_by(x)           how many times finer that is
+///   goes_on(x)            whether the finer run may become the coarser one of the next pair
 ///   digits_lost(x, n)     what rounding in n steps does to the state, in units of its last digit: a
 ///                         random walk; 0 where the method errs by more
 ///   run(x, scene, start)  with on_the_way(t, end) -> State and effort(); and pass(bookmark), where it
@@ -69,7 +70,9 @@ template <class Scene>
 template <class Scene>
 class VernerRuns : public AdaptiveRuns {
  public:
-  using AdaptiveRuns::AdaptiveRuns;
+  /// Ten times finer for 1.29 times the steps. What the coarser errs by is 10/9 of what the two are
+  /// apart, times 0.84 to 1.23 in 95 % of 835 runs at 1e-6 to 1e-2, and 0.94 to 1.07 at finer ones.
+  explicit VernerRuns(const Task& task) : AdaptiveRuns(task, 10) {}
 
   static constexpr Method method = Method::verner98;
   static constexpr double rounding = 2.5;
@@ -203,6 +206,7 @@ class FixedRuns {
     return last(step) ? 2 : times_finer;
   }
 
+  [[nodiscard]] static bool goes_on(const EqualLength& /*step*/) { return false; }
   [[nodiscard]] static double digits_lost(const EqualLength& /*step*/, double steps) {
     return 0.02 * std::sqrt(steps);
   }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <dynamics/solve/closed_form.hpp>
@@ -108,11 +109,70 @@ template <class Scene>
   }
 }
 
-/// Two integrations run side by side, one whose steps are held 30 times more exact than the
-/// other's; the coarser one is returned, with the error that the pair tells of. The finer one starts
-/// a last digit away, or as many as rounding has taken by the end, so that the pair also tells what
-/// that grows to: near a separatrix steps of any length round the same digits away. Where the error
-/// exceeds the tolerance the run begins again with shorter steps, until rounding stops it.
+/// A run with what it has given so far, so that it can be asked again.
+template <class Scene, class Run>
+class RunSoFar {
+ public:
+  RunSoFar(Run run, bool starts_off) : run_(std::move(run)), starts_off_(starts_off) {}
+
+  /// The state at the i-th output; they are asked for in turn, each time from the first one on.
+  [[nodiscard]] const typename Scene::State& at_output(std::size_t i, double t, double end) {
+    if (i == first_ + states_.size()) states_.push_back(run_.on_the_way(t, end));
+    return states_[i - first_];
+  }
+
+  /// Whether it begins some last digits away from the start.
+  [[nodiscard]] bool starts_off() const { return starts_off_; }
+
+  /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
+  [[nodiscard]] bool knows_all() const { return first_ == 0; }
+
+  [[nodiscard]] bool stiff() const {
+    if constexpr (requires { run_.stiff(); }) {
+      return run_.stiff();
+    } else {
+      return false;
+    }
+  }
+  [[nodiscard]] const Effort& effort() const { return run_.effort(); }
+
+  /// What it goes on from behind the first `done` outputs.
+  template <class Bookmark>
+  requires requires(Run& run, Bookmark& bookmark) { run.pass(bookmark); }
+  void pass(const Scene& scene, std::size_t done, Bookmark& bookmark) {
+    if (states_.empty()) first_ = done;
+    run_.pass(bookmark);
+    std::size_t ahead = first_ + states_.size() - done;
+    bookmark(ahead);
+    for (std::size_t i = done; i < done + ahead; ++i) {
+      const bool known = i < first_ + states_.size();
+      typename Scene::Vector y;
+      if (known) y = scene.to_vector(states_[i - first_]);
+      bookmark(y);
+      if (!known) states_.push_back(scene.from_vector(y));
+    }
+  }
+
+ private:
+  Run run_;
+  bool starts_off_;
+  std::size_t first_ = 0;  ///< output it knows
+  std::vector<typename Scene::State> states_;
+};
+
+/// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
+/// tenfold.
+[[nodiscard]] inline double forecast(const Task& task, double t, double error) {
+  const double ahead = (task.times.back() - task.begin) / (t - task.begin);
+  return error * (ahead < 10 ? ahead : 10);
+}
+
+/// Two integrations run side by side, the steps of one held many times more exact than the other's;
+/// the coarser one is returned, with the error that the pair tells of. One of them starts a last
+/// digit away, or as many as rounding has taken by the end, so that the pair also tells what that
+/// grows to: near a separatrix steps of any length round the same digits away. Where the error
+/// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
+/// finer still; or both begin again, where that would not do; until rounding stops it.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///
@@ -124,22 +184,35 @@ template <class Scene, class Runs>
   const Clock::time_point clock = Clock::now();
 
   Trajectory<typename Scene::State> result;
-  // The finer run ends at the middle first, lest a short run be one and the same step in both.
   const double end = task.times.back();
-  const double middle = (task.begin + end) / 2;
   const std::optional<Scene> changed = off_by_last_digits(scene);
   double digits = digits_off(task);
   double known = 0;  // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
+  const auto run_with = [&](const auto& s, bool starts_off) {
+    using Run = decltype(runs.run(s, scene, start));
+    if (!starts_off) return RunSoFar<Scene, Run>(runs.run(s, scene, start), false);
+    return RunSoFar<Scene, Run>(
+        runs.run(s, changed ? *changed : scene, off_by_last_digits(scene, start, digits)), true);
+  };
+  // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
+  // somewhere else than the one before, beside which it may go on.
+  const auto better_at_output = [&](auto& fine, std::size_t i) -> const typename Scene::State& {
+    const double t = task.times[i];
+    const double stop = task.begin + (end - task.begin) / (fine.starts_off() ? 2 : 3);
+    return fine.at_output(i, t, (t < stop) == (end > task.begin) ? stop : end);
+  };
   std::optional<Bookmark> from;
   if (!bookmark.empty()) from.emplace(bookmark);
+  bool coarse_starts_off = false;
   const auto kind = static_cast<double>(Runs::method);
   const auto pass_setting = [&](Bookmark& numbers) {
     double own = kind;
-    numbers(own, setting, digits, spent);
+    numbers(own, setting, digits, spent, coarse_starts_off);
     if (own != kind) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
+  std::optional coarse = run_with(setting, coarse_starts_off);
   while (true) {
     result = {};
     RunReport& report = result.report;
@@ -149,16 +222,16 @@ template <class Scene, class Runs>
     InvariantWatch<Scene> watch(scene);
     ErrorMeasure<Scene> distance(scene, task.smallest);
     const bool last_try = runs.last(setting);
-    auto coarse = runs.run(setting, scene, start);
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
     if (last_try) digits = std::max(digits, 3 * digits_off(task));
-    auto fine = runs.run(runs.finer(setting), changed ? *changed : scene,
-                         off_by_last_digits(scene, start, digits));
+    std::optional fine = run_with(runs.finer(setting), !coarse_starts_off);
     watch.note(task.begin, start);
     std::size_t done = 0;
     const auto pass_run = [&](Bookmark& numbers) {
-      if constexpr (requires { coarse.pass(numbers); }) {
-        numbers(done, report.error_estimate, distance, watch, coarse, fine);
+      if constexpr (requires { coarse->pass(scene, done, numbers); }) {
+        numbers(done, report.error_estimate, distance, watch);
+        coarse->pass(scene, done, numbers);
+        fine->pass(scene, done, numbers);
       }
     };
     const auto bookmark_here = [&] {
@@ -172,28 +245,28 @@ template <class Scene, class Runs>
       from->finish();
       from.reset();
     }
+    double expected = 0;
     bool too_coarse = false;
     try {
       while (done < task.times.size()) {
         const double t = task.times[done];
-        const typename Scene::State state = coarse.on_the_way(t, end);
-        if constexpr (requires { coarse.stiff(); }) {
-          if (coarse.stiff()) {
-            spent += coarse.effort().evaluations + fine.effort().evaluations;
-            return std::nullopt;
-          }
+        const typename Scene::State& state = coarse->at_output(done, t, end);
+        if (coarse->stiff()) {
+          spent += coarse->effort().evaluations + fine->effort().evaluations;
+          return std::nullopt;
         }
-        const typename Scene::State better =
-            fine.on_the_way(t, (t < middle) == (end > task.begin) ? middle : end);
+        const typename Scene::State& better = better_at_output(*fine, done);
         const double off = distance(scene.to_vector(state), scene.to_vector(better));
         report.error_estimate = std::max(
             report.error_estimate,
-            error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse.effort().steps));
-        too_coarse = report.error_estimate > task.tolerance && !last_try;
+            error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse->effort().steps));
+        expected = forecast(task, t, report.error_estimate);
+        too_coarse =
+            !last_try && (report.error_estimate > task.tolerance || expected > 4 * task.tolerance);
         if (too_coarse) break;
         if (!output(result, watch, task, t, state)) break;
         ++done;
-        if constexpr (requires(Bookmark & numbers) { coarse.pass(numbers); }) {
+        if constexpr (requires(Bookmark & numbers) { coarse->pass(scene, done, numbers); }) {
           const bool offers = task.offer_bookmark && done < task.times.size();
           if (offers) task.offer_bookmark(std::cref(bookmark_here));
         }
@@ -207,22 +280,34 @@ template <class Scene, class Runs>
       text << error.what() << "; the last output is that of t = " << last_good << " s";
       report.message = text.str();
     }
-    spent += coarse.effort().evaluations + fine.effort().evaluations;
+    spent += coarse->effort().evaluations;
     // Rounding on a long way does more than to move the start by a digit.
-    const double lost = runs.digits_lost(setting, coarse.effort().steps);
+    const double lost = runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
     if (too_close) digits = lost;
-    if (too_coarse) {
-      setting = runs.tightened(setting, task.tolerance / (3 * report.error_estimate));
+    const bool finer_will_do =
+        expected < runs.finer_by(setting) * task.tolerance && digits <= 1 && !changed;
+    if (too_coarse && finer_will_do && runs.goes_on(setting)) {
+      setting = runs.finer(setting);
+      coarse_starts_off = !coarse_starts_off;
       known = 0;
+      if (!fine->knows_all()) {
+        fine.emplace(run_with(setting, coarse_starts_off));
+        for (std::size_t i = 0; i <= done; ++i) better_at_output(*fine, i);
+      }
+      coarse.emplace(std::move(*fine));
       continue;
     }
-    if (too_close && report.status == RunStatus::complete) {
-      // What the digits grow to may hide what the steps err by.
-      known = report.error_estimate;
+    spent += fine->effort().evaluations;
+    // What the digits grow to may hide what the steps err by.
+    if (too_coarse || (too_close && report.status == RunStatus::complete)) {
+      known = too_coarse ? 0 : report.error_estimate;
+      if (too_coarse) setting = runs.tightened(setting, task.tolerance / (2 * expected));
+      coarse_starts_off = false;
+      coarse.emplace(run_with(setting, false));
       continue;
     }
-    report.effort = coarse.effort();
+    report.effort = coarse->effort();
     report.all_evaluations = spent;
     report.tolerance_kept =
         report.status != RunStatus::failed && report.error_estimate <= task.tolerance;
@@ -334,11 +419,13 @@ void check_method(const Scene& scene, const Task& task) {
 ///
 /// Scene  : has State, Vector, blocks, to_vector, from_vector and rates(t, y); with conserved(t,
 ///          state) its invariants are watched, with a closed_form() it is computed by that
-/// Error  : by steps true error / estimate lies in [0.1, 1] in 98 % of 200 runs and never above 1
+/// Error  : by steps true error / estimate lies in [0.1, 1] in 99 % of 200 runs and never above 1
 ///          (tests/dynamics/solve/solve.cpp); docs/promises.md tells where that ends. Where the
 ///          tolerance cannot be reached the best is returned and RunReport::tolerance_kept is false
-/// Cost   : by steps 2.5 times the integration alone, reported as all_evaluations; twice that where
-///          so many steps near the last digits are taken that rounding outgrows them
+/// Cost   : by steps 2.3 times the integration alone, reported as all_evaluations; 2.8 to 3.1 times
+///          where the first pair of runs errs too much, more than 5 in 1 % of 1620 runs at 1e-12 and
+///          above; twice that where so many steps near the last digits are taken that rounding
+///          outgrows them. Outputs take ten evaluations in each step that has some
 /// Throws : InvalidInput for a task that is none or a method that does not fit the scene. What
 ///          fails on the way is told by the report, with the trajectory up to there
 template <class Scene>

@@ -97,6 +97,38 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly) {
   BOOST_TEST(honesty.promises_kept);
 }
 
+// A pair of runs costs 1 + 10^(1/9) = 2.29 of the coarser one, or more by a rejected step and the
+// steps that end at the middle; outputs cost ten evaluations in each step that has some.
+BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
+  const EulerTop top({1, 1.7, 2.4});
+  const EulerTop::State start{tilted, {1, 2, 3}};
+  const auto with = [&](double interval) {
+    return solve(top, start,
+                 {.times = every(interval, 100), .tolerance = 1e-9, .method = Method::verner98})
+        .report;
+  };
+  const RunReport few = with(100);
+  BOOST_TEST(few.all_evaluations <= 2.35 * few.effort.evaluations);
+  const RunReport many = with(0.01);
+  BOOST_TEST_MESSAGE(few.all_evaluations << " evaluations for one output, " << many.all_evaluations
+                                         << " for 10000");
+  BOOST_TEST(many.all_evaluations <= 26.0 / 16 * 1.02 * few.all_evaluations);
+}
+
+// Where the error comes out too great, the finer run takes over: a long way costs little more than
+// the pair that stands. This top errs by some 30 times what a step may.
+BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
+  const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
+  const Vector3<double> w(0, 0, 100);
+  const auto run =
+      solve(top, {tilted, w}, {.times = {10}, .tolerance = 1e-8, .method = Method::verner98});
+  BOOST_TEST_MESSAGE(run.report.all_evaluations / run.report.effort.evaluations);
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(true_error(run, exact::LagrangeTop(3e-4, 1e-4, 0.04905, w, tilted)) <=
+             run.report.error_estimate);
+  BOOST_TEST(run.report.all_evaluations <= 3.3 * run.report.effort.evaluations);
+}
+
 // Near the separatrix an error grows by 1e3 and more; the promise is on the whole run all the same.
 BOOST_AUTO_TEST_CASE(keeps_its_promise_where_errors_grow) {
   const Vector3<double> w(1e-3, 2, 1e-3);
