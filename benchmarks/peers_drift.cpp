@@ -33,7 +33,7 @@ Vector3<double> vector(const Triple& v) { return {v[0], v[1], v[2]}; }
 /// By solve(), to a tolerance.
 std::vector<Turning> ours(const Top& t, Method method, double tolerance) {
   const EulerTop body(vector(t.moments));
-  kreisel::Task task{.tolerance = tolerance, .method = method};
+  kreisel::Task task{.times = {}, .tolerance = tolerance, .method = method};
   for (int i = 1; i <= count; ++i) task.times.push_back(end * i / count);
   std::vector<Turning> motion;
   for (const auto& s : solve(body, {Eigen::Quaterniond::Identity(), vector(t.rate)}, task).states) {
@@ -109,8 +109,7 @@ double cpu_seconds() {
 
 void print() {
   fmt::print(
-      "Moments {}, {}, {} kg m^2, rates {}, {}, {} rad/s, {} s: the axis turns over some seven "
-      "times.\n\n"
+      "Moments {}, {}, {} kg m^2, rates {}, {}, {} rad/s, {} s.\n\n"
       "| by | how | energy off by | momentum off by | attitude off by, rad | ms |\n"
       "|---|---|---|---|---|---|\n",
       top.moments[0], top.moments[1], top.moments[2], top.rate[0], top.rate[1], top.rate[2], end);
