@@ -34,21 +34,41 @@ std::vector<std::string> methods(const std::vector<Point>& points, const std::st
   return names(points, [&](const Point& p) { return p.scene == scene ? p.method : ""; });
 }
 
-/// The point of least time with that error or a smaller one; null where there is none.
+/// Who comes to an error in the least time: a run that does, and the time; null where nobody does.
+struct Fastest {
+  const Point* point = nullptr;
+  double seconds = 0;
+};
+
+/// The time to come to just that error, as a power of it between this run and the one before, at a
+/// coarser setting: else the winner would be who happened to be tried at the right one.
+double time_to(const std::vector<Point>& points, std::size_t i, double error) {
+  const Point& p = points[i];
+  if (i == 0 || !(p.error > 0)) return p.seconds;
+  const Point& coarser = points[i - 1];
+  const bool between = coarser.scene == p.scene && coarser.method == p.method &&
+                       coarser.status == ok && coarser.error > error && coarser.seconds < p.seconds;
+  if (!between) return p.seconds;
+  const double part = std::log(coarser.error / error) / std::log(coarser.error / p.error);
+  return coarser.seconds * std::pow(p.seconds / coarser.seconds, part);
+}
+
 template <class Fits>
-const Point* fastest(const std::vector<Point>& points, double error, const Fits& fits) {
-  const Point* best = nullptr;
-  for (const Point& p : points) {
+Fastest fastest(const std::vector<Point>& points, double error, const Fits& fits) {
+  Fastest best;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& p = points[i];
     if (p.status != ok || !(p.error <= error) || !fits(p)) continue;
-    if (!best || p.seconds < best->seconds) best = &p;
+    const double seconds = time_to(points, i, error);
+    if (!best.point || seconds < best.seconds) best = {&p, seconds};
   }
   return best;
 }
 
-std::string ms(const Point* p) { return p ? fmt::format("{:.3g}", 1e3 * p->seconds) : "-"; }
+std::string ms(const Fastest& p) { return p.point ? fmt::format("{:.3g}", 1e3 * p.seconds) : "-"; }
 
-std::string ratio(const Point* p, const Point* q) {
-  return p && q ? fmt::format("{:.2g}", p->seconds / q->seconds) : "-";
+std::string ratio(const Fastest& p, const Fastest& q) {
+  return p.point && q.point ? fmt::format("{:.2g}", p.seconds / q.seconds) : "-";
 }
 
 /// The greatest of some ratios, and where.
@@ -64,8 +84,11 @@ struct Worst {
 void winners(fmt::ostream& out, const std::vector<Point>& points) {
   out.print(
       "### Who wins\n\n"
-      "The least time to an error, in ms; \"-\" where nobody gets there. \"auto\" is solve() with "
-      "its error\nestimate, beside the best fixed choice, ours or a library's, that has none.\n\n"
+      "The least time to an error, in ms, between the settings tried as a power of the error; "
+      "\"-\" "
+      "where nobody\ngets there. \"auto\" is solve() with its error estimate, beside the best "
+      "fixed "
+      "choice, ours or a\nlibrary's, that has none.\n\n"
       "| scene | error | best stepper of ours | ms | best library | ms | library / ours | closed "
       "form, ms | auto | ms | auto / best |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
@@ -79,24 +102,28 @@ void winners(fmt::ostream& out, const std::vector<Point>& points) {
         return fastest(points, error,
                        [&](const Point& p) { return p.scene == scene && fits(p.method); });
       };
-      const Point* own = of([](const std::string& m) {
+      const Fastest own = of([](const std::string& m) {
         return m != automatic && m != closed_form && !of_a_library(m);
       });
-      const Point* library = of([](const std::string& m) { return of_a_library(m); });
-      const Point* closed = of([](const std::string& m) { return m == closed_form; });
-      const Point* by_auto = of([](const std::string& m) { return m == automatic; });
-      const Point* best = !own || (library && library->seconds < own->seconds) ? library : own;
+      const Fastest library = of([](const std::string& m) { return of_a_library(m); });
+      const Fastest closed = of([](const std::string& m) { return m == closed_form; });
+      const Fastest by_auto = of([](const std::string& m) { return m == automatic; });
+      const bool library_wins = library.point && (!own.point || library.seconds < own.seconds);
+      const Fastest& best = library_wins ? library : own;
       out.print("| {} | {:.0e} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", scene, error,
-                own ? own->method : "none", ms(own), library ? library->method : "none",
-                ms(library), ratio(library, own), ms(closed),
-                by_auto ? by_auto->promise->method : "none", ms(by_auto), ratio(by_auto, best));
+                own.point ? own.point->method : "none", ms(own),
+                library.point ? library.point->method : "none", ms(library), ratio(library, own),
+                ms(closed), by_auto.point ? by_auto.point->promise->method : "none", ms(by_auto),
+                ratio(by_auto, best));
       const std::string place = fmt::format("{} at {:.0e}", scene, error);
-      if (own && library) {
+      if (own.point && library.point) {
         compared += 1;
-        if (own->seconds > library->seconds) lost += 1;
-        behind_library.note(own->seconds / library->seconds, place);
+        if (library_wins) lost += 1;
+        behind_library.note(own.seconds / library.seconds, place);
       }
-      if (by_auto && best) behind_best.note(by_auto->seconds / best->seconds, place);
+      if (by_auto.point && best.point) {
+        behind_best.note(by_auto.seconds / best.seconds, place);
+      }
     }
   }
   out.print(
