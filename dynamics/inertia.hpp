@@ -2,13 +2,13 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <motor/error.hpp>
 #include <motor/frame.hpp>
@@ -241,17 +241,23 @@ template <class S>
       m[q][other] = m[other][q] = sine * a + cosine * b;
     }
   }
+  // Three comparisons: a sort of the library's for any number of them is longer than all this.
+  const auto order = [](S& less, S& more) {
+    if (more < less) std::swap(less, more);
+  };
   std::array<S, 3> moments = {m[0][0], m[1][1], m[2][2]};
-  std::sort(moments.begin(), moments.end());
+  order(moments[0], moments[1]);
+  order(moments[1], moments[2]);
+  order(moments[0], moments[1]);
   return moments;
 }
 
-/// A number as messages say it.
-template <class S>
-[[nodiscard]] std::string in_words(const S& x) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.10g", static_cast<double>(x));
-  return digits;
+/// Throws : InvalidInput, saying what is refused and why, with its numbers
+[[noreturn]] inline void refuse_inertia(const std::string& what, const char* why, double a = 0,
+                                        double b = 0, double c = 0) {
+  char text[160];
+  std::snprintf(text, sizeof text, why, a, b, c);
+  throw InvalidInput(what + ": " + text);
 }
 
 }  // namespace detail
@@ -268,9 +274,10 @@ enum class Mass { positive, zero_allowed };
 /// Throws : InvalidInput, naming the inequality violated with its numbers
 template <class S>
 void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& what = "inertia") {
-  using detail::in_words;
   using Number = decltype(detail::number_in(T.mass));
-  const auto refuse = [&what](const std::string& why) { throw InvalidInput(what + ": " + why); };
+  const auto refuse = [&what](const char* why, const auto&... numbers) {
+    detail::refuse_inertia(what, why, static_cast<double>(numbers)...);
+  };
   const Symmetric3<S>& t = T.tensor;
   for (const S& number : {T.mass, T.first_moment.x(), T.first_moment.y(), T.first_moment.z(), t.xx,
                           t.yy, t.zz, t.xy, t.xz, t.yz}) {
@@ -278,7 +285,7 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
     if (!finite) refuse("not a finite number among mass, first moment and tensor");
   }
   const Number mass = detail::number_in(T.mass);
-  if (mass < Number(0)) refuse("mass >= 0 fails: mass = " + in_words(mass) + " kg");
+  if (mass < Number(0)) refuse("mass >= 0 fails: mass = %.10g kg", mass);
   const Vector3<S>& s = T.first_moment;
   if (mass == Number(0)) {
     if (rule == Mass::positive) refuse("mass > 0 fails: mass = 0 kg");
@@ -298,12 +305,12 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
   const auto [a, b, c] = detail::principal_moments(numbers(about_centre));
   const Number slack = detail::tensor_slack(numbers(t));
   if (a < -slack) {
-    refuse("principal moments about the centre of mass >= 0 fails: " + in_words(a) + ", " +
-           in_words(b) + ", " + in_words(c) + " kg m^2");
+    refuse("principal moments about the centre of mass >= 0 fails: %.10g, %.10g, %.10g kg m^2", a,
+           b, c);
   }
   if (a + b < c - slack) {
-    refuse("triangle inequality about the centre of mass fails: " + in_words(a) + " + " +
-           in_words(b) + " >= " + in_words(c) + " kg m^2");
+    refuse("triangle inequality about the centre of mass fails: %.10g + %.10g >= %.10g kg m^2", a,
+           b, c);
   }
 }
 

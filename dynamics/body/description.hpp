@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <unsupported/Eigen/AutoDiff>
 
 #include <concepts>
 #include <functional>
@@ -91,6 +92,39 @@ struct Rotor {
   /// Mode regulated: phi'' of the rate asked for, which begins at that of the state; null: 0.
   std::function<double(double t)> acceleration = nullptr;
 };
+
+namespace detail {
+
+/// A number and its rate along one direction.
+using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+
+/// A situation in dual numbers, of which only the k-th derivative counts.
+template <class Dual>
+[[nodiscard]] Situation<AlongOne> along_one(const Situation<Dual>& s, Eigen::Index k) {
+  const auto number = [k](const Dual& x) {
+    AlongOne one(x.value());
+    one.derivatives()[0] = x.derivatives()[k];
+    return one;
+  };
+  const auto all = [&number](const auto& v) { return v.unaryExpr(number).eval(); };
+  const auto motor = [&all](const Motor<Dual>& m) -> Motor<AlongOne> {
+    return {all(m.resultant), all(m.moment)};
+  };
+  const auto pose = [&all](const Pose<Dual>& X) -> Pose<AlongOne> {
+    return {all(X.rotation), all(X.translation)};
+  };
+  const Inertia<Dual>& T = s.inertia.value;
+  const Symmetric3<Dual>& t = T.tensor;
+  return {number(s.t),
+          {pose(s.X.value)},
+          {motor(s.V_rel.value)},
+          {{pose(s.guide.X.value)}, {motor(s.guide.V.value)}, {motor(s.guide.dV.value)}},
+          {{number(T.mass),
+            all(T.first_moment),
+            {number(t.xx), number(t.yy), number(t.zz), number(t.xy), number(t.xz), number(t.yz)}}}};
+}
+
+}  // namespace detail
 
 /// Any Load, kept by value. In dual numbers, as linear equations ask for, a load works that is a
 /// template on the number of the situation; others give numbers of type double alone.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <unsupported/Eigen/AutoDiff>
 
 #include <type_traits>
 
@@ -48,14 +47,12 @@ template <class S, class M>
     const S later = t - time;  // 0 but for its derivatives
     const Matrix3<double>& R = now.X.value.rotation;
     const Matrix3<double> turning = R * skew(now.V.value.resultant);
-    using Accelerations = Eigen::Matrix<double, 6, 1>;
-    Accelerations jerk = Accelerations::Zero();
+    Motor<> jerk;
     if constexpr (!is_pack<S>) {  // whose lanes share the time
       if (!later.derivatives().isZero(0)) {
-        const auto accelerations = [&guide](double at) -> Accelerations {
+        const auto accelerations = [&guide](double at) -> Motor<> {
           const FrameMotion<Guide, Inertial> then = guide(at);
-          return (Accelerations() << then.dV.value.resultant, then.origin_acceleration())
-              .finished();
+          return {then.dV.value.resultant, then.origin_acceleration()};
         };
         jerk = slope_in_time(accelerations, time);
       }
@@ -69,39 +66,10 @@ template <class S, class M>
     result.V.value = {moved(now.V.value.resultant, now.dV.value.resultant),
                       moved(now.V.value.moment, now.dV.value.moment)};
     const auto& [u, v] = result.V.value;
-    result.dV.value = {moved(now.dV.value.resultant, jerk.template head<3>()),
-                       moved(now.origin_acceleration(), jerk.template tail<3>()) - u.cross(v)};
+    result.dV.value = {moved(now.dV.value.resultant, jerk.resultant),
+                       moved(now.origin_acceleration(), jerk.moment) - u.cross(v)};
     return result;
   }
-}
-
-/// A number and its rate along one direction.
-using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
-
-/// A situation in dual numbers, of which only the k-th derivative counts.
-template <class Dual>
-[[nodiscard]] Situation<AlongOne> along_one(const Situation<Dual>& s, Eigen::Index k) {
-  const auto number = [k](const Dual& x) {
-    AlongOne one(x.value());
-    one.derivatives()[0] = x.derivatives()[k];
-    return one;
-  };
-  const auto all = [&number](const auto& v) { return v.unaryExpr(number).eval(); };
-  const auto motor = [&all](const Motor<Dual>& m) -> Motor<AlongOne> {
-    return {all(m.resultant), all(m.moment)};
-  };
-  const auto pose = [&all](const Pose<Dual>& X) -> Pose<AlongOne> {
-    return {all(X.rotation), all(X.translation)};
-  };
-  const Inertia<Dual>& T = s.inertia.value;
-  const Symmetric3<Dual>& t = T.tensor;
-  return {number(s.t),
-          {pose(s.X.value)},
-          {motor(s.V_rel.value)},
-          {{pose(s.guide.X.value)}, {motor(s.guide.V.value)}, {motor(s.guide.dV.value)}},
-          {{number(T.mass),
-            all(T.first_moment),
-            {number(t.xx), number(t.yy), number(t.zz), number(t.xy), number(t.xz), number(t.yz)}}}};
 }
 
 /// What a linear map of doubles makes of a vector of other numbers.

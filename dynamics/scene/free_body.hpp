@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -19,6 +20,7 @@
 #include <dynamics/scene/terms.hpp>
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 
@@ -230,14 +232,17 @@ class FreeBody {
                                        "u'_x", "u'_y", "u'_z", "v'_x", "v'_y", "v'_z"};
 
   [[nodiscard]] static Vector to_vector(const State& state) {
+    const Eigen::Quaternion<S>& q = state.attitude;
+    const Vector3<S>& r = state.position;
     const auto& [u, v] = state.velocity.value;
-    return (Vector() << state.attitude.coeffs(), state.position, u, v).finished();
+    return Vector{{q.x(), q.y(), q.z(), q.w(), r.x(), r.y(), r.z(), u.x(), u.y(), u.z(), v.x(),
+                   v.y(), v.z()}};
   }
 
   [[nodiscard]] static State from_vector(const Vector& y) {
-    return {Eigen::Quaternion<S>(Eigen::Vector4d(y.head<4>())),
-            y.segment<3>(4),
-            {{y.segment<3>(7), y.segment<3>(10)}}};
+    return {Eigen::Quaternion<S>(y[3], y[0], y[1], y[2]),
+            {y[4], y[5], y[6]},
+            {{{y[7], y[8], y[9]}, {y[10], y[11], y[12]}}}};
   }
 
  private:
@@ -317,7 +322,13 @@ class FreeBody {
 
   [[nodiscard]] static Vector3<S> checked_centre(const Inertia<S>& T) {
     check(T, Mass::positive, "free body");
-    [[maybe_unused]] const FactoredInertia<S> refuses_singular_ones(T);
+    const Symmetric3<S>& t = T.tensor;
+    const auto moments = detail::principal_moments(about_centre(T));
+    if (!(moments[0] > std::numeric_limits<S>::epsilon() * (t.xx + t.yy + t.zz))) {
+      throw ComputationFailed(
+          "free body: a moment of inertia about the centre of mass is 0 (a point or a needle): the "
+          "rotation about that axis is not determined by the force");
+    }
     return T.first_moment / T.mass;
   }
 
