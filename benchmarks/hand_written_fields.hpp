@@ -224,13 +224,23 @@ struct PlanePendulumOnGuide {
 
 // --- The Cardan gyro -------------------------------------------------------------------------------
 
-/// Symmetric rotor; bearings of spring and damper.
+/// Symmetric rotor; bearings of spring and damper, if `braced`.
 struct CardanGyro {
   double A_1, C_1, A_2, B_2, C_2, A_3, C_3_less_B_3;
   double outer_stiffness, outer_damping, inner_stiffness, inner_damping;
   V3 base = V3::Zero();
   double A = A_1 + A_2;
   double B = A_1 + B_2;
+
+  /// Springs and friction, if there are any, less a moment.
+  template <bool braced>
+  [[nodiscard]] double braced_a(const Gyro& y, double moment) const {
+    return braced ? -outer_stiffness * y[0] - outer_damping * y[3] - moment : -moment;
+  }
+  template <bool braced>
+  [[nodiscard]] double braced_b(const Gyro& y, double moment) const {
+    return braced ? -inner_stiffness * y[1] - inner_damping * y[4] - moment : -moment;
+  }
 
   /// Lagrange's equations on a base at rest.
   template <bool regulated>
@@ -239,22 +249,20 @@ struct CardanGyro {
     const double da = y[3], db = y[4], df = y[5];
     const double p = C_1 * (df + da * s);
     const double g = (C_2 - A) * s * c * da;
-    const double ddb = (-inner_stiffness * y[1] - inner_damping * db + (g + p * c) * da) / B;
+    const double ddb = braced_b<true>(y, -((g + p * c) * da)) / B;
     if constexpr (regulated) {
       const double J = A_3 + A * c * c + (C_1 + C_2) * s * s;
-      const double dda =
-          (-outer_stiffness * y[0] - outer_damping * da - (2 * g + (p + C_1 * da * s) * c) * db) /
-          J;
+      const double dda = braced_a<true>(y, (2 * g + (p + C_1 * da * s) * c) * db) / J;
       return Gyro(da, db, df, dda, ddb, 0);
     } else {
       const double J = A_3 + A * c * c + C_2 * s * s;
-      const double dda = (-outer_stiffness * y[0] - outer_damping * da - (2 * g + p * c) * db) / J;
+      const double dda = braced_a<true>(y, (2 * g + p * c) * db) / J;
       return Gyro(da, db, df, dda, ddb, -(dda * s + da * db * c));
     }
   }
 
   /// Euler's equations of the three bodies on a base that turns steadily.
-  template <bool regulated>
+  template <bool regulated, bool braced = true>
   [[nodiscard]] Gyro on_base(const Gyro& y) const {
     const double sa = std::sin(y[0]), ca = std::cos(y[0]), s = std::sin(y[1]), c = std::cos(y[1]);
     const double da = y[3], db = y[4], df = y[5];
@@ -270,9 +278,8 @@ struct CardanGyro {
     const double cc = held * dz2 + (B_2 - A_2) * x2 * y2;
     const double J = A_3 + A * c * c + held * s * s;
     const double outer = C_3_less_B_3 * y3 * z3;
-    const double dda =
-        (-outer_stiffness * y[0] - outer_damping * da - (c * a + s * cc) - outer) / J;
-    const double ddb = (-inner_stiffness * y[1] - inner_damping * db - b) / B;
+    const double dda = braced_a<braced>(y, c * a + s * cc + outer) / J;
+    const double ddb = braced_b<braced>(y, b) / B;
     if constexpr (regulated) return Gyro(da, db, df, dda, ddb, 0);
     return Gyro(da, db, df, dda, ddb, -(dz2 + dda * s));
   }

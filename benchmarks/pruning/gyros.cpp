@@ -1,3 +1,5 @@
+#include <string>
+
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
@@ -25,6 +27,9 @@ std::vector<Case> gyros() {
   const auto general = [&](const auto& guide, const auto& rotor) {
     return form("general", start, field(CardanGyro(moments, bearings, any_guide(guide), rotor)));
   };
+  const auto loose = [&](const std::string& name, const auto& guide, const auto& rotor) {
+    return form(name, start, field(CardanGyro(moments, {}, guide, rotor)));
+  };
   const auto written = [&](const auto& rates) { return form("by hand", start, rates); };
   return {
       {"Cardan gyro",
@@ -39,6 +44,9 @@ std::vector<Case> gyros() {
       {"Cardan gyro with regulated rotor on a base that turns",
        {general(base, RegulatedRotor{}), scene(base, RegulatedRotor{}),
         written([=](double, const Gyro& y) { return hand.on_base<true>(y); })}},
+      {"Cardan gyro without springs on a base that turns",
+       {loose("general", any_guide(base), FreeRotor{}), loose("pruned", base, FrictionlessRotor{}),
+        written([=](double, const Gyro& y) { return hand.on_base<false, false>(y); })}},
   };
 }
 

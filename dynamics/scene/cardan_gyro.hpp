@@ -284,6 +284,7 @@ class CardanGyro {
         rotor_(std::move(rotor)),
         symmetric_(moments.rotor.x() == moments.rotor.y()),
         plain_(symmetric_ && bearings.outer.reference == 0 && bearings.inner.reference == 0),
+        loose_(plain_ && is_loose(bearings.outer) && is_loose(bearings.inner)),
         singular_(singular()) {
     check_moments();
     check_bearing("outer", bearings.outer);
@@ -322,7 +323,10 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
                                              const Eigen::Matrix<S, 6, 1>& y) const {
-    if (plain_) return rates_of<detail::Absent, detail::Absent>(t, y);
+    if constexpr (std::is_same_v<S, double>) {
+      if (loose_) return rates_of<detail::Absent, detail::Absent, detail::Absent>(t, y);
+    }
+    if (plain_) return rates_of<detail::Absent, detail::Absent, Parameter>(t, y);
     return less_plain_rates<S>(t, y);
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
@@ -453,7 +457,8 @@ class CardanGyro {
              "every centre of mass lies where the axes meet");
     list.add("Coriolis", "u' x (Theta_i u) + u x (Theta_i u') + Theta_i (u x u')", turns,
              of_turning);
-    list.add("load", "springs and friction of the rings' bearings");
+    list.add("load", "springs and friction of the rings' bearings", !loose_,
+             loose_ ? "stiffness and damping are 0" : "");
     list.add("load", "references of the bearings", !plain_,
              plain_ ? "both are 0, and the rotor is symmetric" : "");
     list.add("load", "drive and friction of the rotor", spun && !regulated,
@@ -514,6 +519,7 @@ class CardanGyro {
         rotor_(gyros[0]->rotor_),
         symmetric_(gyros[0]->symmetric_),
         plain_(std::all_of(gyros.begin(), gyros.end(), [](const One* g) { return g->plain_; })),
+        loose_(std::all_of(gyros.begin(), gyros.end(), [](const One* g) { return g->loose_; })),
         singular_(gathered(gyros, [](const One& g) { return g.singular_; })) {}
 
   template <class Get>
@@ -577,6 +583,10 @@ class CardanGyro {
     return (bearings_.outer.stiffness * s.alpha * s.alpha +
             bearings_.inner.stiffness * s.beta * s.beta) /
            2;
+  }
+
+  [[nodiscard]] static bool is_loose(const CardanBearing& bearing) {
+    return bearing.stiffness == 0 && bearing.damping == 0;
   }
 
   /// What spring and friction resist with; the torque is its negative.
@@ -713,8 +723,9 @@ class CardanGyro {
     return k;
   }
 
-  /// N is S, or Absent if the rotor is symmetric; Reference is Absent where the bearings have none.
-  template <class N, class Reference, class S>
+  /// N is S, or Absent if the rotor is symmetric; Reference is Absent where the bearings have none,
+  /// Torque where they have neither springs nor friction.
+  template <class N, class Reference, class Torque, class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
     constexpr bool round = detail::is_absent<N>;
     const Parameter A_1 = moments_.rotor.x();
@@ -748,9 +759,16 @@ class CardanGyro {
         return S(C_1 * k.dz_2 + k.twist);
       }
     }();
-    const S left_a = resistance(bearings_.outer, y[0], y[3]) +
+    const auto resisted = [](const auto& bearing, const S& q, const S& dq) {
+      if constexpr (detail::is_absent<Torque>) {
+        return detail::Absent{};
+      } else {
+        return resistance(bearing, q, dq);
+      }
+    };
+    const S left_a = resisted(bearings_.outer, y[0], y[3]) +
                      S(S(cb * S(k.rotor_a + k.inner_a) + sb * S(on_rotor + k.inner_c)) + k.outer_a);
-    const S left_b = resistance(bearings_.inner, y[1], y[4]) + S(k.rotor_b + k.inner_b);
+    const S left_b = resisted(bearings_.inner, y[1], y[4]) + S(k.rotor_b + k.inner_b);
     const S across = A_3 + carried_ * S(sb * sb);
     const S cc = cb * cb;
     using detail::any;  // lanes of a pack stop together
@@ -786,8 +804,8 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] EIGEN_DONT_INLINE Eigen::Matrix<S, 6, 1> less_plain_rates(
       const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
-    if (symmetric_) return rates_of<detail::Absent, Parameter>(t, y);
-    return rates_of<S, Parameter>(t, y);
+    if (symmetric_) return rates_of<detail::Absent, Parameter, Parameter>(t, y);
+    return rates_of<S, Parameter, Parameter>(t, y);
   }
 
   /// How small the determinant (of a symmetric rotor: its factor M_aa) counts as 0. It has no error
@@ -830,6 +848,7 @@ class CardanGyro {
   [[no_unique_address]] Rotor rotor_;
   bool symmetric_;
   bool plain_;  ///< symmetric, and no reference of a bearing but 0
+  bool loose_;  ///< and besides neither springs nor friction in the rings' bearings
   Parameter carried_ = carried();
   detail::RingMoments<Parameter> bare_ring_{moments_.inner_ring, Parameter(0), Parameter(0)};
   detail::RingMoments<Parameter> counted_ring_{moments_.inner_ring, moments_.rotor.x(),

@@ -195,6 +195,13 @@ BOOST_AUTO_TEST_CASE(of_a_cardan_gyro_do_what_they_are_said_to) {
   BOOST_TEST(spun(DrivenRotor{3.0}).kept);
   BOOST_TEST(spun(FrictionlessRotor{}).why == "FrictionlessRotor");
   BOOST_TEST(spun(RegulatedRotor{}).why == "the motor keeps phi'");
+  // Springs and friction do something wherever there are any.
+  for (const CardanBearings& some :
+       {CardanBearings{}, CardanBearings{{0.5, 0}, {}}, CardanBearings{{}, {0, 0.1}}}) {
+    const CardanGyro gyro(round, some, table);
+    holds(terms(gyro), "springs and friction of the rings' bearings",
+          effect(gyro, CardanGyro(round, {}, table)));
+  }
   const CardanGyro bent(round, {{0.5, 0.1, 0.3}, {}}, table);
   BOOST_TEST(term(terms(bent), "references of the bearings").kept);
   const Term du = term(terms(CardanGyro(round, bearings, table)), "Theta_i ou");
