@@ -151,6 +151,31 @@ struct HeldOnTurningGuide {
   }
 };
 
+/// A body with any inertia, held in a lift that goes up and down by sin(2 t) and does not turn.
+struct HeldInLift {
+  Eigen::Matrix3d T;
+  V3 s;  // first moment
+  V3 g;
+  Eigen::Matrix3d I = T.inverse();
+
+  [[nodiscard]] Top operator()(double t, const Top& y) const {
+    const double qx = y[0], qy = y[1], qz = y[2], qw = y[3], a = y[4], b = y[5], c = y[6];
+    const Rotation<Norm::any> R(qx, qy, qz, qw);
+    const V3 G = R.back({g.x(), g.y(), g.z() - 4 * std::sin(2 * t)});
+    const double La = T(0, 0) * a + T(0, 1) * b + T(0, 2) * c;
+    const double Lb = T(0, 1) * a + T(1, 1) * b + T(1, 2) * c;
+    const double Lc = T(0, 2) * a + T(1, 2) * b + T(2, 2) * c;
+    const double A = Lb * c - Lc * b + (s.y() * G.z() - s.z() * G.y());
+    const double B = Lc * a - La * c + (s.z() * G.x() - s.x() * G.z());
+    const double C = La * b - Lb * a + (s.x() * G.y() - s.y() * G.x());
+    const double ha = 0.5 * a, hb = 0.5 * b, hc = 0.5 * c;
+    return Top(qw * ha + qy * hc - qz * hb, qw * hb + qz * ha - qx * hc,
+               qw * hc + qx * hb - qy * ha, -(qx * ha + qy * hb + qz * hc),
+               I(0, 0) * A + I(0, 1) * B + I(0, 2) * C, I(0, 1) * A + I(1, 1) * B + I(1, 2) * C,
+               I(0, 2) * A + I(1, 2) * B + I(2, 2) * C);
+  }
+};
+
 /// A body on principal axes through its centre of mass, free in a guide that turns steadily with u;
 /// gravity rests in the guide, `steady` is it less the acceleration of the guide's origin.
 struct FreeOnTurningGuide {

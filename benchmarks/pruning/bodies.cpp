@@ -1,4 +1,7 @@
+#include <cmath>
+
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/guide/translating.hpp>
 #include <dynamics/scene/free_body.hpp>
 #include <dynamics/scene/held_body.hpp>
 
@@ -32,7 +35,17 @@ std::vector<Case> bodies() {
       T, lopsided.value.first_moment, u, g,
       table.origin_acceleration + u.cross(V3(u.cross(point)))};
   const by_hand::FreeOnTurningGuide free_hand{moments, u, g - table.origin_acceleration};
+  const TranslatingFrame lift([](double t) {
+    const double s = std::sin(2 * t), c = std::cos(2 * t);
+    return Translation<>{{0, 0, -s}, {0, 0, -2 * c}, {0, 0, 4 * s}};
+  });
+  const by_hand::HeldInLift lift_hand{T, lopsided.value.first_moment, g};
   return {
+      {"held body in a lift",
+       {form("general", held_start,
+             field(HeldBody(lopsided, point, any_guide(lift), any_load(weight)))),
+        form("pruned", held_start, field(HeldBody(lopsided, point, lift, weight))),
+        form("by hand", held_start, [=](double t, const Top& y) { return lift_hand(t, y); })}},
       {"held body on a turntable with gravity at rest",
        {form("general", held_start,
              field(HeldBody(lopsided, point, any_guide(table), any_load(gravitation)))),

@@ -47,7 +47,7 @@ struct FrameTurning {
 /// A kind of guide motion: called with a time it tells how its frame moves then.
 ///
 /// Whatever can be called so is one, a user's lambda too. The kinds here have a file each:
-/// resting, rotating, steady, harmonic, posed, tabulated, chain.
+/// resting, translating, rotating, steady, harmonic, posed, tabulated, chain.
 template <class M, class G = Guide, class I = Inertial, class S = double>
 concept GuideMotion = requires(const M& motion, const S& t) {
   { motion(t) } -> std::same_as<FrameMotion<G, I, S>>;
@@ -81,6 +81,16 @@ template <class M>
 concept SteadyGuide = requires(const M& motion) {
   motion.steady();
 };
+
+namespace detail {
+
+/// Whether the type of a guide says, by a static member never_turns = true, that its u and ou are 0.
+template <class M>
+inline constexpr bool never_turns = requires {
+  requires M::never_turns;
+};
+
+}  // namespace detail
 
 /// The motion of C against A from those of C against B and of B against A. Exact: poses multiply,
 /// velocities add, and the rate of V_BA is handed to the observer C by its transport term.

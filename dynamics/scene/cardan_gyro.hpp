@@ -471,12 +471,12 @@ class CardanGyro {
   /// with rings without mass.
   [[nodiscard]] CardanGyro<RotatingFrame<>, Rotor> without(GuideUnsteadiness /*what*/, double begin,
                                                            double end) const
-      requires(!SteadyGuide<M>) {
+      requires(!SteadyGuide<M> && !detail::never_turns<M>) {
     return {moments_, bearings_, mean_motion(guide_, begin, end), rotor_};
   }
   [[nodiscard]] CardanGyro<RestingFrame<>, Rotor> without(GuideRate /*what*/, double begin,
                                                           double end) const
-      requires(!detail::is_resting<M>) {
+      requires(!detail::is_resting<M> && !detail::never_turns<M>) {
     return {moments_, bearings_, RestingFrame<>{guide_((begin + end) / 2).X}, rotor_};
   }
   [[nodiscard]] CardanGyro without(RotorAsymmetry /*what*/, double /*begin*/,
@@ -636,7 +636,7 @@ class CardanGyro {
   /// nothing.
   template <class S>
   [[nodiscard]] auto felt_turning(const S& t) const {
-    if constexpr (detail::is_resting<M>) {
+    if constexpr (detail::is_resting<M> || detail::never_turns<M>) {
       return detail::Turning<detail::Absent, detail::Absent>{};
     } else if constexpr (SteadyGuide<M>) {
       return detail::Turning<S, detail::Absent>{{S(steady_.x), S(steady_.y), S(steady_.z)}, {}};

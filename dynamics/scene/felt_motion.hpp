@@ -178,6 +178,8 @@ class FeltMotion {
       return felt(known_.u, NoVector{}, known_.g + known_.field.at(t));
     } else if constexpr (SteadyGuide<M>) {
       return felt(known_.u, NoVector{}, known_.g);
+    } else if constexpr (!gravity && never_turns<M>) {
+      return felt(NoVector{}, NoVector{}, NoVector{});
     } else if constexpr (!gravity && std::is_same_v<N, double>) {
       const FrameTurning<N> now = turning(guide, t);
       return felt(components(now.u), components(now.du), NoVector{});
@@ -189,16 +191,11 @@ class FeltMotion {
   /// The same from all of the guide's motion.
   template <class N>
   [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const Loads&... loads) const {
-    const auto u = components(now.V.value.resultant);
-    const auto du = components(now.dV.value.resultant);
-    if constexpr (gravity) {
-      const auto g =
-          field_on<Guide>(loads...) +
-          turned_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
-          carried_acceleration(u, du, components(now.origin_acceleration()), r_);
-      return felt(u, du, g);
+    if constexpr (never_turns<M>) {
+      return in(now, NoVector{}, NoVector{}, Vector3<N>(now.dV.value.moment), loads...);
     } else {
-      return felt(u, du, NoVector{});
+      return in(now, components(now.V.value.resultant), components(now.dV.value.resultant),
+                now.origin_acceleration(), loads...);
     }
   }
 
@@ -206,6 +203,21 @@ class FeltMotion {
   using KnownMotion =
       decltype(known_motion<gravity>(std::declval<const P&>(), std::declval<const M&>(),
                                      std::string(), std::declval<const Loads&>()...));
+
+  /// `a` is the inertial acceleration of the guide's origin.
+  template <class N, class U>
+  [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const U& u, const U& du,
+                        const Vector3<N>& a, const Loads&... loads) const {
+    if constexpr (gravity) {
+      const auto g =
+          field_on<Guide>(loads...) +
+          turned_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
+          carried_acceleration(u, du, components(a), r_);
+      return felt(u, du, g);
+    } else {
+      return felt(u, du, NoVector{});
+    }
+  }
 
   template <class U, class Du, class G>
   [[nodiscard]] static Felt<U, Du, G> felt(const U& u, const Du& du, const G& g) {
@@ -246,7 +258,7 @@ template <class M>
   if constexpr (SteadyGuide<M>) {
     return !decltype(std::declval<const M&>().steady().u)::absent;
   } else {
-    return true;
+    return !never_turns<M>;
   }
 }
 

@@ -176,7 +176,12 @@ class FreeBody {
   /// without the centrifugal force.
   [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
       requires(!SteadyGuide<M>) {
-    return remade(inertia_, mean_motion(guide_, begin, end), loads_);
+    const auto on_mean = remade(inertia_, mean_motion(guide_, begin, end), loads_);
+    if constexpr (detail::never_turns<M>) {
+      return on_mean.without(GuideRate{}, begin, end);
+    } else {
+      return on_mean;
+    }
   }
   [[nodiscard]] auto without(GuideRate what, double begin, double end) const
       requires(detail::turns<M>()) {

@@ -3,10 +3,12 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
+#include <dynamics/guide/translating.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/scene/free_body.hpp>
@@ -114,6 +116,13 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_body, data::xrange(25u), seed) {
   test::Sample sample(seed);
   const Displacement<Inertial, Guide> X{exp(Motor<>{sample.direction(), sample.direction()})};
   agrees_on(RestingFrame<>{X}, sample);
+  const Vector3<double> place = sample.direction();
+  const Vector3<double> along = sample.direction();
+  agrees_on(TranslatingFrame([&](double t) {
+              return Translation<>{place + std::sin(t) * along, std::cos(t) * along,
+                                   -std::sin(t) * along};
+            }),
+            sample);
   agrees_on(RotatingFrame<>{sample.direction(), sample.direction(), X, sample.direction()}, sample);
   agrees_on(SteadyFrame<>{X, {{sample.direction(), sample.direction()}}}, sample);
 }
@@ -166,6 +175,13 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_cardan_gyro, data::xrange(50u), seed
   compare(steady, FreeRotor{0.2}, FreeRotor{0.2});
   compare(RestingFrame<>{}, FrictionlessRotor{}, FreeRotor{});
   compare(RestingFrame<>{}, RegulatedRotor{}, RegulatedRotor{});
+  const TranslatingFrame lift([](double t) { return Translation<>{{t, 0, 0}, {1, 0, 0}, {}}; });
+  compare(lift, FrictionlessRotor{}, FreeRotor{});
+  compare(lift, RegulatedRotor{}, RegulatedRotor{});
+  // Without springs and friction; a reference makes the general gyro look for them nevertheless.
+  const CardanGyro loose(moments, {}, table);
+  const CardanGyro general(moments, {{}, {0, 0, 1e-300}}, any_guide(table));
+  BOOST_TEST(difference(loose.rates(0.7, y), general.rates(0.7, y)) <= limit);
 }
 
 BOOST_DATA_TEST_CASE(changes_no_number_of_a_plane_pendulum, data::xrange(25u), seed) {

@@ -10,6 +10,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
+#include <dynamics/guide/translating.hpp>
 #include <dynamics/law/relative.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
@@ -146,8 +147,12 @@ BOOST_DATA_TEST_CASE(are_those_its_field_computes, data::xrange(10u), seed) {
     p.ddx = Vector3<double>(0, 2, 0);
     return frame_motion<Guide, Inertial>(p);
   };
+  const TranslatingFrame lift([](double t) {
+    return Translation<>{{0, 0, t * t}, {0, 0, 2 * t}, {0, 0, 2}};
+  });
   for (const Vector3<double>& gravity : {Vector3<double>(0, 0, 0), Vector3<double>(1, 2, -9)}) {
     check_on(RestingFrame<>{}, sample, gravity);
+    check_on(lift, sample, gravity);
     check_on(table, sample, gravity);
     check_on(steady, sample, gravity);
     check_on(shaken, sample, gravity);
