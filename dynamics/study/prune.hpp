@@ -422,8 +422,10 @@ struct PrunedQuantities {
 /// Cost   : two runs of both fields for each term, and two more for each that joins others left out.
 ///          In 4 scenes fields became 1.7 to 4.8 times as fast, runs of solve() 1.4 to 3 times; the
 ///          bounds cost 3 to 9 such runs and are paid for after 5 to 27: this is for ensembles and
-///          repeated runs, never for one (benchmarks/prune_gain.cpp). The steps are explicit: stiff
-///          scenes take long
+///          repeated runs, never for one (benchmarks/prune_gain.cpp). RingInertia spares nothing: a
+///          gyro adds the moments of its rings to the rotor's when it is built, and is of one type
+///          with and without; it is asked for to see how much the rings do. The steps are explicit:
+///          stiff scenes take long
 /// Throws : InvalidInput for a tolerance outside [1e-15, 1e-2], a horizon below 0, no starts;
 ///          ComputationFailed where the scene's own motion fails. A term without which it fails, or
 ///          cannot be made, is kept, with the reason
