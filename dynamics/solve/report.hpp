@@ -45,6 +45,8 @@ struct Trajectory {
   std::vector<double> times;
   std::vector<State> states;
   RunReport report;
+  std::vector<double> errors =
+      {};  ///< of the states, as RunReport::error_estimate has the greatest
 };
 
 }  // namespace kreisel

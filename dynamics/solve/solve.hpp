@@ -65,12 +65,14 @@ using Clock = std::chrono::steady_clock;
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// Notes a state for the output time t; says whether the run is to go on.
+/// Notes a state and its error for the output time t; says whether the run is to go on.
 template <class Scene>
 [[nodiscard]] bool output(Trajectory<typename Scene::State>& result, InvariantWatch<Scene>& watch,
-                          const Task& task, double t, const typename Scene::State& state) {
+                          const Task& task, double t, const typename Scene::State& state,
+                          double error) {
   result.times.push_back(t);
   result.states.push_back(state);
+  result.errors.push_back(error);
   watch.note(t, state);
   if (!task.progress || task.progress(t)) return true;
   result.report.status = RunStatus::cancelled;
@@ -87,8 +89,9 @@ template <class Scene>
   InvariantWatch<Scene> watch(scene);
   watch.note(task.begin, start);
   for (const double t : task.times) {
-    report.error_estimate = std::max(report.error_estimate, motion.error(t));
-    if (!output(result, watch, task, t, motion.at(t))) break;
+    const double error = motion.error(t);
+    report.error_estimate = std::max(report.error_estimate, error);
+    if (!output(result, watch, task, t, motion.at(t), error)) break;
   }
   report.method = motion.name;
   report.tolerance = task.tolerance;
@@ -257,14 +260,14 @@ template <class Scene, class Runs>
         }
         const typename Scene::State& better = better_at_output(*fine, done);
         const double off = distance(scene.to_vector(state), scene.to_vector(better));
-        report.error_estimate = std::max(
-            report.error_estimate,
-            error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse->effort().steps));
+        const double error =
+            error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse->effort().steps);
+        report.error_estimate = std::max(report.error_estimate, error);
         expected = forecast(task, t, report.error_estimate);
         too_coarse =
             !last_try && (report.error_estimate > task.tolerance || expected > 4 * task.tolerance);
         if (too_coarse) break;
-        if (!output(result, watch, task, t, state)) break;
+        if (!output(result, watch, task, t, state, error)) break;
         ++done;
         if constexpr (requires(Bookmark & numbers) { coarse->pass(scene, done, numbers); }) {
           const bool offers = task.offer_bookmark && done < task.times.size();

@@ -96,6 +96,8 @@ void put_before(kreisel::Trajectory<JointState>& run, const Model& model,
   }
   run.times.insert(run.times.begin(), times.begin(), times.end());
   run.states.insert(run.states.begin(), states.begin(), states.end());
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  run.errors.insert(run.errors.begin(), times.size(), unknown);
 }
 
 /// Takes down where the run is, every fifth of a second.

@@ -59,7 +59,8 @@ class ModelOnGuide final : public Model {
     kreisel::Task watched_task = task;
     watched_task.progress = [&](double t) { return listener(t, watched.latest()); };
     auto run = kreisel::solve(watched, State{start.coordinates, start.rates}, watched_task);
-    kreisel::Trajectory<JointState> result{std::move(run.times), {}, std::move(run.report)};
+    kreisel::Trajectory<JointState> result{
+        std::move(run.times), {}, std::move(run.report), std::move(run.errors)};
     for (State& state : run.states) {
       result.states.push_back({std::move(state.coordinates), std::move(state.rates)});
     }

@@ -27,7 +27,7 @@ std::vector<Term> terms_dropped(const kreisel::SceneFile& scene);
 void print_summary(const Result& result);
 void print_json(const Result& result);
 
-/// Coordinates, rates, energy, reactions and the path of the last body's axis, each as SVG and PNG,
+/// Coordinates, rates, energy, error, reactions and the path of the last body's axis, each as SVG and PNG,
 /// and view.html, which shows the bodies moving.
 ///
 /// Throws : kreisel::ComputationFailed where gnuplot is not installed or fails

@@ -180,6 +180,23 @@ std::string over_time(const std::string& title, const Series& times,
   return s.str();
 }
 
+/// What the states are off by, and what was asked for.
+std::string error_over_time(const std::string& title, const Series& times, const Series& errors,
+                            double tolerance) {
+  std::ostringstream s;
+  write_block(s, "errors", {times, errors});
+  s << gnuplot::style << "set logscale y\nset format y '%.0e'\nset autoscale xfix\n"
+    << "set offsets 0, 0, graph 0.08, graph 0.08\nset key outside right top samplen 2\n"
+    << "set title " << quoted(title) << "\nset xlabel 't [s]'\n"
+    << "set ylabel '[rad or relative]'\n";
+  fmt::print(s,
+             "plot $errors using 1:($2 > 0 ? $2 : NaN) with lines lw 2 lc rgb '{}' title "
+             "'estimated', {:.9g} with lines lw 2 dt {} lc rgb '{}' title 'asked for'\n",
+             colours[0], tolerance, dashes[1], colours[1]);
+  s << "unset output\n";
+  return s.str();
+}
+
 /// Directions on the unit sphere, the guide's axes; empty where nothing turns.
 std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, std::string& what) {
   const int last = static_cast<int>(result.scene.bodies.size()) - 1;
@@ -331,6 +348,13 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   over("rates", "rates", all.rates);
   over("reactions", "reactions", all.reactions);
   over("invariants", "what should not change", drifts(result, samples));
+  const Series errors = samples.of(result.run.errors);
+  if (std::any_of(errors.begin(), errors.end(), [](double error) { return error > 0; })) {
+    const std::string what = "error of coordinates and rates";
+    gnuplot::draw(folder / "error", 300,
+                  error_over_time(title.empty() ? what : title + ": " + what, times, errors,
+                                  result.scene.tolerance));
+  }
   std::string what;
   const auto way = path(result, samples, what);
   if (!way.empty()) gnuplot::draw(folder / "axis", 500, on_sphere(title, what, way));

@@ -26,6 +26,13 @@ class Samples {
     return list;
   }
 
+  /// Those of a list that has one for each output.
+  [[nodiscard]] std::vector<double> of(const std::vector<double>& values) const {
+    std::vector<double> list;
+    for (const std::size_t i : chosen_) list.push_back(values[i]);
+    return list;
+  }
+
  private:
   const Result& result_;
   std::vector<std::size_t> chosen_;

@@ -453,7 +453,8 @@ BOOST_AUTO_TEST_CASE(draws) {
   BOOST_TEST(outcome.status == 0, outcome.err);
   BOOST_TEST(outcome.err == "");
   BOOST_TEST(json::parse(outcome.out).contains("final"));
-  for (const char* const name : {"coordinates", "rates", "reactions", "invariants", "axis"}) {
+  for (const char* const name :
+       {"coordinates", "rates", "reactions", "invariants", "error", "axis"}) {
     const std::string path = std::string("pictures/") + name;
     BOOST_TEST(folder.read(path + ".svg").find("<svg") != std::string::npos, name);
     BOOST_TEST(folder.read(path + ".png").substr(1, 3) == "PNG", name);

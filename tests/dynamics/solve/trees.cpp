@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -112,6 +113,8 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
     c.task.offer_bookmark = [&](const auto& bookmark) { bookmarks.push_back(bookmark()); };
     const auto whole = solve(system, start, c.task);
     BOOST_TEST(whole.report.method == c.method);
+    BOOST_TEST(*std::max_element(whole.errors.begin(), whole.errors.end()) ==
+               whole.report.error_estimate);
     BOOST_TEST((bookmarks.size() >= c.task.times.size()) == c.begins_again, bookmarks.size());
     for (const auto& bookmark : bookmarks) {
       Task rest = c.task;
@@ -121,6 +124,7 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
       const std::size_t before = whole.times.size() - found.times.size();
       for (std::size_t i = 0; i < found.times.size(); ++i) {
         BOOST_TEST(found.times[i] == whole.times[before + i]);
+        BOOST_TEST(found.errors[i] == whole.errors[before + i]);
         BOOST_TEST(found.states[i].coordinates == whole.states[before + i].coordinates);
         BOOST_TEST(found.states[i].rates == whole.states[before + i].rates);
       }
