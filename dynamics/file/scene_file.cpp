@@ -91,10 +91,9 @@ class SceneReader {
         "method",
         {"auto", "automatic", "closed form", "verner98", "gauss16", "radau13", "splitting"});
     scene_.method = request_.method.value_or(*method_named(method));
-    const std::string model = solve->choice("model", {"exact", "precession", "linear", "foeppl"});
-    if (model != "exact") {
-      solve->refuse("model", "'" + model + "' is not offered for this scene; 'exact' is");
-    }
+    const std::string model = solve->choice("model", {"exact", "linear", "precession"});
+    if (model == "linear") scene_.model = SceneModel::linear;
+    if (model == "precession") scene_.model = SceneModel::precession;
     const auto step = solve->number("output_step", Range::positive);
     const auto times = solve->numbers("output_times");
     if (step && times) {

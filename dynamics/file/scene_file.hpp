@@ -74,6 +74,13 @@ struct JointStart {
   std::vector<double> rates;
 };
 
+/// The equations that a scene is computed by.
+enum class SceneModel {
+  exact,
+  linear,     ///< about the steady motion next to the start
+  precession  ///< technical equations, in which the nutations are left out
+};
+
 struct SceneFile {
   std::string title;
   std::vector<scene_guide::Link> guide;  ///< from the inertial frame inwards; never empty
@@ -83,6 +90,7 @@ struct SceneFile {
   double t_end = 0;
   double tolerance = 1e-10;
   Method method = Method::automatic;
+  SceneModel model = SceneModel::exact;
   std::vector<double> output_times;  ///< in order, within [0, t_end]
   bool reactions = false;
   bool terms = false;

@@ -50,6 +50,8 @@ struct TechnicalOptions {
   Accuracy accuracy = {.relative = 1e-12};
   /// For the time up to which the equations are good enough. Unit of the coordinates
   double tolerated_error = 1e-2;
+  /// From the start on, in order: samples at these are wanted.
+  std::vector<double> times = {};
 };
 
 /// A motion by the technical equations, at the end of a step.
@@ -66,6 +68,9 @@ struct TechnicalSample {
 
 struct TechnicalMotion {
   std::vector<TechnicalSample> samples;
+  /// At the times asked for, as far as the motion went; without drift and nutation, the bound that
+  /// of the step's end.
+  std::vector<TechnicalSample> outputs;
   int kept = 0;            ///< how many accelerations
   double smallness = 0;    ///< of the slow motion's rates against the nutations', greatest
   bool slow = true;        ///< false: broken off where the motion is no longer slow, smallness 1/2
@@ -339,6 +344,13 @@ template <class Model>
       e = x.head(e.size());
       w_kept = x.tail(kept);
       note(times[i + 2], states[i + 2], points[i + 2]);
+    }
+    while (motion.slow && motion.outputs.size() < options.times.size() &&
+           steps.covers(options.times[motion.outputs.size()])) {
+      const double t = options.times[motion.outputs.size()];
+      const VectorXd there = steps.at(t);
+      motion.outputs.push_back(
+          {t, there.head(n), point(t, there).u, {}, {}, motion.samples.back().bound});
     }
   }
   motion.effort = steps.effort();

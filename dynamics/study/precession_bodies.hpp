@@ -65,6 +65,14 @@ class TechnicalBodies {
     return {place, y.tail(tree.rates())(rates_)};
   }
 
+  /// The state at a place with these velocities.
+  [[nodiscard]] Eigen::VectorXd state(double t, const Eigen::VectorXd& place,
+                                      const Eigen::VectorXd& u) const {
+    Eigen::VectorXd y;
+    (void)matrices(t, place, u, y);
+    return y;
+  }
+
   [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const {
     const auto n = static_cast<Eigen::Index>(rates_.size());
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
@@ -162,9 +170,16 @@ class TechnicalBodies {
   /// With the rotors at the rates that belong to their momenta.
   [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& place,
                                        const Eigen::VectorXd& u) const {
+    Eigen::VectorXd y;
+    return matrices(t, place, u, y);
+  }
+
+  /// The same; y becomes the state with these rates.
+  [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& place,
+                                       const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
     const BodyTree& tree = system_.tree();
     const Eigen::VectorXd l = place.tail(static_cast<Eigen::Index>(tree.rotors().size()));
-    Eigen::VectorXd y(tree.coordinates() + tree.rates());
+    y.resize(tree.coordinates() + tree.rates());
     y << place.head(tree.coordinates()), scattered(u);
     const auto set_rate = [&](std::size_t k, double momentum) {
       const detail::RotorLink& rotor = tree.rotors()[k];

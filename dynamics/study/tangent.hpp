@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -82,6 +83,31 @@ class Tangent {
     }
     copy(components_);
     return result;
+  }
+
+  /// The move from one state to another:  moved(y, between(y, other)) is other.
+  [[nodiscard]] Eigen::VectorXd between(const Eigen::VectorXd& y,
+                                        const Eigen::VectorXd& other) const {
+    Eigen::VectorXd eta(dimension());
+    int from = 0;
+    int to = 0;
+    const auto subtract = [&](int end) {
+      for (; from < end; ++from, ++to) eta[to] = other[from] - y[from];
+    };
+    for (const int at : quaternions_) {
+      subtract(at);
+      const Eigen::Quaterniond q(y[at + 3], y[at], y[at + 1], y[at + 2]);
+      const Eigen::Quaterniond p(other[at + 3], other[at], other[at + 1], other[at + 2]);
+      Eigen::Quaterniond turn = q.conjugate() * p;
+      if (turn.w() < 0) turn.coeffs() = -turn.coeffs();
+      const double sine = turn.vec().norm();
+      const double angle = 2 * std::atan2(sine, turn.w());
+      eta.segment<3>(to) = (sine > 0 ? angle / sine : 2) * turn.vec();
+      from += 4;
+      to += 3;
+    }
+    subtract(components_);
+    return eta;
   }
 
  private:

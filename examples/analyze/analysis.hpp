@@ -9,24 +9,8 @@
 #include <dynamics/study/spectrum.hpp>
 
 #include "request.hpp"
+#include "steady.hpp"
 #include "system.hpp"
-
-/// A state in which the motion does not change, but for angles on which nothing depends.
-struct Steady {
-  enum class Kind {
-    start,  ///< that of the file
-    found,  ///< one next to it
-    none
-  };
-  Kind kind = Kind::none;
-  std::string reason;     ///< why there is none
-  bool turns = false;     ///< more than rotors and drives do
-  Eigen::VectorXd state;  ///< of the system; empty where there is none
-  double distance = 0;    ///< from the file's start, greatest component
-  double residual = 0;    ///< of the rates that should be 0, greatest
-
-  [[nodiscard]] bool exists() const { return kind != Kind::none; }
-};
 
 enum class Verdict { stable, marginal, unstable };
 

@@ -113,3 +113,17 @@ PrecessionCheck System::precession(const Vector& start, const Vector& rest, doub
   }
   return check;
 }
+
+std::vector<System::Vector> System::technical(const Vector& start,
+                                              const std::vector<double>& times) const {
+  const kreisel::TechnicalBodies<kreisel::SceneGuide> model(*bodies_);
+  const auto [place, u] = model.start(0, start);
+  kreisel::TechnicalOptions options;
+  options.times = times;
+  const auto motion = technical_motion(model, 0, place, u, times.back(), options);
+  std::vector<Vector> states;
+  for (const auto& sample : motion.outputs) {
+    states.push_back(model.state(sample.t, sample.place, sample.velocity));
+  }
+  return states;
+}

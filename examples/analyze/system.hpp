@@ -79,6 +79,13 @@ class System {
   [[nodiscard]] PrecessionCheck precession(const Vector& start, const Vector& rest,
                                            double t_end) const;
 
+  /// States by the precession equations at times in order, as far as they go: until the motion is
+  /// no longer slow. Angles of rotors stay what they are.
+  ///
+  /// Throws : kreisel::InvalidInput where there are no such equations; kreisel::ComputationFailed
+  [[nodiscard]] std::vector<Vector> technical(const Vector& start,
+                                              const std::vector<double>& times) const;
+
  private:
   class Bodies;
   std::unique_ptr<const Bodies> bodies_;

@@ -124,6 +124,9 @@ int run(const Request& request) {
   kreisel::SceneFile scene = kreisel::read_scene(request.scene, request.solve);
   scene.reactions = scene.reactions || request.reactions;
   scene.terms = scene.terms || request.terms;
+  if (request.resume && scene.model != kreisel::SceneModel::exact) {
+    throw kreisel::InvalidInput("--resume: an approximation is computed as a whole");
+  }
   const std::unique_ptr<Model> model = make_model(scene);
   std::optional<RowFile> file;
   std::optional<ResumeFile> resume;

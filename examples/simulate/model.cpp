@@ -1,5 +1,9 @@
 #include "model.hpp"
 
+#include "approximation.hpp"
+
 std::unique_ptr<Model> make_model(const kreisel::SceneFile& scene) {
-  return scene.rests() ? make_resting_model(scene) : make_moving_model(scene);
+  auto exact = scene.rests() ? make_resting_model(scene) : make_moving_model(scene);
+  if (scene.model == kreisel::SceneModel::exact) return exact;
+  return make_approximation(scene, std::move(exact));
 }

@@ -56,6 +56,15 @@ std::string gravity_name(const kreisel::SceneFile& scene) {
   return names[scene.gravity.index()];
 }
 
+const char* name(kreisel::SceneModel model) {
+  switch (model) {
+    case kreisel::SceneModel::exact: return "exact";
+    case kreisel::SceneModel::linear: return "linear";
+    case kreisel::SceneModel::precession: return "precession";
+  }
+  return "";
+}
+
 ordered_json json(const std::vector<Term>& terms) {
   ordered_json list = ordered_json::array();
   for (const Term& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
@@ -93,7 +102,12 @@ void print_terms(const char* title, const std::vector<Term>& terms) {
 }  // namespace
 
 std::vector<Term> terms_kept(const kreisel::SceneFile& scene) {
-  std::vector<Term> terms{{"relative motion", "the law of every body, exact in all angles"}};
+  const char* const law = scene.model == kreisel::SceneModel::linear
+                              ? "the law of every body, linear about a steady motion"
+                          : scene.model == kreisel::SceneModel::precession
+                              ? "the technical equations of all bodies together"
+                              : "the law of every body, exact in all angles";
+  std::vector<Term> terms{{"relative motion", law}};
   const auto add = [&terms](bool is_there, const char* name, const std::string& reason) {
     if (is_there) terms.push_back({name, reason});
   };
@@ -121,6 +135,10 @@ std::vector<Term> terms_dropped(const kreisel::SceneFile& scene) {
     return [mode](const kreisel::BodyDescription& b) { return b.rotor && b.rotor->mode == mode; };
   };
   using kreisel::RotorMode;
+  add(scene.model == kreisel::SceneModel::linear, "what is not linear",
+      "in the departure from the steady motion next to the start");
+  add(scene.model == kreisel::SceneModel::precession, "nutations",
+      "accelerations across the gyroscopic moments, and terms of second order in the velocities");
   add(scene.rests(), "guide motion", "exactly 0: the guide is inertial");
   add(scene.rests(), "Coriolis terms", "exactly 0: the guide is inertial");
   add(scene.gravity.index() == 0, "gravity", "none is given");
@@ -150,7 +168,7 @@ void print_json(const Result& result) {
   }
   const ordered_json summary{{"title", result.scene.title},
                              {"method", r.method},
-                             {"model", "exact"},
+                             {"model", name(result.scene.model)},
                              {"steps", r.effort.steps},
                              {"rejected", r.effort.rejected},
                              {"evaluations", r.effort.evaluations},
@@ -169,7 +187,7 @@ void print_json(const Result& result) {
 void print_summary(const Result& result) {
   const kreisel::RunReport& r = report(result);
   if (!result.scene.title.empty()) fmt::print("{}\n\n", result.scene.title);
-  fmt::print("method    {}, model exact\n", r.method);
+  fmt::print("method    {}, model {}\n", r.method, name(result.scene.model));
   fmt::print(
       "steps     {:.0f}, {:.0f} rejected, {:.0f} evaluations ({:.0f} with those for the "
       "estimate), {:.3g} s\n",

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
@@ -442,6 +443,122 @@ BOOST_AUTO_TEST_CASE(stiff_and_chosen_methods) {
       check_near(method, found.at("final").at("joints").at(body).at("rate"),
                  wanted.at("final").at("joints").at(body).at("rate"), 2e-8);
     }
+  }
+}
+
+/// What is between the head of a scene and its solve table.
+std::string approximated(const char* model, const std::string& bodies) {
+  return bodies + "[solve]\nt_end = 0.2\noutput_step = 0.01\ntolerance = 1e-10\nmodel = \"" +
+         model + "\"\n";
+}
+
+// Against the harmonic oscillation; and its error is that of the period, phi^2/16 of it.
+BOOST_AUTO_TEST_CASE(linear_equations_and_how_far_they_are_off) {
+  const Scratch folder;
+  const std::string rod = two_rods.substr(0, two_rods.find("[[body]]\nname = \"lower\""));
+  const std::string file = folder.write("scene.toml", approximated("linear", rod)).string();
+  const double w = std::sqrt(9.81 / 1.1);
+  for (const double begin : {0.5, 0.02}) {
+    std::string text = approximated("linear", rod);
+    text.replace(text.find("angle = 0.5"), 11, "angle = " + std::to_string(begin));
+    folder.write("scene.toml", text);
+    const json result = answer(file + " --t-end 20");
+    BOOST_TEST(result.at("model") == "linear");
+    const json& end = result.at("final").at("joints").at("upper");
+    check_near("angle", end.at("coordinate"), begin * std::cos(w * 20), 1e-13);
+    check_near("rate", end.at("rate"), -w * begin * std::sin(w * 20), 1e-13);
+    const double off = begin * begin / 16 * w * 20;
+    const double told = result.at("error_estimate");
+    if (begin < 0.1) BOOST_TEST((told > 0.8 * off && told < 1.01 * off), told << " and " << off);
+    BOOST_TEST(!result.at("tolerance_kept").get<bool>());
+  }
+}
+
+// The same rod in a ball joint: its turn goes as the angle does.
+BOOST_AUTO_TEST_CASE(linear_equations_of_an_attitude) {
+  const Scratch folder;
+  const double begin = 0.7;
+  std::string ball = two_rods.substr(0, two_rods.find("[[body]]\nname = \"lower\""));
+  ball.replace(ball.find("\"revolute\", axis = [0, 1, 0]"), 28, "\"spherical\"");
+  std::ostringstream attitude;
+  attitude.precision(17);
+  attitude << "attitude = [" << std::cos(begin / 2) << ", 0, " << std::sin(begin / 2) << ", 0]";
+  ball.replace(ball.find("angle = 0.5"), 11, attitude.str());
+  const std::string file = folder.write("scene.toml", approximated("linear", ball)).string();
+  const json end = answer(file + " --t-end 3").at("final").at("joints").at("upper");
+  const double w = std::sqrt(9.81 / 1.1);
+  const double angle = begin * std::cos(3 * w);
+  const double sign = end.at("attitude").at(0).get<double>() > 0 ? 1 : -1;
+  check_near("w", sign * end.at("attitude").at(0).get<double>(), std::cos(angle / 2), 1e-13);
+  check_near("y", sign * end.at("attitude").at(2).get<double>(), std::sin(angle / 2), 1e-13);
+  check_near("rate", end.at("angular_velocity").at(1), -w * begin * std::sin(3 * w), 1e-13);
+}
+
+// Without inertia across the spin:  H beta' + c_a alpha = 0,  -H alpha' + c_b beta = 0.
+BOOST_AUTO_TEST_CASE(precession_equations_and_how_far_they_are_off) {
+  const Scratch folder;
+  const std::string bodies = R"(
+[[body]]
+name = "outer"
+joint = { kind = "revolute", axis = [1, 0, 0] }
+mass = 0
+inertia = [0, 0, 0]
+spring = { stiffness = 2 }
+initial = { angle = 1e-3 }
+[[body]]
+name = "inner"
+parent = "outer"
+joint = { kind = "revolute", axis = [0, 1, 0] }
+mass = 0
+inertia = [0, 0, 0]
+spring = { stiffness = 3 }
+[[body]]
+name = "rotor"
+parent = "inner"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1
+inertia = [3e-4, 3e-4, 5e-4]
+rotor = { mode = "free", speed = 500 }
+)";
+  const std::string file = folder.write("scene.toml", approximated("precession", bodies)).string();
+  const json result = answer(file);
+  BOOST_TEST(result.at("model") == "precession");
+  const double H = 5e-4 * 500;
+  const double w = std::sqrt(2.0 * 3.0) / H;
+  const json& end = result.at("final").at("joints");
+  // Of third order in the angles.
+  check_near("alpha", end.at("outer").at("coordinate"), 1e-3 * std::cos(w * 0.2), 5e-9);
+  check_near("beta", end.at("inner").at("coordinate"),
+             -1e-3 * std::sqrt(2.0 / 3.0) * std::sin(w * 0.2), 5e-9);
+  // From rest the first swing misses by the nutation: rates by as much as they are.
+  std::string exact = approximated("exact", bodies);
+  const json truth = answer(folder.write("exact.toml", exact).string()).at("final").at("joints");
+  for (const char* const body : {"outer", "inner"}) {
+    const double off = std::abs(end.at(body).at("coordinate").get<double>() -
+                                truth.at(body).at("coordinate").get<double>());
+    BOOST_TEST(off <= 2e-3 * result.at("error_estimate").get<double>(), body << ": " << off);
+    BOOST_TEST(off > 0);
+  }
+  BOOST_TEST(end.at("rotor").at("coordinate") == truth.at("rotor").at("coordinate"));
+}
+
+BOOST_AUTO_TEST_CASE(refuses_equations_that_a_scene_has_not) {
+  const Scratch folder;
+  const std::string rods = two_rods.substr(0, two_rods.find("[solve]"));
+  const std::string swinging =
+      "[guide]\nkind = \"harmonic\"\nangular_velocity = { terms = [{ amplitude = [0, 0.1, 0], "
+      "frequency = 1 }] }\n" +
+      rods;
+  const std::tuple<std::string, const char*, const char*> cases[] = {
+      {approximated("precession", rods), "", "there is no rotor"},
+      {approximated("linear", swinging), "", "the guide swings"},
+      {approximated("linear", rods), " --resume", "is computed as a whole"}};
+  for (const auto& [text, option, reason] : cases) {
+    const std::string file = folder.write("scene.toml", text).string();
+    const Outcome outcome = run(file + option + " --csv " + (folder.path() / "out.csv").string());
+    BOOST_TEST(outcome.status == 2, outcome.err);
+    BOOST_TEST(outcome.err.find(reason) != std::string::npos, outcome.err);
+    BOOST_TEST(folder.size() == 1U);
   }
 }
 

@@ -1,0 +1,196 @@
+#include "steady.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <dynamics/study/equilibrium.hpp>
+#include <motor/error.hpp>
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+namespace steady_motion {
+
+Linearisation linearized(const System& system, double t, const VectorXd& y) {
+  return kreisel::linearize<kreisel::Guide, kreisel::Body>(system, t, y);
+}
+
+kreisel::Tangent tangent_of(const System& system, const VectorXd& y) {
+  return {static_cast<int>(y.size()), kreisel::quaternions(system.tree())};
+}
+
+std::vector<int> list(const Places& places, bool in) {
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(places.size()); ++i) {
+    if (places[static_cast<std::size_t>(i)] == in) result.push_back(i);
+  }
+  return result;
+}
+
+Directions::Directions(const System& system) : rates(system.tree().rates()) {
+  auto ruled = kreisel::RuledDirections::of(system.tree());
+  given = set(ruled.given);
+  held = set(ruled.held);
+  running = set(ruled.running);
+  attitudes = std::move(ruled.attitudes);
+}
+
+Places Directions::set(const std::vector<int>& directions) const {
+  Places places(2 * static_cast<std::size_t>(rates), false);
+  for (const int i : directions) places[static_cast<std::size_t>(i)] = true;
+  return places;
+}
+
+std::pair<int, int> Directions::group(int direction) const {
+  for (const int first : attitudes) {
+    if (direction >= first && direction < first + 3) return {first, 3};
+  }
+  return {direction, 1};
+}
+
+Places Directions::cyclic(const MatrixXd& here, const MatrixXd& elsewhere) const {
+  Places result(2 * static_cast<std::size_t>(rates), false);
+  const auto counts = [this](const MatrixXd& A, int i) {
+    return A.col(i).tail(rates).cwiseAbs().maxCoeff() > 1e-13 * A.norm();
+  };
+  for (int i = 0; i < rates; ++i) {
+    const auto [first, count] = group(i);
+    bool none = true;
+    for (int k = first; k < first + count; ++k) {
+      none = none && !counts(here, k) && !counts(elsewhere, k);
+    }
+    result[static_cast<std::size_t>(i)] = none;
+  }
+  return result;
+}
+
+Places Directions::without_roots(const MatrixXd& A) const {
+  Places out(given.size(), false);
+  const double zero = 1e-14 * A.norm();
+  const auto in = [](const Places& places, int i) { return places[static_cast<std::size_t>(i)]; };
+  const auto nothing_depends = [&](int i) {
+    const auto [first, count] = group(i);
+    for (int row = 0; row < 2 * rates; ++row) {
+      const bool own = count > 1 && row >= first && row < first + count;
+      if (!own && !in(out, row) && std::abs(A(row, i)) > zero) return false;
+    }
+    return true;
+  };
+  for (bool more = true; more;) {
+    more = false;
+    for (int i = 0; i < 2 * rates; ++i) {
+      if (in(out, i) || in(given, i)) continue;
+      const auto [first, count] = group(i);
+      bool all = true;
+      for (int k = first; k < first + count; ++k) all = all && nothing_depends(k);
+      if (!all) continue;
+      for (int k = first; k < first + count; ++k) out[static_cast<std::size_t>(k)] = true;
+      more = true;
+    }
+  }
+  for (const int i : list(given)) out[static_cast<std::size_t>(i)] = true;
+  return out;
+}
+
+Places joined(Places a, const Places& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = a[i] || b[i];
+  return a;
+}
+
+VectorXd off(const System& system, const VectorXd& y) {
+  const kreisel::Tangent tangent = tangent_of(system, y);
+  VectorXd eta(tangent.dimension());
+  for (Eigen::Index i = 0; i < eta.size(); ++i) {
+    eta[i] = 0.1 * std::cos(2.0 * static_cast<double>(i + 1));
+  }
+  return tangent.moved(y, eta);
+}
+
+namespace {
+
+/// Whether the linear equations stay what they are along the motion and with time.
+bool stays(const System& system, const Linearisation& linear, double t_end) {
+  const kreisel::Tangent tangent = tangent_of(system, linear.state);
+  const double fastest = linear.rate.cwiseAbs().maxCoeff();
+  std::vector<double> times{0.31 * t_end, 0.77 * t_end};
+  // So that no angle happens to have gone whole turns.
+  if (fastest * t_end > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
+  return std::all_of(times.begin(), times.end(), [&](double t) {
+    const VectorXd later = tangent.moved(linear.state, VectorXd(t * linear.rate));
+    const Linearisation then = linearized(system, t, later);
+    return (then.A - linear.A).norm() <= 1e-9 * linear.A.norm() &&
+           (then.rate - linear.rate).norm() <= 1e-9 * (1 + linear.rate.norm());
+  });
+}
+
+Steady steady_at(const System& system, const Linearisation& linear) {
+  Steady steady;
+  steady.state = linear.state;
+  const Places running = Directions(system).running;
+  const int rates = system.tree().rates();
+  for (int i = 0; i < rates; ++i) {
+    const bool counts = !running[static_cast<std::size_t>(i)];
+    steady.turns = steady.turns || (counts && std::abs(linear.rate[i]) > 1e-9);
+  }
+  return steady;
+}
+
+}  // namespace
+
+Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
+  const Linearisation at_guess = linearized(system, 0, guess);
+  const double change = at_guess.unsteadiness.norm();
+  const bool moves = at_guess.rate.norm() > 0;
+  if (moves && change <= 1e-12 * at_guess.A.norm() * at_guess.rate.norm() &&
+      stays(system, at_guess, t_end)) {
+    Steady steady = steady_at(system, at_guess);
+    steady.kind = Steady::Kind::start;
+    return steady;
+  }
+  const Directions directions(system);
+  const Places cyclic = directions.cyclic(at_guess.A, linearized(system, 0, off(system, guess)).A);
+  Places held = joined(directions.held, cyclic);
+  for (const int first : directions.attitudes) {
+    // Else Newton's steps halve the angular velocity of a body that nothing holds, down to none.
+    const int w = directions.rates + first;
+    Eigen::Index most = 0;
+    const double turns = guess.tail(directions.rates).segment(first, 3).cwiseAbs().maxCoeff(&most);
+    const bool free = cyclic[static_cast<std::size_t>(first)] && turns > 0;
+    if (free) held[static_cast<std::size_t>(w) + static_cast<std::size_t>(most)] = true;
+  }
+  Steady steady;
+  try {
+    const auto found = kreisel::find_equilibrium(
+        system, 0, guess,
+        {.held = list(held), .running = list(joined(directions.running, cyclic))});
+    const Linearisation there = linearized(system, 0, found.state);
+    if (!stays(system, there, t_end)) {
+      steady.reason =
+          "the linear equations change along the motion or with time (if periodically: --period)";
+      return steady;
+    }
+    steady = steady_at(system, there);
+    steady.residual = found.residual;
+    steady.distance = (found.state - guess).cwiseAbs().maxCoeff();
+    const bool same = steady.distance <= 1e-9 * (1 + guess.cwiseAbs().maxCoeff());
+    steady.kind = same ? Steady::Kind::start : Steady::Kind::found;
+  } catch (const kreisel::ComputationFailed& error) {
+    steady.reason = error.what();
+  }
+  return steady;
+}
+
+Steady find_steady(const System& system, const kreisel::SceneFile& scene, const VectorXd& start) {
+  Steady none;
+  if (has_link<kreisel::scene_guide::Table>(scene)) {
+    none.reason = "the guide follows a log";
+    return none;
+  }
+  if (has_link<kreisel::scene_guide::Harmonic>(scene)) {
+    none.reason = "the guide swings: the motions that stay repeat it";
+    return none;
+  }
+  return find_steady(system, start, scene.t_end);
+}
+
+}  // namespace steady_motion

@@ -1,0 +1,190 @@
+#include "approximation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/solve/error_measure.hpp>
+#include <motor/error.hpp>
+
+#include "../analyze/steady.hpp"
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+using kreisel::InvalidInput;
+using kreisel::RunStatus;
+using kreisel::Trajectory;
+
+namespace {
+
+VectorXd joined(const JointState& state) {
+  VectorXd y(state.coordinates.size() + state.rates.size());
+  y << state.coordinates, state.rates;
+  return y;
+}
+
+/// exp(A): a Taylor series where |A| is below 1/2, and squares of it; what is cut off is below
+/// 2^-17/17! of the sum.
+MatrixXd exponential(const MatrixXd& A) {
+  constexpr int terms = 16;
+  const double size = A.cwiseAbs().rowwise().sum().maxCoeff();
+  const int halvings = size > 0 ? std::max(0, std::ilogb(size) + 2) : 0;
+  const MatrixXd part = std::ldexp(1.0, -halvings) * A;
+  const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols());
+  MatrixXd sum = one;
+  for (int k = terms; k >= 1; --k) sum = one + part * sum / k;
+  for (int k = 0; k < halvings; ++k) sum = sum * sum;
+  return sum;
+}
+
+/// States of the linear equations about a steady motion.
+class LinearMotion {
+ public:
+  static constexpr const char* method = "matrix exponential";
+
+  explicit LinearMotion(const kreisel::SceneFile& scene) : system_(scene) {
+    const VectorXd start = joined(start_of(scene));
+    const Steady steady = steady_motion::find_steady(system_, scene, start);
+    if (!steady.exists()) {
+      throw InvalidInput("model 'linear': no steady motion to be linear about: " + steady.reason);
+    }
+    about_ = steady_motion::linearized(system_, 0, steady.state);
+  }
+
+  /// Throws : kreisel::ComputationFailed where the states have grown out of all numbers
+  [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
+                                             const std::vector<double>& times) const {
+    const kreisel::Tangent tangent = steady_motion::tangent_of(system_, about_.state);
+    VectorXd eta = tangent.between(about_.state, start);
+    double before = 0;
+    std::vector<VectorXd> result;
+    for (const double t : times) {
+      eta = exponential(MatrixXd((t - before) * about_.A)) * eta;
+      before = t;
+      const VectorXd steady = tangent.moved(about_.state, VectorXd(t * about_.rate));
+      result.push_back(tangent.moved(steady, eta));
+      if (!result.back().allFinite()) {
+        throw kreisel::ComputationFailed("model 'linear': the motion grows beyond all numbers");
+      }
+    }
+    return result;
+  }
+
+ private:
+  System system_;
+  steady_motion::Linearisation about_;
+};
+
+/// States of the precession equations.
+class PrecessionMotion {
+ public:
+  static constexpr const char* method = "technical equations, verner98";
+
+  explicit PrecessionMotion(const kreisel::SceneFile& scene) : system_(scene) {}
+
+  /// Throws : kreisel::InvalidInput, kreisel::ComputationFailed
+  [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
+                                             const std::vector<double>& times) const {
+    return system_.technical(start, times);
+  }
+
+ private:
+  System system_;
+};
+
+/// What ErrorMeasure wants to know of a system.
+struct Measured {
+  using Vector = VectorXd;
+  std::vector<int> blocks;
+};
+
+template <class Motion>
+class Approximation final : public Model {
+ public:
+  Approximation(const kreisel::SceneFile& scene, std::unique_ptr<Model> exact)
+      : exact_(std::move(exact)), motion_(scene) {}
+
+  [[nodiscard]] Trajectory<JointState> solve(
+      const kreisel::Task& task, const JointState& start, const Listener& listener,
+      const std::function<bool()>& interrupted) const override {
+    const auto clock = std::chrono::steady_clock::now();
+    Trajectory<JointState> result = exact_->solve(
+        task, start, [&](double, const JointState&) { return !interrupted(); }, interrupted);
+    if (result.report.status != RunStatus::complete) return result;
+    const std::vector<VectorXd> states = motion_.states(joined(start), task.times);
+    kreisel::detail::ErrorMeasure<Measured> distance({tree().blocks()}, task.smallest);
+    // Relative to the greatest size of the whole run: an approximation may begin with other rates.
+    for (const JointState& state : result.states) (void)distance(joined(state), joined(state));
+    kreisel::RunReport& report = result.report;
+    report.method = Motion::method;
+    const auto at_start = conserved(task.begin, start);
+    for (auto& invariant : report.invariants) invariant.largest = 0;
+    const Eigen::Index coordinates = tree().coordinates();
+    std::size_t done = 0;
+    for (; done < states.size() && report.status == RunStatus::complete; ++done) {
+      JointState& state = result.states[done];
+      const VectorXd exact = joined(state);
+      VectorXd y = states[done];
+      for (const auto& rotor : tree().rotors()) y[rotor.link.q] = exact[rotor.link.q];
+      const double off = distance(y, exact);
+      result.errors[done] += off;
+      report.error_estimate = std::max(report.error_estimate, result.errors[done]);
+      state = {y.head(coordinates), y.tail(tree().rates())};
+      const double t = result.times[done];
+      const auto now = conserved(t, state);
+      for (std::size_t k = 0; k < report.invariants.size(); ++k) {
+        double& largest = report.invariants[k].largest;
+        largest = std::max(largest, std::abs(now[k].second - at_start[k].second));
+      }
+      if (!listener(t, state)) report.status = RunStatus::cancelled;
+    }
+    if (done < task.times.size() && report.status == RunStatus::complete) {
+      report.status = RunStatus::failed;
+      report.message =
+          "the motion is no longer slow against the nutations, which the precession "
+          "equations leave out";
+    }
+    result.times.resize(done);
+    result.states.resize(done);
+    result.errors.resize(done);
+    report.tolerance_kept = report.error_estimate <= task.tolerance;
+    report.run_time =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    return result;
+  }
+
+  [[nodiscard]] const kreisel::BodyTree& tree() const override { return exact_->tree(); }
+  [[nodiscard]] kreisel::JointReactions reactions(double t,
+                                                  const JointState& state) const override {
+    return exact_->reactions(t, state);
+  }
+  [[nodiscard]] kreisel::ForceParts<kreisel::Body> terms(double t, const JointState& state,
+                                                         int body) const override {
+    return exact_->terms(t, state, body);
+  }
+  [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
+      double t, const JointState& state) const override {
+    return exact_->conserved(t, state);
+  }
+  [[nodiscard]] kreisel::Pose<double> pose(double t, const JointState& state,
+                                           int body) const override {
+    return exact_->pose(t, state, body);
+  }
+
+ private:
+  std::unique_ptr<Model> exact_;
+  Motion motion_;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_approximation(const kreisel::SceneFile& scene,
+                                          std::unique_ptr<Model> exact) {
+  if (scene.model == kreisel::SceneModel::linear) {
+    return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));
+  }
+  return std::make_unique<Approximation<PrecessionMotion>>(scene, std::move(exact));
+}
