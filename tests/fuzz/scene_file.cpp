@@ -1,20 +1,32 @@
-// Any bytes at all as a scene file: they are read or refused, and nothing else happens.
-//
-//   clang++ -std=c++20 -g -O1 -fsanitize=fuzzer,address,undefined
-//     -DTOML_HEADER_ONLY=0 -I. -isystem /usr/include/eigen3
-//     tests/fuzz/scene_file.cpp dynamics/file/scene_*.cpp -ltomlplusplus -lGeographicLib -o fuzz
-//   ./fuzz examples/scenes
+// Any bytes at all as a scene file: they are read or refused, numbers in them exchanged, and nothing
+// else happens.
+// ctest --preset sanitize -R fuzz runs it for a minute.
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/file/scene_numbers.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
   try {
-    (void)kreisel::parse_scene({reinterpret_cast<const char*>(data), size}, "scene.toml");
+    (void)kreisel::parse_scene(text, "scene.toml");
   } catch (const kreisel::InvalidInput&) {  // as it should be
   }
+  const std::vector<std::string> keys{"body[0].inertia[1]", "body[0].mass"};
+  std::optional<kreisel::SceneNumbers> numbers;
+  try {
+    numbers.emplace(text, keys);
+  } catch (const kreisel::InvalidInput&) {  // has not these
+    return 0;
+  }
+  // What is put into the text is what is read from it.
+  const std::vector<double> others{-1e-300, 0.1};
+  if (kreisel::SceneNumbers(numbers->with(others), keys).values() != others) std::abort();
   return 0;
 }
