@@ -9,8 +9,6 @@
 #include <csignal>
 #include <cstddef>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -23,6 +21,7 @@
 
 #include "../shared/exit_status.hpp"
 #include "../shared/progress.hpp"
+#include "../shared/text_of.hpp"
 #include "../simulate/columns.hpp"
 #include "request.hpp"
 
@@ -50,11 +49,6 @@ struct Scene {
   kreisel::SceneNumbers numbers;
   std::vector<std::string> columns;
 };
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 Scene read(const Request& request) {
   // Mistakes that all members would make.

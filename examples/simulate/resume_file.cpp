@@ -5,13 +5,14 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <system_error>
 #include <variant>
 
 #include <dynamics/file/atomic_file.hpp>
 #include <motor/error.hpp>
+
+#include "../shared/text_of.hpp"
 
 namespace {
 
@@ -29,11 +30,6 @@ class Hash {
  private:
   std::uint64_t value_ = 14695981039346656037U;
 };
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 }  // namespace
 
