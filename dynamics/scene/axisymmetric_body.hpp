@@ -10,6 +10,7 @@
 
 #include <dynamics/scene/held_body.hpp>
 #include <dynamics/scene/structure.hpp>
+#include <dynamics/scene/terms.hpp>
 #include <motor/attitude.hpp>
 
 namespace kreisel {
@@ -68,6 +69,15 @@ class AxisymmetricBody {
                                   N(as_body[5] + z * x), as_body[6], z);
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
+
+  /// What rates() computes: that of the body, on axes without its spin. See kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    Terms list = body_.terms();
+    list.add("relative", "u'_z e_z x u', for Resal's axes do not spin");
+    list.add("relative", "angle of the spin", false,
+             "a body of revolution does not feel it; it is summed up beside");
+    return list;
+  }
 
   /// The same state on the body's own axes.
   [[nodiscard]] static typename Held::State on_body_axes(const State& state) {

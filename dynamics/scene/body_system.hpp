@@ -13,6 +13,7 @@
 #include <dynamics/body/balance.hpp>
 #include <dynamics/body/passes.hpp>
 #include <dynamics/body/reaction.hpp>
+#include <dynamics/body/terms.hpp>
 #include <dynamics/guide/resting.hpp>
 
 namespace kreisel {
@@ -290,6 +291,11 @@ class BodySystem {
     detail::set_rotor_motions(tree_, rates_of(y), w.acceleration.data(), w);
     return detail::terms(tree_, detail::situation(tree_, t, guide, body, w), body,
                          detail::field(gravity_, guide), w);
+  }
+
+  /// What rates() computes of (26), whatever the state: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    return detail::equation_terms(tree_, detail::rests<M>, gravity_);
   }
 
   [[nodiscard]] BodyBalance balance(double t, const Vector& y, BodyWorkspace& w) const {

@@ -3,6 +3,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/gimbal_oscillation.hpp>
+#include <dynamics/scene/terms.hpp>
 
 namespace kreisel {
 
@@ -66,6 +67,13 @@ class FoepplGyro : public GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>> {
                   c.mass(i, i);
     }
     return dy;
+  }
+
+  /// What rates() computes: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    Terms list = Base::linear_terms_at_rest();
+    list.add("relative", "A_1 - B_1, which turns with phi", false, "the rotor is symmetric");
+    return list;
   }
 };
 template <class Rotor>

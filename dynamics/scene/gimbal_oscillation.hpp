@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include <dynamics/scene/terms.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -53,6 +54,27 @@ class GimbalOscillation {
   [[nodiscard]] static State from_vector(const Vector& y) { return {y[0], y[1], y[2], y[3]}; }
 
  protected:
+  /// What is in all such equations and what in none: see kreisel::terms.
+  [[nodiscard]] static Terms linear_terms() {
+    Terms list;
+    list.add("relative", "moments of inertia times alpha'', beta''");
+    list.add("relative", "H alpha', H beta' of the spin H = C_1 phi'");
+    list.add("relative", "products of angles and rates", false, "linear in alpha, beta and rates");
+    list.add("relative", "phi''", false, "the speed is constant; of a free rotor, to second order");
+    list.add("load", "springs and friction of the rings' bearings");
+    return list;
+  }
+
+  /// The same of those on a guide at rest.
+  [[nodiscard]] static Terms linear_terms_at_rest() {
+    Terms list = linear_terms();
+    list.add("relative", "moments of inertia of both rings");
+    for (const char* part : {"guide", "Coriolis"}) {
+      list.add(part, "u of the guide", false, "the guide does not turn");
+    }
+    return list;
+  }
+
   /// `equations` name themselves in errors.
   GimbalOscillation(Exact exact, double speed, const std::string& equations)
       : exact_(std::move(exact)), speed_(speed) {

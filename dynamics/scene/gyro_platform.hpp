@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <dynamics/body/description.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/terms.hpp>
 
 namespace kreisel {
 
@@ -241,6 +243,26 @@ struct GyroPlatform {
       r[3] -= rotor_11.about * dW[1] * b10;
     }
     return r.cwiseQuotient(J);
+  }
+
+  /// What linear_accelerations() computes: see kreisel::terms.
+  [[nodiscard]] Terms terms(PlatformEquations equations = PlatformEquations::complete) const {
+    const bool complete = equations == PlatformEquations::complete;
+    const std::string of_order = complete ? "" : "(27) keeps what has a factor L";
+    Terms list;
+    list.add("relative", "J_i alpha_i''");
+    list.add("relative", "L alpha', L beta'");
+    list.add("relative", "products of angles and rates", false, "linear in the angles");
+    list.add("guide", "J_i W'");
+    list.add("guide", "L W", true,
+             equations == PlatformEquations::printed ? "L6 W2 in row 5 with the wrong sign" : "");
+    list.add("guide", "L W times angles");
+    list.add("guide", "C W' times angles", true,
+             complete ? "" : "without those of rows 5, 7, 10 and of frames and housings");
+    list.add("guide", "J W W, J W W times angles", complete, of_order);
+    list.add("Coriolis", "J W alpha'", complete, of_order);
+    list.add("load", "Q along the five axes");
+    return list;
   }
 
  private:

@@ -3,11 +3,13 @@
 #include <Eigen/LU>
 
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/gimbal_oscillation.hpp>
+#include <dynamics/scene/terms.hpp>
 
 namespace kreisel {
 
@@ -109,6 +111,22 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
                                   c.stiffness * Eigen::Vector2d(y[0], y[1]);
     const Eigen::Vector2d acceleration = c.mass.inverse() * force;
     return {y[2], y[3], acceleration[0], acceleration[1]};
+  }
+
+  /// What rates() computes: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    const bool constant = kept_ != GuideMomentum::none;
+    const bool first_order = kept_ == GuideMomentum::first_order;
+    const std::string of_order = first_order ? "" : "of first order in alpha, beta";
+    const std::string asked = constant ? "" : "GuideMomentum::none";
+    Terms list = Base::linear_terms();
+    list.add("relative", "moments of inertia of both rings", false, "they have no mass");
+    list.add("relative", "A - B, which turns with phi");
+    list.add("Coriolis", "u x J");
+    list.add("guide", "oJ_f + u x J_f of the rotor not inclined", constant, asked);
+    list.add("guide", "g_a, g_b in J_f", first_order, of_order);
+    list.add("load", "torque C ou_z of the drive, along the inclined axis", first_order, of_order);
+    return list;
   }
 
   /// J, the rotor's momentum relative to the guide, about the point where the axes meet.

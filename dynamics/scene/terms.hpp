@@ -41,7 +41,8 @@ class Terms {
 ///
 /// A term that is kept may still be 0 in numbers: of those no type knows.
 ///
-/// Scene  : HeldBody, FreeBody, CardanGyro, EulerTop, PendulumField
+/// Every scene has them; GyroPlatform of each of its linear equations.
+///
 /// Source : the scenes' own equations, after paper 002 (5)
 template <class Scene>
 requires requires(const Scene& scene) { scene.terms(); }

@@ -10,6 +10,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/gimbal_oscillation.hpp>
+#include <dynamics/scene/terms.hpp>
 
 namespace kreisel {
 
@@ -83,6 +84,13 @@ class UnsymmetricRotor : public GimbalOscillation<CardanGyro<RestingFrame<>, Rot
 
   /// The vector field  y' = rates(t, y).
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return state_matrix(t) * y; }
+
+  /// What rates() computes: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    Terms list = Base::linear_terms_at_rest();
+    list.add("relative", "A_1 - B_1, which turns with phi");
+    return list;
+  }
 };
 template <class Rotor>
 UnsymmetricRotor(const CardanMoments&, const CardanBearings&, double, Rotor)

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/scene/terms.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/task.hpp>
 
@@ -31,6 +32,8 @@ class Model {
                                                           const JointState& state) const = 0;
   [[nodiscard]] virtual kreisel::ForceParts<kreisel::Body> terms(double t, const JointState& state,
                                                                  int body) const = 0;
+  /// Of the equation that is computed, whatever the state.
+  [[nodiscard]] virtual kreisel::Terms equation_terms() const = 0;
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const = 0;
   /// The body in the guide.

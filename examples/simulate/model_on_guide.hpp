@@ -81,6 +81,8 @@ class ModelOnGuide final : public Model {
     return system_.terms(t, vector(state), body, workspace_);
   }
 
+  [[nodiscard]] kreisel::Terms equation_terms() const override { return kreisel::terms(system_); }
+
   [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const override {
     std::vector<std::pair<std::string, double>> result;

@@ -28,26 +28,6 @@ bool has_link(const kreisel::SceneFile& scene) {
                      [](const auto& link) { return std::holds_alternative<Kind>(link); });
 }
 
-template <class Test>
-bool any_body(const kreisel::SceneFile& scene, const Test& test) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(), test);
-}
-
-template <class Test>
-bool any_force(const kreisel::SceneFile& scene, const Test& test) {
-  return any_body(scene, [&test](const kreisel::BodyDescription& body) {
-    return std::any_of(body.forces.begin(), body.forces.end(), test);
-  });
-}
-
-bool has_springs(const kreisel::SceneFile& scene) {
-  return any_force(scene, [](const kreisel::JointForce& f) { return f.stiffness != 0; });
-}
-
-bool has_dampers(const kreisel::SceneFile& scene) {
-  return any_force(scene, [](const kreisel::JointForce& f) { return f.damping != 0; });
-}
-
 std::string gravity_name(const kreisel::SceneFile& scene) {
   static constexpr const char* names[] = {
       "", "uniform on guide axes", "uniform on inertial axes",
@@ -69,6 +49,15 @@ ordered_json json(const std::vector<Term>& terms) {
   ordered_json list = ordered_json::array();
   for (const Term& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
   return list;
+}
+
+/// The terms that the equation of motion holds, or those that it does not.
+std::vector<Term> equation_terms(const Result& result, bool kept) {
+  std::vector<Term> terms;
+  for (const kreisel::Term& term : result.model.equation_terms()) {
+    if (term.kept == kept) terms.push_back({term.part + ": " + term.name, term.why});
+  }
+  return terms;
 }
 
 ordered_json final_state(const Result& result) {
@@ -96,66 +85,39 @@ ordered_json final_state(const Result& result) {
 
 void print_terms(const char* title, const std::vector<Term>& terms) {
   fmt::print("\n{}\n", title);
-  for (const Term& term : terms) fmt::print("  {:30} {}\n", term.name, term.reason);
+  for (const Term& term : terms) fmt::print("  {:56} {}\n", term.name, term.reason);
 }
 
 }  // namespace
 
-std::vector<Term> terms_kept(const kreisel::SceneFile& scene) {
-  const char* const law = scene.model == kreisel::SceneModel::linear
-                              ? "the law of every body, linear about a steady motion"
-                          : scene.model == kreisel::SceneModel::precession
-                              ? "the technical equations of all bodies together"
-                              : "the law of every body, exact in all angles";
-  std::vector<Term> terms{{"relative motion", law}};
-  const auto add = [&terms](bool is_there, const char* name, const std::string& reason) {
-    if (is_there) terms.push_back({name, reason});
-  };
-  const bool moves = !scene.rests();
-  add(moves, "guide motion", "the guide moves; its velocity and acceleration motors, exact");
-  add(moves, "Coriolis terms", "the bodies move against a guide that moves");
-  add(scene.gravity.index() != 0, "gravity", gravity_name(scene));
-  add(has_springs(scene), "springs", "as the file gives them");
-  add(has_dampers(scene), "dampers", "as the file gives them");
-  add(any_force(scene, [](const auto& f) { return f.constant != 0; }), "constant joint forces",
-      "as the file gives them");
-  add(any_body(scene, [](const auto& b) { return !b.loads.empty(); }), "loads",
-      "as the file gives them");
-  add(any_body(scene, [](const auto& b) { return b.rotor.has_value(); }), "gyroscopic torques",
-      "of the rotors");
+std::vector<Term> terms_kept(const Result& result) {
+  std::vector<Term> terms = equation_terms(result, true);
+  if (result.scene.gravity.index() != 0) terms.push_back({"gravity", gravity_name(result.scene)});
   return terms;
 }
 
-std::vector<Term> terms_dropped(const kreisel::SceneFile& scene) {
-  std::vector<Term> terms;
-  const auto add = [&terms](bool is_dropped, const char* name, const char* reason) {
-    if (is_dropped) terms.push_back({name, reason});
-  };
-  const auto of_rotor = [](kreisel::RotorMode mode) {
-    return [mode](const kreisel::BodyDescription& b) { return b.rotor && b.rotor->mode == mode; };
-  };
-  using kreisel::RotorMode;
-  add(scene.model == kreisel::SceneModel::linear, "what is not linear",
-      "in the departure from the steady motion next to the start");
-  add(scene.model == kreisel::SceneModel::precession, "nutations",
-      "accelerations across the gyroscopic moments, and terms of second order in the velocities");
-  add(scene.rests(), "guide motion", "exactly 0: the guide is inertial");
-  add(scene.rests(), "Coriolis terms", "exactly 0: the guide is inertial");
-  add(scene.gravity.index() == 0, "gravity", "none is given");
-  add(scene.gravity.index() == 3, "gravity gradient over a body",
-      "gravitation is taken at the centre of mass");
-  add(scene.gravity.index() == 4, "gravity gradient",
-      "the gravity at the site is the same for all bodies");
-  add(!has_springs(scene), "springs", "exactly 0: none is given");
-  add(!has_dampers(scene), "dampers", "exactly 0: none is given");
-  add(any_body(scene, of_rotor(RotorMode::free)), "spin of free rotors as an unknown",
-      "its cyclic momentum is constant");
-  add(any_body(scene, of_rotor(RotorMode::regulated)), "spin of regulated rotors as an unknown",
-      "its rate is given");
-  add(any_body(scene, [](const auto& b) { return b.rule == kreisel::JointRule::held; }),
-      "motion in held joints", "they are locked");
-  add(has_link<kreisel::scene_guide::Table>(scene), "motion faster than the table's samples",
-      "a spline runs through the samples");
+std::vector<Term> terms_dropped(const Result& result) {
+  const kreisel::SceneFile& scene = result.scene;
+  std::vector<Term> terms = equation_terms(result, false);
+  if (scene.model == kreisel::SceneModel::linear) {
+    terms.push_back(
+        {"what is not linear", "in the departure from the steady motion next to the start"});
+  }
+  if (scene.model == kreisel::SceneModel::precession) {
+    terms.push_back({"nutations",
+                     "accelerations across the gyroscopic moments, and terms of second order in the "
+                     "velocities"});
+  }
+  if (scene.gravity.index() == 3) {
+    terms.push_back({"gravity gradient over a body", "gravitation is taken at the centre of mass"});
+  }
+  if (scene.gravity.index() == 4) {
+    terms.push_back({"gravity gradient", "the gravity at the site is the same for all bodies"});
+  }
+  if (has_link<kreisel::scene_guide::Table>(scene)) {
+    terms.push_back(
+        {"motion faster than the table's samples", "a spline runs through the samples"});
+  }
   return terms;
 }
 
@@ -178,8 +140,8 @@ void print_json(const Result& result) {
                              {"error_estimate", json(r.error_estimate)},
                              {"tolerance_kept", r.tolerance_kept},
                              {"invariants", invariants},
-                             {"terms_kept", json(terms_kept(result.scene))},
-                             {"terms_dropped", json(terms_dropped(result.scene))},
+                             {"terms_kept", json(terms_kept(result))},
+                             {"terms_dropped", json(terms_dropped(result))},
                              {"final", final_state(result)}};
   fmt::print("{}\n", summary.dump(2));
 }
@@ -202,6 +164,6 @@ void print_summary(const Result& result) {
                       final["joints"]);
   if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);
   if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
-  print_terms("terms kept", terms_kept(result.scene));
-  print_terms("terms dropped", terms_dropped(result.scene));
+  print_terms("terms kept", terms_kept(result));
+  print_terms("terms dropped", terms_dropped(result));
 }

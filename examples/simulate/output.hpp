@@ -21,8 +21,8 @@ struct Term {
   std::string reason;
 };
 
-std::vector<Term> terms_kept(const kreisel::SceneFile& scene);
-std::vector<Term> terms_dropped(const kreisel::SceneFile& scene);
+std::vector<Term> terms_kept(const Result& result);
+std::vector<Term> terms_dropped(const Result& result);
 
 void print_summary(const Result& result);
 void print_json(const Result& result);

@@ -263,7 +263,8 @@ BOOST_AUTO_TEST_CASE(tells_reactions_and_terms_when_asked) {
   BOOST_TEST(final.at("terms").at("lower").at("coriolis").at("torque").size() == 3U);
   const Outcome text = run(file + " --reactions --terms");
   BOOST_TEST(text.status == 0);
-  for (const char* const word : {"verner98", "energy", "reactions", "terms kept", "Coriolis"}) {
+  for (const char* const word :
+       {"verner98", "energy", "reactions", "terms kept", "Coriolis", "the guide rests"}) {
     BOOST_TEST(text.out.find(word) != std::string::npos, word);
   }
   BOOST_TEST(text.err == "");

@@ -2,6 +2,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -339,6 +340,60 @@ BOOST_AUTO_TEST_CASE(tells_its_layout) {
   BOOST_TEST((lamp.q == 9 && lamp.q_count == 4 && lamp.v == 8 && lamp.v_count == 3));
   BOOST_TEST((system.blocks() == std::vector<int>{4, 3, 1, 1, 4, 3, 3, 1, 1, 3}));
   BOOST_CHECK_THROW((void)system.tree().index("mast"), InvalidInput);
+}
+
+// Kept where the first joint feels it, dropped where what it needs is not there.
+BOOST_AUTO_TEST_CASE(tells_which_terms_it_computes) {
+  const BodyDescription arm = described("arm", "guide", revolute(y_axis), some_body());
+  BodyDescription wheel =
+      described("wheel", "arm", revolute(x_axis), body(1, {0, 0, 0}, {0.2, 0.1, 0.1}));
+  wheel.rotor = Rotor{};
+  BodyDescription pushed = arm;
+  pushed.loads = {ConstantLoad<Body>{{1, 2, 3}, {0, 5, 0}}};
+  BodyDescription lid = described("lid", "arm", revolute(z_axis), some_body());
+  lid.rule = JointRule::held;
+  const RotatingFrame<> table{{0.3, -0.2, 1.1}};
+  const Gravity weight = UniformGravity<Guide>{{0, 0, -9.81}};
+  const auto turning = [&table](std::vector<BodyDescription> bodies) {
+    return BodySystem<RotatingFrame<>>(table, std::move(bodies));
+  };
+  const auto acceleration = [](const auto& system, double spin) {
+    auto state = system.rest();
+    state.coordinates[0] = 0.5;
+    state.rates[0] = 2;
+    if (state.rates.size() > 1) state.rates[1] = spin;
+    return system.rates(0.2, system.to_vector(state))[state.coordinates.size()];
+  };
+  const auto check = [](const auto& system, const char* name, double effect) {
+    for (const Term& term : terms(system)) {
+      if (term.name != name) continue;
+      BOOST_TEST(term.kept == (effect != 0), name << " does " << effect);
+      BOOST_TEST((term.kept || !term.why.empty()), name);
+      return;
+    }
+    BOOST_ERROR(name);
+  };
+  const double bare = acceleration(resting({arm}), 0);
+  for (const char* const name :
+       {"T_i *F + F x (T_i F)", "V'_i x (T_i F) + F x (T_i V'_i) + T_i (F x V'_i)"}) {
+    check(resting({arm}), name, 0);
+    check(turning({arm}), name, acceleration(turning({arm}), 0) - bare);
+  }
+  check(resting({arm}), "gravity", 0);
+  check(resting({arm}, weight), "gravity on guide axes",
+        acceleration(resting({arm}, weight), 0) - bare);
+  check(resting({arm}), "loads on bodies", 0);
+  check(resting({pushed}), "loads on bodies", acceleration(resting({pushed}), 0) - bare);
+  const auto wheeled = turning({arm, wheel});
+  check(turning({arm}), "w x l e of rotors", 0);
+  check(wheeled, "w x l e of rotors", acceleration(wheeled, 50) - acceleration(wheeled, 0));
+  check(wheeled, "angles of rotors", 0);
+  const Terms closed = terms(resting({arm, lid}));
+  const auto locked = std::find_if(closed.begin(), closed.end(), [](const Term& term) {
+    return term.name == "accelerations in joints";
+  });
+  BOOST_TEST_REQUIRE((locked != closed.end()));
+  BOOST_TEST(locked->why == "not where held or driven: 'lid'");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

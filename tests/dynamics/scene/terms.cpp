@@ -12,12 +12,17 @@
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/guide/translating.hpp>
 #include <dynamics/law/relative.hpp>
+#include <dynamics/scene/axisymmetric_body.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
+#include <dynamics/scene/foeppl.hpp>
 #include <dynamics/scene/free_body.hpp>
+#include <dynamics/scene/gyro_platform.hpp>
+#include <dynamics/scene/gyro_small_oscillations.hpp>
 #include <dynamics/scene/held_body.hpp>
 #include <dynamics/scene/pendulum.hpp>
 #include <dynamics/scene/terms.hpp>
+#include <dynamics/scene/unsymmetric_rotor.hpp>
 
 #include <support/sample.hpp>
 
@@ -252,6 +257,83 @@ BOOST_AUTO_TEST_CASE(of_a_plane_pendulum_do_what_they_are_said_to) {
   holds(terms(general), "(Theta_B - Theta_A) of u x (u x r): in H, K",
         without({{0, 0, 0}, rates, {9, 3, 0}, {}}));
   holds(terms(general), "m a g'_y: in F", without({{1, 2, 3}, rates, {9, 0, 0}, {}}));
+}
+
+// Its spin turns nothing but the angle beside.
+BOOST_AUTO_TEST_CASE(of_a_body_of_revolution_know_no_angle_of_spin) {
+  const AxisymmetricBody top(1, 0.1, 0.02, 0.01, {0, 0, 0}, RestingFrame<>{},
+                             UniformGravity<Guide>{{0, 0, -9.81}});
+  const auto y = top.to_vector({Eigen::Quaterniond(1, 0.1, 0.2, 0), {1, 2, 3}, 0});
+  auto later = y;
+  later[7] += 1;
+  holds(terms(top), "angle of the spin", (top.rates(0, later) - top.rates(0, y)).norm());
+  holds(terms(top), "s x g'", 0.1 * 9.81);
+}
+
+BOOST_AUTO_TEST_CASE(of_small_oscillations_at_rest_are_rotor_and_rings) {
+  const CardanMoments oval{{5, 6, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
+  const CardanMoments round{{5, 5, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
+  const auto check = [](const auto& gyro, const auto& bare) {
+    const auto y = gyro.to_vector({0.1, 0.2, 0.3, 0.4});
+    const Terms all = terms(gyro);
+    holds(all, "A_1 - B_1, which turns with phi", (gyro.rates(0.3, y) - gyro.rates(0.0, y)).norm());
+    holds(all, "moments of inertia of both rings",
+          (gyro.rates(0.0, y) - bare.rates(0.0, y)).norm());
+    holds(all, "u of the guide", 0);
+  };
+  check(UnsymmetricRotor<>(oval, {}, 2), UnsymmetricRotor<>({oval.rotor}, {}, 2));
+  check(FoepplGyro<>(round, {}, 2), FoepplGyro<>({round.rotor}, {}, 2));
+}
+
+BOOST_AUTO_TEST_CASE(of_small_oscillations_on_a_guide_are_as_many_as_are_asked_for) {
+  const auto shaken = [](double t) {
+    PoseDerivatives<> p;
+    p.q = Eigen::Quaterniond(1, t * t, t, 0.1 * t * t);
+    p.dq = Eigen::Quaterniond(0, 2 * t, 1, 0.2 * t);
+    p.ddq = Eigen::Quaterniond(0, 2, 0, 0.2);
+    return frame_motion<Guide, Inertial>(p);
+  };
+  using Gyro = GyroSmallOscillations<decltype(shaken)>;
+  const auto rates = [&shaken](GuideMomentum kept, const Gyro::State& s) {
+    return Gyro({5, 6, 8}, {}, 2, shaken, kept).rates(0.3, Gyro::to_vector(s));
+  };
+  for (const auto kept :
+       {GuideMomentum::none, GuideMomentum::constant, GuideMomentum::first_order}) {
+    const Terms all = terms(Gyro({5, 6, 8}, {}, 2, shaken, kept));
+    const auto effect = [&](GuideMomentum less, const Gyro::State& s) {
+      return (rates(kept, s) - rates(less, s)).norm();
+    };
+    holds(all, "oJ_f + u x J_f of the rotor not inclined", effect(GuideMomentum::none, {}));
+    if (kept == GuideMomentum::none) continue;
+    const double inclined = effect(GuideMomentum::constant, {0.1, 0.2, 0, 0});
+    holds(all, "g_a, g_b in J_f", inclined);
+    holds(all, "torque C ou_z of the drive, along the inclined axis", inclined);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_a_gyro_platform_are_those_of_its_equations) {
+  GyroPlatform p;
+  p.frame_4.moments = {1, 2, 4};
+  p.housing_5.moments = {3, 5, 6};
+  p.housing_7.moments = {2, 7, 3};
+  p.frame_9.moments = {1, 3, 8};
+  p.housing_10.moments = {4, 2, 5};
+  p.rotor_6 = p.rotor_8 = p.rotor_11 = {1, 2, 1};
+  const Vector3<double> W(0.3, 0.2, -0.4);
+  const GyroPlatform::Angles none = GyroPlatform::Angles::Zero();
+  const GyroPlatform::Angles some = GyroPlatform::Angles::LinSpaced(0.1, 0.5);
+  for (const auto equations :
+       {PlatformEquations::printed, PlatformEquations::corrected, PlatformEquations::complete}) {
+    // Without spin and W' the products J W are all that is left.
+    const auto left = [&](const GyroPlatform::Angles& rates) -> GyroPlatform::Angles {
+      return p.linear_accelerations(equations, W, {0, 0, 0}, some, rates, none);
+    };
+    const Terms all = p.terms(equations);
+    holds(all, "J W W, J W W times angles", left(none).norm());
+    holds(all, "J W alpha'", (left(some) - left(none)).norm());
+    BOOST_TEST(term(all, "L W").why.empty() == (equations != PlatformEquations::printed));
+  }
+  BOOST_TEST(terms(p).size() == p.terms(PlatformEquations::complete).size());
 }
 
 // It does not vanish: that it is left out is what somebody said.
