@@ -165,9 +165,7 @@ class Approximation final : public Model {
                                                          int body) const override {
     return exact_->terms(t, state, body);
   }
-  [[nodiscard]] kreisel::Terms equation_terms() const override {
-    return exact_->equation_terms();
-  }
+  [[nodiscard]] kreisel::Terms equation_terms() const override { return exact_->equation_terms(); }
   [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const override {
     return exact_->conserved(t, state);

@@ -104,9 +104,10 @@ std::vector<Term> terms_dropped(const Result& result) {
         {"what is not linear", "in the departure from the steady motion next to the start"});
   }
   if (scene.model == kreisel::SceneModel::precession) {
-    terms.push_back({"nutations",
-                     "accelerations across the gyroscopic moments, and terms of second order in the "
-                     "velocities"});
+    terms.push_back(
+        {"nutations",
+         "accelerations across the gyroscopic moments, and terms of second order in the "
+         "velocities"});
   }
   if (scene.gravity.index() == 3) {
     terms.push_back({"gravity gradient over a body", "gravitation is taken at the centre of mass"});
