@@ -1049,6 +1049,19 @@ BOOST_AUTO_TEST_CASE(kept_ones_carry_their_size) {
   BOOST_TEST(listed(answer.terms_kept).find("K: gravity gradient") != std::string::npos);
 }
 
+// About an upright axis gravity changes as much to one side as to the other.
+BOOST_AUTO_TEST_CASE(name_what_a_gradient_lacks) {
+  PendulumGuide<double> guide = refused::hanging;
+  guide.gravity_gradient = Eigen::Vector3d(-1e-6, -1e-6, 2e-6).asDiagonal();
+  const std::string dropped =
+      listed(deviation(PendulumBody<double>::thin_rod(0.75), guide).terms_dropped);
+  for (const char* line :
+       {"E: gravity gradient: Phi_A = Phi_B = 0\n", "H: gravity gradient: G_xy = 0 and Phi_C = 0\n",
+        "K: gravity gradient: G_xx = G_yy and Phi_C = 0\n"}) {
+    BOOST_TEST(dropped.find(line) != std::string::npos, line);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(of_a_guide_at_rest) {
   const auto answer = deviation(PendulumBody<double>::thin_rod(0.75), refused::hanging);
   BOOST_TEST(answer.terms_kept.size() == 1u);
