@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(goes_where_each_member_goes_alone) {
     const auto result = ensemble(top, {.count = 24, .seed = 3}, scattered, asked);
     const auto alone = ensemble<double>(top, {.count = 24, .seed = 3}, scattered, asked);
     for (std::size_t i = 0; i < result.members.size(); ++i) {
-      const auto& [times, states, report] = result.members[i];
+      const auto& [times, states, report, errors] = result.members[i];
       BOOST_REQUIRE(times.size() == 2U);
       MemberRandom random(3, i);
       Advance truth(top, 0, scattered(i, random), {1e-15});
@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
     using Scene = typename decltype(scene)::Scene;
     const auto result = ensemble({.count = 30, .seed = 3}, make, task);
     for (std::size_t i = 0; i < result.members.size(); ++i) {
-      const auto& [times, states, report] = result.members[i];
+      const auto& [times, states, report, errors] = result.members[i];
       BOOST_REQUIRE((report.status == RunStatus::complete));
       MemberRandom random(3, i);
       const auto own = make(i, random);
