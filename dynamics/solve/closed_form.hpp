@@ -1,25 +1,16 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
-#include <string>
 
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/gyrostat.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/scene/closed_form.hpp>
 #include <dynamics/scene/euler_top.hpp>
 
 namespace kreisel {
-
-/// A motion known in closed form: the state at any time, and how far it is off.
-template <class State>
-struct ClosedForm {
-  std::string name;
-  std::function<State(double)> at;
-  std::function<double(double)> error;  ///< by the measure of RunReport::error_estimate
-};
 
 /// The closed form of a top, where it has one: free of torque, Lagrange's, or a
 /// gyrostat whose rotor lies on a principal axis.
@@ -48,7 +39,7 @@ struct ClosedForm {
           const exact::TopMotion m = motion.at(t - begin);
           return EulerTop::State{m.attitude, m.angular_velocity};
         },
-        [rate, begin](double t) {
+        [rate, begin](double t, double /*smallest*/) {
           constexpr double u = std::numeric_limits<double>::epsilon() / 2;
           return 1.5 * u +
                  double(std::numeric_limits<exact::Real>::epsilon()) * rate * std::abs(t - begin);

@@ -89,7 +89,7 @@ template <class Scene>
   InvariantWatch<Scene> watch(scene);
   watch.note(task.begin, start);
   for (const double t : task.times) {
-    const double error = motion.error(t);
+    const double error = motion.error(t, task.smallest);
     report.error_estimate = std::max(report.error_estimate, error);
     if (!output(result, watch, task, t, motion.at(t), error)) break;
   }
@@ -116,7 +116,7 @@ template <class Scene>
 template <class Scene, class Run>
 class RunSoFar {
  public:
-  RunSoFar(Run run, bool starts_off) : run_(std::move(run)), starts_off_(starts_off) {}
+  RunSoFar(Run run, double moved) : run_(std::move(run)), moved_(moved) {}
 
   /// The state at the i-th output; they are asked for in turn, each time from the first one on.
   [[nodiscard]] const typename Scene::State& at_output(std::size_t i, double t, double end) {
@@ -124,8 +124,8 @@ class RunSoFar {
     return states_[i - first_];
   }
 
-  /// Whether it begins some last digits away from the start.
-  [[nodiscard]] bool starts_off() const { return starts_off_; }
+  /// By how many last digits its start is moved.
+  [[nodiscard]] double moved() const { return moved_; }
 
   /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
@@ -158,7 +158,7 @@ class RunSoFar {
 
  private:
   Run run_;
-  bool starts_off_;
+  double moved_;
   std::size_t first_ = 0;  ///< output it knows
   std::vector<typename Scene::State> states_;
 };
@@ -192,17 +192,18 @@ template <class Scene, class Runs>
   double digits = digits_off(task);
   double known = 0;  // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
-  const auto run_with = [&](const auto& s, bool starts_off) {
+  const auto run_with = [&](const auto& s, double moved) {
     using Run = decltype(runs.run(s, scene, start));
-    if (!starts_off) return RunSoFar<Scene, Run>(runs.run(s, scene, start), false);
+    if (moved == 0) return RunSoFar<Scene, Run>(runs.run(s, scene, start), 0);
     return RunSoFar<Scene, Run>(
-        runs.run(s, changed ? *changed : scene, off_by_last_digits(scene, start, digits)), true);
+        runs.run(s, changed ? *changed : scene, off_by_last_digits(scene, start, moved)), moved);
   };
   // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
-  // somewhere else than the one before, beside which it may go on.
+  // somewhere else than the others, beside which it may go on.
   const auto better_at_output = [&](auto& fine, std::size_t i) -> const typename Scene::State& {
     const double t = task.times[i];
-    const double stop = task.begin + (end - task.begin) / (fine.starts_off() ? 2 : 3);
+    const double part = fine.moved() > 0 ? 1.0 / 2 : fine.moved() < 0 ? 2.0 / 5 : 1.0 / 3;
+    const double stop = task.begin + part * (end - task.begin);
     return fine.at_output(i, t, (t < stop) == (end > task.begin) ? stop : end);
   };
   std::optional<Bookmark> from;
@@ -215,7 +216,7 @@ template <class Scene, class Runs>
     if (own != kind) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
-  std::optional coarse = run_with(setting, coarse_starts_off);
+  std::optional coarse = run_with(setting, coarse_starts_off ? digits : 0);
   while (true) {
     result = {};
     RunReport& report = result.report;
@@ -227,7 +228,10 @@ template <class Scene, class Runs>
     const bool last_try = runs.last(setting);
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
     if (last_try) digits = std::max(digits, 3 * digits_off(task));
-    std::optional fine = run_with(runs.finer(setting), !coarse_starts_off);
+    std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
+    // Where rounding is all that is left, two runs may agree by chance: three do so less.
+    std::optional<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> third;
+    if (last_try) third.emplace(run_with(runs.finer(setting), -digits));
     watch.note(task.begin, start);
     std::size_t done = 0;
     const auto pass_run = [&](Bookmark& numbers) {
@@ -235,6 +239,7 @@ template <class Scene, class Runs>
         numbers(done, report.error_estimate, distance, watch);
         coarse->pass(scene, done, numbers);
         fine->pass(scene, done, numbers);
+        if (third) third->pass(scene, done, numbers);
       }
     };
     const auto bookmark_here = [&] {
@@ -253,13 +258,20 @@ template <class Scene, class Runs>
     try {
       while (done < task.times.size()) {
         const double t = task.times[done];
-        const typename Scene::State& state = coarse->at_output(done, t, end);
+        const typename Scene::State& reached = coarse->at_output(done, t, end);
+        // One that was moved by last digits begins with others than were given.
+        const typename Scene::State& state = t == task.begin ? start : reached;
         if (coarse->stiff()) {
           spent += coarse->effort().evaluations + fine->effort().evaluations;
+          if (third) spent += third->effort().evaluations;
           return std::nullopt;
         }
         const typename Scene::State& better = better_at_output(*fine, done);
-        const double off = distance(scene.to_vector(state), scene.to_vector(better));
+        double off = distance(scene.to_vector(state), scene.to_vector(better));
+        if (third) {
+          const typename Scene::State& other = better_at_output(*third, done);
+          off = std::max(off, distance(scene.to_vector(state), scene.to_vector(other)));
+        }
         const double error =
             error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse->effort().steps);
         report.error_estimate = std::max(report.error_estimate, error);
@@ -284,6 +296,7 @@ template <class Scene, class Runs>
       report.message = text.str();
     }
     spent += coarse->effort().evaluations;
+    if (third) spent += third->effort().evaluations;
     // Rounding on a long way does more than to move the start by a digit.
     const double lost = runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
@@ -295,7 +308,7 @@ template <class Scene, class Runs>
       coarse_starts_off = !coarse_starts_off;
       known = 0;
       if (!fine->knows_all()) {
-        fine.emplace(run_with(setting, coarse_starts_off));
+        fine.emplace(run_with(setting, coarse_starts_off ? digits : 0));
         for (std::size_t i = 0; i <= done; ++i) better_at_output(*fine, i);
       }
       coarse.emplace(std::move(*fine));
@@ -307,7 +320,7 @@ template <class Scene, class Runs>
       known = too_coarse ? 0 : report.error_estimate;
       if (too_coarse) setting = runs.tightened(setting, task.tolerance / (2 * expected));
       coarse_starts_off = false;
-      coarse.emplace(run_with(setting, false));
+      coarse.emplace(run_with(setting, 0));
       continue;
     }
     report.effort = coarse->effort();
