@@ -2,12 +2,16 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/held_body.hpp>
+#include <dynamics/scene/physical_pendulum.hpp>
 
 #include "methods.hpp"
 #include "references.hpp"
@@ -22,35 +26,15 @@ using kreisel::Vector3;
 constexpr double earth_rate = 7.292115e-5;
 constexpr double weight = 19.62;  // m g a/Theta, 1/s^2
 
-/// A plane physical pendulum; on the earth it swings in the meridian of 45 degrees.
+/// A plane physical pendulum with that; on the earth it swings in the meridian of 45 degrees:
 ///
 ///   phi'' = -19.62 sin phi + wE^2 sin(phi - 45 deg) cos(phi - 45 deg)
-template <bool on_earth>
-struct PlanePendulum {
-  using Vector = Eigen::Vector2d;
-  struct State {
-    double angle;
-    double rate;
-  };
-
-  static constexpr std::array<int, 2> blocks = {1, 1};
-  static Vector to_vector(const State& s) { return {s.angle, s.rate}; }
-  static State from_vector(const Vector& y) { return {y[0], y[1]}; }
-
-  template <class S>
-  [[nodiscard]] Eigen::Matrix<S, 2, 1> rates(const std::type_identity_t<S>& /*t*/,
-                                             const Eigen::Matrix<S, 2, 1>& y) const {
-    using std::sin;
-    const S s = sin(y[0]);
-    S acceleration = -weight * s;
-    if constexpr (on_earth) acceleration += earth_rate * earth_rate * (s * s - 0.5);
-    return {y[1], acceleration};
-  }
-};
-
-template <bool on_earth>
-Problem<PlanePendulum<on_earth>> plane_problem(const std::string& name) {
-  return {name, {}, {0.1, 0}, {}, {}, {Unit::angle, Unit::relative}, 1.4185};
+template <class Motion>
+auto plane_problem(const std::string& name, const Motion& motion) {
+  using kreisel::PendulumBody, kreisel::PhysicalPendulum;
+  const PendulumBody<> body{.mass = 1, .arm = 0.5, .theta_b = 1, .theta_c = 1};
+  return Problem<PhysicalPendulum<Motion>>{name, PhysicalPendulum(body, motion), {0.1, 0}, {},
+                                           {},   {Unit::angle, Unit::relative},  1.4185};
 }
 
 template <class P>
@@ -60,10 +44,24 @@ void add_all(std::vector<Run>& runs, const P& problem, const Thoroughness& thoro
   methods.not_stiff();
 }
 
+/// Of a plane one, its making included.
+template <class P>
+void add_closed_form(std::vector<Run>& runs, const P& problem, const Thoroughness& thoroughness) {
+  Methods methods(runs, problem, thoroughness);
+  methods.note("closed form", 0, [](const P& p) {
+    const auto motion = closed_form(p.scene, 0, P::Scene::from_vector(p.start)).value();
+    double worst = 0;
+    for (std::size_t i = 0; i < p.times.size(); ++i) {
+      worst = std::max(worst, p.distance(i, P::Scene::to_vector(motion.at(p.times[i]))));
+    }
+    return Result{worst, 0};
+  });
+}
+
 }  // namespace
 
 void pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
-  auto problem = plane_problem<false>("pendulum");
+  auto problem = plane_problem("pendulum", kreisel::RestingPendulumGuide<>{2 * weight});
   const kreisel::exact::PendulumMotion truth(weight, 0.1, 0);
   const double end = 1000 * truth.period();
   // Quarters but for a bit: at rest and upright an error of time would not show.
@@ -73,14 +71,19 @@ void pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
     problem.truth.push_back({m.angle, m.rate});
   }
   add_all(runs, problem, thoroughness);
+  add_closed_form(runs, problem, thoroughness);
 }
 
 void earth_pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
-  auto problem = plane_problem<true>("earth_pendulum");
+  const double across = earth_rate * std::sqrt(0.5);
+  auto problem = plane_problem("earth_pendulum",
+                               kreisel::PendulumGuide<>{.angular_velocity = {across, across, 0},
+                                                        .effective_gravity = {2 * weight, 0, 0}});
   const Reference all = reference("S3_earthpend");
   problem.times = all.times;
   for (const auto& s : all.states) problem.truth.push_back({s[0], s[1]});
   add_all(runs, problem, thoroughness);
+  add_closed_form(runs, problem, thoroughness);
 }
 
 /// The reference counts the rate absolute, HeldBody against the earth.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <vector>
 
@@ -128,6 +129,36 @@ struct ShiftedMoment {
   }
 };
 
+/// A swing between two turning points, told by its phase  theta:
+///   x = (left + right)/2 - (right - left)/2 cos(theta)
+template <class S>
+struct Swing {
+  ShiftedMoment<S> moment;
+  S left, right;
+  S theta_c;
+
+  struct Pace {
+    S time;       ///< dt/dtheta
+    S condition;  ///< how much of its rounding the moment's is
+  };
+
+  /// Of the phase whose half has this sine and cosine. Smooth and even in theta: with Q = (U_right -
+  /// U)/((right - x)(x - left)) it is 1/sqrt(2 Q/Theta_C).
+  [[nodiscard]] Pace pace(const S& sin_half, const S& cos_half) const {
+    using std::sqrt;
+    // Distances to the ends and the difference from the nearer end, each without cancellation.
+    const S radius = (right - left) / S(2);
+    const S to_right = radius * cos_half * cos_half;  // half of right - x
+    const S to_left = radius * sin_half * sin_half;   // half of x - left
+    const bool nearer_right = to_right <= to_left;
+    const S m = nearer_right ? S(right - to_right) : S(left + to_left);
+    const S d = nearer_right ? to_right : to_left;
+    const S slope = moment.slope(m, d);
+    const S q = nearer_right ? S(slope / to_left) : S(-slope / to_right);  // 2 Q
+    return {S(1) / sqrt(S(q / theta_c)), moment.condition(m, d, slope)};
+  }
+};
+
 template <class S>
 [[noreturn]] void fail_at_separatrix(const S& angle) {
   std::ostringstream text;
@@ -138,41 +169,46 @@ template <class S>
   throw ComputationFailed(text.str());
 }
 
-/// Where a pendulum that falls from `release` towards smaller x has climbed to the same height
-/// again.
+/// Where a pendulum that goes from `start` towards smaller x, with so much kinetic energy, comes to
+/// rest; nothing if it turns over.
 ///
-/// `stops` are the equilibria below `release`, descending, over at least one turn: U is monotone
+/// `stops` are the equilibria below `start`, descending, over at least one turn: U is monotone
 /// between.
 template <class S>
-[[nodiscard]] S climb(const ShiftedMoment<S>& moment, const S& release, const std::vector<S>& stops,
-                      const S& sense, const S& phi_0) {
+[[nodiscard]] std::optional<S> climb(const ShiftedMoment<S>& moment, const S& start,
+                                     const S& kinetic, const std::vector<S>& stops, const S& sense,
+                                     const S& phi_0) {
   using std::abs;
-  const auto mean_slope = [&](const S& x) {
-    return moment.slope(S((release + x) / S(2)), S((release - x) / S(2)));
+  // What is left of the kinetic energy at x.
+  const auto left = [&](const S& x) {
+    return kinetic + (start - x) * moment.slope(S((start + x) / S(2)), S((start - x) / S(2)));
   };
   const S epsilon = std::numeric_limits<S>::epsilon();
-  S high = release;
-  S low = release;
+  S high = start;
+  S low = start;
+  S at_low(0);
   for (const S& stop : stops) {
     high = low;
     low = stop;
-    const S slope = mean_slope(stop);
-    if (abs(slope) <= S(4) * epsilon * moment.size() * (release - stop)) {
+    at_low = left(stop);
+    const S way = start - stop;
+    if (abs(at_low) <= S(4) * epsilon * (kinetic + moment.size() * way * way)) {
       fail_at_separatrix(S(phi_0 + sense * stop));
     }
-    if (slope < S(0)) break;
+    if (at_low < S(0)) break;
   }
-  // Newton on the height U(release) - U(x) = (release - x) mean_slope(x), kept in the bracket.
-  S x = -release > low && -release < high ? S(-release) : S((low + high) / S(2));
+  if (!(at_low < S(0))) return {};
+  // Newton's method, kept in the bracket.
+  S x = -start > low && -start < high ? S(-start) : S((low + high) / S(2));
   S last_step = high - low;
   for (int i = 0; i < 2 * std::numeric_limits<S>::digits + 100; ++i) {
-    const S slope = mean_slope(x);
-    if (slope > S(0)) {
+    const S energy = left(x);
+    if (energy > S(0)) {
       high = x;
     } else {
       low = x;
     }
-    S next = x + (release - x) * slope / moment.moment(x);
+    S next = x + energy / moment.moment(x);
     const bool good = next >= low && next <= high && abs(S(next - x)) <= last_step / S(2);
     if (!good) next = (low + high) / S(2);
     last_step = abs(S(next - x));
@@ -241,23 +277,18 @@ template <class S>
     }
   }
   std::sort(stops.begin(), stops.end(), [](const S& a, const S& b) { return a > b; });
-  const S other = detail::climb(moment, release, stops, sense, equilibrium.angle);
+  const std::optional<S> climbed =
+      detail::climb(moment, release, S(0), stops, sense, equilibrium.angle);
+  // At rest it does not turn over: what is left at the barrier is rounding.
+  if (!climbed) detail::fail_at_separatrix(S(equilibrium.angle + sense * stops.back()));
+  const S other = *climbed;
 
-  const S radius = (release - other) / S(2);
+  const detail::Swing<S> swing{moment, other, release, body.theta_c};
   S worst_condition(1);
   const auto integrand = [&](const S& s) {
-    // Distances to the ends and the difference from the nearer end, each without cancellation.
-    const S to_right = sin(S(pi / S(4) - s / S(2)));
-    const S to_left = sin(S(pi / S(4) + s / S(2)));
-    const S right = radius * to_right * to_right;  // half of release - x
-    const S left = radius * to_left * to_left;     // half of x - other
-    const bool nearer_right = s >= S(0);
-    const S m = nearer_right ? S(release - right) : S(other + left);
-    const S d = nearer_right ? right : left;
-    const S slope = moment.slope(m, d);
-    worst_condition = std::max(worst_condition, moment.condition(m, d, slope));
-    const S q = nearer_right ? S(slope / left) : S(-slope / right);  // 2 Q
-    return S(1) / sqrt(S(q / body.theta_c));
+    const auto pace = swing.pace(sin(S(pi / S(4) + s / S(2))), sin(S(pi / S(4) - s / S(2))));
+    worst_condition = std::max(worst_condition, pace.condition);
+    return pace.time;
   };
 
   // The rule's error is squared by each doubling, up to a factor: 1e4 allows for a slow start.

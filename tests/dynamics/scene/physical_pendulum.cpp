@@ -1,0 +1,215 @@
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/scene/physical_pendulum.hpp>
+#include <dynamics/solve/solve.hpp>
+
+#include <support/reference_file.hpp>
+
+using namespace kreisel;
+
+namespace {
+
+using Digits50 = boost::multiprecision::cpp_bin_float_50;
+
+constexpr double u = 0x1p-53;
+constexpr double earth_rate = 7.292115e-5;
+
+/// phi.. = -19.62 sin phi, held still.
+const PendulumBody<> rod{.mass = 1, .arm = 0.5, .theta_b = 1, .theta_c = 1};
+const RestingPendulumGuide<> room{39.24};
+
+/// The same in the meridian of 45 degrees on the turning earth.
+PendulumGuide<> meridian() {
+  const double across = earth_rate * std::sqrt(0.5);
+  return {.angular_velocity = {across, across, 0}, .effective_gravity = {39.24, 0, 0}};
+}
+
+struct Series {
+  std::array<Digits50, 42> terms = {};
+
+  Digits50& operator[](std::size_t i) { return terms[i]; }
+};
+
+/// phi.. = -(E sin phi + F cos phi + H cos 2 phi + K sin 2 phi) by Taylor series in 50 digits.
+std::array<Digits50, 2> by_series(const PendulumCoefficients<>& c, double angle, double rate,
+                                  double end, int steps) {
+  constexpr std::size_t order = 40;
+  const Digits50 h = Digits50(end) / steps;
+  std::array<Digits50, 2> state{angle, rate};
+  const Digits50 e = Digits50(c.weight) + c.delta_e;
+  for (int step = 0; step < steps; ++step) {
+    Series y, s, co, s2, c2;
+    y[0] = state[0];
+    y[1] = state[1];
+    s[0] = sin(y[0]);
+    co[0] = cos(y[0]);
+    s2[0] = 2 * s[0] * co[0];
+    c2[0] = co[0] * co[0] - s[0] * s[0];
+    for (std::size_t n = 0; n < order; ++n) {
+      for (std::size_t j = 1; j <= n; ++j) {
+        const Digits50 slope = y[j] * Digits50(j) / Digits50(n);
+        s[n] += slope * co[n - j];
+        co[n] -= slope * s[n - j];
+        s2[n] += 2 * slope * c2[n - j];
+        c2[n] -= 2 * slope * s2[n - j];
+      }
+      const Digits50 pull = e * s[n] + c.f * co[n] + c.h * c2[n] + c.k * s2[n];
+      y[n + 2] = -pull / Digits50((n + 1) * (n + 2));
+    }
+    state = {0, 0};
+    for (std::size_t n = order + 2; n-- > 0;) {
+      state[1] = state[1] * h + state[0];
+      state[0] = state[0] * h + y[n];
+    }
+  }
+  return state;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(physical_pendulum)
+
+// 1000 periods in 25 digits.
+BOOST_AUTO_TEST_CASE(on_the_earth_reaches_the_reference) {
+  const auto reference = test::reference_file("ode-scenes.json").at("scenes").at("S3_earthpend");
+  const PhysicalPendulum pendulum(rod, meridian());
+  Task task{.times = {}, .tolerance = 1e-14};
+  for (const auto& t : reference["times"]) task.times.push_back(t.get<double>());
+  const auto run = solve(pendulum, {.angle = 0.1}, task);
+  BOOST_TEST(run.report.method == "energy integral, Fourier series");
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(run.report.error_estimate <= 1e-14);
+  BOOST_REQUIRE(run.states.size() == task.times.size());
+  for (std::size_t i = 0; i < run.states.size(); ++i) {
+    const auto& truth = reference["states"][i];
+    const double angle = std::stod(truth[0].get<std::string>());
+    const double rate = std::stod(truth[1].get<std::string>());
+    BOOST_TEST(std::abs(run.states[i].angle - angle) <= run.errors[i] * 0.1);
+    BOOST_TEST(std::abs(run.states[i].rate - rate) <= run.errors[i] * 0.44);
+  }
+  BOOST_REQUIRE(run.report.invariants.size() == 1U);
+  BOOST_TEST(run.report.invariants[0].largest <= 16 * u * run.report.invariants[0].start);
+}
+
+// Elliptic functions, which know nothing of phases and series: swings of 1e-9 to 3 rad, and turning over.
+BOOST_AUTO_TEST_CASE(held_still_moves_as_elliptic_functions_say) {
+  const PhysicalPendulum pendulum(rod, room);
+  using State = decltype(pendulum)::State;
+  double worst = 0;
+  for (const State start :
+       {State{1e-9, 0}, State{0, 1e-7}, State{0.1, 1e-12}, State{-1, 0.5}, State{2, 0},
+        State{2.9, 0}, State{0.5, 9.5}, State{-4, -20}, State{1, 100}, State{7, -0.25}}) {
+    const exact::PendulumMotion truth(19.62, start.angle, start.rate);
+    const double period = truth.period();
+    const auto run =
+        solve(pendulum, start,
+              {.times = {0.01 * period, 0.25 * period, 10.7 * period, 12345.6 * period},
+               .tolerance = 1e-12,
+               .smallest = 0});
+    BOOST_TEST(run.report.method == "energy integral, Fourier series");
+    double greatest_angle = 0;
+    double greatest_rate = 0;
+    for (std::size_t i = 0; i < run.times.size(); ++i) {
+      const auto [angle, rate] = truth.at(run.times[i]);
+      greatest_angle = std::max(greatest_angle, std::abs(angle));
+      greatest_rate = std::max(greatest_rate, std::abs(rate));
+      const double off = std::max(std::abs(run.states[i].angle - angle) / greatest_angle,
+                                  std::abs(run.states[i].rate - rate) / greatest_rate);
+      // The elliptic functions err by 1.5u themselves.
+      worst = std::max(worst, off / (run.errors[i] + 4 * u));
+      BOOST_TEST(off <= run.errors[i] + 4 * u);
+    }
+  }
+  BOOST_TEST_MESSAGE("against elliptic functions: at most " << worst << " of what is told");
+}
+
+// Any E, F, H and K: one well or two, swings over one or both, and turning over, against Taylor series.
+BOOST_AUTO_TEST_CASE(moves_as_taylor_series_say) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  double worst = 0;
+  int swings = 0;
+  for (int i = 0; i < 12; ++i) {
+    const double e = any(random);
+    const PendulumCoefficients<> c{std::abs(e), e - std::abs(e), any(random), 2 * any(random),
+                                   2 * any(random)};
+    const double angle = 3 * any(random);
+    const double rate = (i % 3) * 1.5 * any(random);
+    const SteadyPendulumMotion<exact::Real> motion(
+        {.arm = 1, .theta_c = 1},
+        {exact::Real(c.weight), exact::Real(c.delta_e), exact::Real(c.f), exact::Real(c.h),
+         exact::Real(c.k)},
+        angle, rate);
+    constexpr double end = 12;
+    const auto truth = by_series(c, angle, rate, end, 100);
+    const auto point = motion.at(end);
+    const exact::Real off =
+        std::max(std::abs(point.angle - exact::Real(truth[0])) / motion.angle_per_phase(),
+                 std::abs(point.rate - exact::Real(truth[1])) / motion.rate_per_phase());
+    const double told = double(motion.phase_error(end));
+    worst = std::max(worst, double(off) / told);
+    BOOST_TEST(double(off) <= told);
+    BOOST_TEST(told <= 1e-14);
+    if (motion.angle_per_phase() != 1) ++swings;
+  }
+  BOOST_TEST(swings >= 6);
+  BOOST_TEST(swings <= 11);
+  BOOST_TEST_MESSAGE("against Taylor series: at most " << worst << " of what is told");
+}
+
+// So near a barrier that the series is too long, steps take over; so they do at rest and in a fall without end.
+BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_the_series_ends) {
+  const PhysicalPendulum pendulum(rod, room);
+  for (const double rate : {2 * std::sqrt(19.62), 2 * std::sqrt(19.62) * (1 + 1e-9), 0.0}) {
+    const auto run = solve(pendulum, {.rate = rate}, {.times = {0.1, 3}, .tolerance = 1e-8});
+    BOOST_TEST(run.report.method == "verner98");
+    BOOST_TEST(run.report.tolerance_kept);
+    const auto truth = exact::PendulumMotion(19.62, 0, rate).at(3);
+    BOOST_TEST(std::abs(run.states[1].angle - truth.angle) <= 1e-8 * std::abs(truth.angle));
+  }
+}
+
+// With damping, and on a guide that moves, there are steps; the equation is that of PendulumField.
+BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
+  const auto brake = [](const auto& rate) { return 0.1 * rate; };
+  const PhysicalPendulum damped(rod, room, brake);
+  const auto slow =
+      solve(damped, {.angle = 1e-6}, {.times = {2}, .tolerance = 1e-10, .smallest = 1e-12});
+  // Small: a damped oscillation in closed form.
+  const double w = std::sqrt(19.62 - 0.05 * 0.05);
+  const double angle = 1e-6 * std::exp(-0.1) * (std::cos(2 * w) + 0.05 / w * std::sin(2 * w));
+  BOOST_TEST(slow.report.tolerance_kept);
+  BOOST_TEST(slow.report.invariants.empty());
+  BOOST_TEST(std::abs(slow.states[0].angle - angle) <= 2e-16);
+
+  // The guide turns about the pendulum's axis as fast as it likes: against the room phi + its angle
+  // moves on its own.
+  const auto turning = [](double t) {
+    return PendulumGuide<>{.angular_velocity = {0, 0, 0.3 * t},
+                           .angular_acceleration = {0, 0, 0.3}};
+  };
+  const PhysicalPendulum carried(rod, turning);
+  const auto run = solve(carried, {.angle = 0.2, .rate = 1}, {.times = {5}, .tolerance = 1e-12});
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(std::abs(run.states[0].angle - (0.2 + 5 - 0.15 * 25)) <= 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
+  BOOST_CHECK_THROW(PhysicalPendulum({.arm = -1}, room), InvalidInput);
+  BOOST_CHECK_THROW(PhysicalPendulum({.arm = 1, .theta_c = 0.5}, room), InvalidInput);
+  BOOST_CHECK_THROW(solve(PhysicalPendulum(rod, room), {.angle = NAN}, {.times = {1}}),
+                    InvalidInput);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
