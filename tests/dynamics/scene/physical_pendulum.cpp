@@ -91,13 +91,18 @@ BOOST_AUTO_TEST_CASE(on_the_earth_reaches_the_reference) {
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(run.report.error_estimate <= 1e-14);
   BOOST_REQUIRE(run.states.size() == task.times.size());
+  double worst = 0;
   for (std::size_t i = 0; i < run.states.size(); ++i) {
     const auto& truth = reference["states"][i];
-    const double angle = std::stod(truth[0].get<std::string>());
-    const double rate = std::stod(truth[1].get<std::string>());
-    BOOST_TEST(std::abs(run.states[i].angle - angle) <= run.errors[i] * 0.1);
-    BOOST_TEST(std::abs(run.states[i].rate - rate) <= run.errors[i] * 0.44);
+    const double angle = test::number(truth[0]);
+    const double rate = test::number(truth[1]);
+    const double off = std::max(std::abs(run.states[i].angle - angle) / 0.1,
+                                std::abs(run.states[i].rate - rate) / 0.443);
+    worst = std::max(worst, off);
+    BOOST_TEST(off <= run.errors[i]);
   }
+  BOOST_TEST_MESSAGE("1000 periods on the earth: off by " << worst << ", told "
+                                                          << run.report.error_estimate);
   BOOST_REQUIRE(run.report.invariants.size() == 1U);
   BOOST_TEST(run.report.invariants[0].largest <= 16 * u * run.report.invariants[0].start);
 }
