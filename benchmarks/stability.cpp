@@ -28,8 +28,9 @@ namespace {
 
 std::vector<Case> chosen(const std::string& wanted) {
   std::vector<Case> all;
-  for (const AddCases add : {&tops, &heavy_tops, &held_bodies, &free_bodies, &fast_bodies, &gyros,
-                             &rotors, &systems, &plane_motions, &steppers, &guides, &inputs}) {
+  for (const AddCases add :
+       {&tops, &heavy_tops, &held_bodies, &free_bodies, &fast_bodies, &gyros, &rotors, &systems,
+        &plane_motions, &pendulum_scene, &steppers, &guides, &inputs}) {
     add(all);
   }
   if (wanted == "all") return all;

@@ -85,6 +85,7 @@ void gyros(std::vector<Case>& cases);
 void rotors(std::vector<Case>& cases);
 void systems(std::vector<Case>& cases);
 void plane_motions(std::vector<Case>& cases);
+void pendulum_scene(std::vector<Case>& cases);
 void steppers(std::vector<Case>& cases);
 void guides(std::vector<Case>& cases);
 void inputs(std::vector<Case>& cases);

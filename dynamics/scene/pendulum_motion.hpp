@@ -192,6 +192,9 @@ class SteadyPendulumMotion {
       S sum(0);
       for (const S& pace : paces) sum += pace;
       pace_ = sum / S(double(n));
+      if (!(pace_ > S(0) && pace_ <= std::numeric_limits<S>::max())) {
+        throw ComputationFailed("the pendulum's period is not a number: its motion is too small");
+      }
       sine_terms_.clear();
       cosine_terms_.clear();
       const S small = S(4) * epsilon * condition_ * pace_;

@@ -178,10 +178,11 @@ template <class S>
 [[nodiscard]] std::optional<S> climb(const ShiftedMoment<S>& moment, const S& start,
                                      const S& kinetic, const std::vector<S>& stops, const S& sense,
                                      const S& phi_0) {
-  using std::abs;
-  // What is left of the kinetic energy at x.
+  using std::abs, std::sqrt;
+  // What is left of the kinetic energy at x, over the way to it: of tiny swings both would underflow.
   const auto left = [&](const S& x) {
-    return kinetic + (start - x) * moment.slope(S((start + x) / S(2)), S((start - x) / S(2)));
+    const S slope = moment.slope(S((start + x) / S(2)), S((start - x) / S(2)));
+    return kinetic == S(0) ? slope : S(kinetic / (start - x) + slope);
   };
   const S epsilon = std::numeric_limits<S>::epsilon();
   S high = start;
@@ -192,23 +193,27 @@ template <class S>
     low = stop;
     at_low = left(stop);
     const S way = start - stop;
-    if (abs(at_low) <= S(4) * epsilon * (kinetic + moment.size() * way * way)) {
+    if (abs(at_low) <= S(4) * epsilon * (kinetic / way + moment.size() * way)) {
       fail_at_separatrix(S(phi_0 + sense * stop));
     }
     if (at_low < S(0)) break;
   }
   if (!(at_low < S(0))) return {};
-  // Newton's method, kept in the bracket.
-  S x = -start > low && -start < high ? S(-start) : S((low + high) / S(2));
+  // Newton's method, kept in the bracket, from where a spring of the stiffness at x = 0 would stop:
+  // from afar it takes a step for each factor 2 that the swing is small.
+  const S stiffness = moment.e + S(2) * moment.k;
+  const S spring =
+      kinetic == S(0) ? S(-abs(start)) : S(-sqrt(S(start * start + S(2) * kinetic / stiffness)));
+  S x = spring > low && spring <= high ? spring : S((low + high) / S(2));
   S last_step = high - low;
   for (int i = 0; i < 2 * std::numeric_limits<S>::digits + 100; ++i) {
-    const S energy = left(x);
-    if (energy > S(0)) {
+    const S slope = left(x);
+    if (slope > S(0)) {
       high = x;
     } else {
       low = x;
     }
-    S next = x + energy / moment.moment(x);
+    S next = x + (start - x) * slope / moment.moment(x);
     const bool good = next >= low && next <= high && abs(S(next - x)) <= last_step / S(2);
     if (!good) next = (low + high) / S(2);
     last_step = abs(S(next - x));
