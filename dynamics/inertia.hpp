@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include <array>
 #include <cmath>
@@ -73,6 +73,16 @@ template <class S>
           -(a.y() * b.z() + a.z() * b.y())};
 }
 
+namespace detail {
+
+/// k a a^t
+[[nodiscard]] inline Symmetric3<> square(const Vector3<double>& a, double k) {
+  const Vector3<double> b = k * a;
+  return {a.x() * b.x(), a.y() * b.y(), a.z() * b.z(), a.x() * b.y(), a.x() * b.z(), a.y() * b.z()};
+}
+
+}  // namespace detail
+
 /// The inertia of a rigid body as a motor tensor: ten numbers instead of 36.
 ///
 ///   T (u; v) = {m v + u x s; s x v + Theta u},   s = m r_s first moment, Theta about the origin
@@ -109,9 +119,11 @@ struct Inertia {
 
   /// Two bodies rigidly joined, both reduced at the same origin on the same axes.
   friend Inertia operator+(const Inertia& a, const Inertia& b) {
+    using detail::operator+;
     return {a.mass + b.mass, a.first_moment + b.first_moment, a.tensor + b.tensor};
   }
   friend Inertia operator-(const Inertia& a, const Inertia& b) {
+    using detail::operator-;
     return {a.mass - b.mass, a.first_moment - b.first_moment, a.tensor - b.tensor};
   }
   friend Inertia operator-(const Inertia& a) { return Inertia{} - a; }
@@ -120,10 +132,12 @@ struct Inertia {
   ///
   /// Theta' = R Theta R^t + offset_product(R s, x) + m offset_product(x, x) / 2
   friend Inertia operator*(const Pose<S>& X, const Inertia& T) {
+    using detail::operator+, detail::operator*;
     const Vector3<S> s = detail::product(X.rotation, T.first_moment);
     const Vector3<S>& x = X.translation;
+    const S half = T.mass / S(2);
     return {T.mass, s + T.mass * x,
-            T.tensor.turned(X.rotation) + offset_product(x, Vector3<S>(s + (T.mass / S(2)) * x))};
+            T.tensor.turned(X.rotation) + offset_product(x, Vector3<S>(s + half * x))};
   }
 };
 
@@ -140,6 +154,48 @@ template <class S>
               offset_product(T.first_moment, V.moment)};
 }
 
+namespace detail {
+
+/// A symmetric positive definite 3x3 matrix made ready to solve: L D L^t, without pivoting, which
+/// such matrices do without. Eigen's takes the compiler longer than a whole scene.
+template <class S = double>
+class FactoredSymmetric3 {
+ public:
+  FactoredSymmetric3() = default;
+
+  explicit FactoredSymmetric3(const Symmetric3<S>& m) : yx_(m.xy / m.xx), zx_(m.xz / m.xx) {
+    const S yy = m.yy - yx_ * m.xy;
+    const S yz = m.yz - yx_ * m.xz;
+    zy_ = yz / yy;
+    pivots_ = {m.xx, yy, m.zz - zx_ * m.xz - zy_ * yz};
+  }
+
+  /// D: none is smaller than the least eigenvalue. Behind one that is 0 stand no numbers.
+  [[nodiscard]] const Vector3<S>& pivots() const { return pivots_; }
+
+  /// A vector x for which  x^t m x  is the k-th pivot.
+  [[nodiscard]] Vector3<S> witness(int k) const {
+    if (k == 0) return {S(1), S(0), S(0)};
+    if (k == 1) return {-yx_, S(1), S(0)};
+    return {yx_ * zy_ - zx_, -zy_, S(1)};
+  }
+
+  [[nodiscard]] Vector3<S> solve(const Vector3<S>& b) const {
+    const S half = b.y() - yx_ * b.x();
+    const S z = (b.z() - zx_ * b.x() - zy_ * half) / pivots_.z();
+    const S y = half / pivots_.y() - zy_ * z;
+    return {b.x() / pivots_.x() - yx_ * y - zx_ * z, y, z};
+  }
+
+ private:
+  S yx_ = S(0);
+  S zx_ = S(0);
+  S zy_ = S(0);
+  Vector3<S> pivots_ = {S(1), S(1), S(1)};
+};
+
+}  // namespace detail
+
 /// An inertia made ready to solve  T A = P  for A: the acceleration of a free body under a force.
 ///
 /// Throws : ComputationFailed when T is singular (mass 0, point, needle), naming what is missing
@@ -151,11 +207,12 @@ class FactoredInertia {
   explicit FactoredInertia(const Inertia<S>& T) : mass_(T.mass) {
     if (!(T.mass > S(0))) throw ComputationFailed("Inertia: solve needs a mass above 0");
     centre_ = T.first_moment / T.mass;
-    const Matrix3<S> about_centre =
-        (T.tensor - offset_product(centre_, Vector3<S>(T.first_moment / S(2)))).matrix();
-    factor_.compute(about_centre);
-    const Vector3<S> pivots = factor_.vectorD();
-    if (!(pivots.minCoeff() > std::numeric_limits<S>::epsilon() * T.tensor.matrix().trace())) {
+    const Symmetric3<S>& t = T.tensor;
+    factor_ = detail::FactoredSymmetric3<S>(
+        t - offset_product(centre_, Vector3<S>(T.first_moment / S(2))));
+    const S rounding = std::numeric_limits<S>::epsilon() * (t.xx + t.yy + t.zz);
+    for (int k = 0; k < 3; ++k) {
+      if (factor_.pivots()[k] > rounding) continue;
       throw ComputationFailed(
           "Inertia: the tensor about the centre of mass is singular (a point or a needle): its "
           "rotation is not determined by the force");
@@ -163,14 +220,14 @@ class FactoredInertia {
   }
 
   [[nodiscard]] Motor<S> solve(const Motor<S>& P) const {
-    const Vector3<S> du = factor_.solve(Vector3<S>(P.moment - centre_.cross(P.resultant)));
+    const Vector3<S> du = factor_.solve(P.moment - centre_.cross(P.resultant));
     return {du, P.resultant / mass_ - du.cross(centre_)};
   }
 
  private:
   S mass_;
   Vector3<S> centre_;
-  Eigen::LDLT<Matrix3<S>> factor_;
+  detail::FactoredSymmetric3<S> factor_;
 };
 
 /// Solves  T A = P  for A, once.

@@ -16,17 +16,6 @@ struct ArticulatedInertia {
 
 [[nodiscard]] inline double trace(const Symmetric3<>& m) { return m.xx + m.yy + m.zz; }
 
-/// m - a a^t k
-inline void take_square(Symmetric3<>& m, const Vector3<double>& a, double k) {
-  const Vector3<double> b = k * a;
-  m.xx -= a.x() * b.x();
-  m.yy -= a.y() * b.y();
-  m.zz -= a.z() * b.z();
-  m.xy -= a.x() * b.y();
-  m.xz -= a.x() * b.z();
-  m.yz -= a.y() * b.z();
-}
-
 /// Adds the ten numbers of a rigid body.
 inline void add(ArticulatedInertia& A, const Inertia<>& T) {
   const Vector3<double>& s = T.first_moment;
@@ -75,8 +64,8 @@ inline void add_shifted(ArticulatedInertia& A, const Vector3<double>& r,
 
 /// A -= U U^t k, for a force motor U.
 inline void take_square(ArticulatedInertia& A, const Motor<>& U, double k) {
-  take_square(A.linear, U.resultant, k);
-  take_square(A.angular, U.moment, k);
+  A.linear = A.linear - square(U.resultant, k);
+  A.angular = A.angular - square(U.moment, k);
   const Vector3<double> n = k * U.moment;
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) A.mixed(r, c) -= n[r] * U.resultant[c];

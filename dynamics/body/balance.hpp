@@ -50,7 +50,7 @@ namespace detail {
                                             const BodyWorkspace& w) {
   const RotorLink& r = tree.rotors()[rotor];
   const Vector3<double> turn = w.place[carrier(r)].V.resultant + guide.V.value.resultant;
-  return momentum_weight(r, v[r.link.v], w.pose[tree.rotor_slot(rotor)].axis.dot(turn));
+  return momentum_weight(r, v[r.link.v], dot(w.pose[tree.rotor_slot(rotor)].axis, turn));
 }
 
 /// What rotors add by their spin to what moves with their carriers.
@@ -61,8 +61,8 @@ inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const doubl
     const auto c = static_cast<std::size_t>(rotor.link.parent);
     const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
     const double rate = v[rotor.link.v];
-    const double relative = e.dot(w.place[c].V.resultant);
-    const double absolute = relative + e.dot(guide.V.value.resultant);
+    const double relative = dot(e, w.place[c].V.resultant);
+    const double absolute = relative + dot(e, guide.V.value.resultant);
     const auto energy = [&](double turn) {
       return rotor.regulated() ? rotor.about * rate * (turn + rate / 2)
                                : rotor.about * (rate + turn) * (rate + turn) / 2;

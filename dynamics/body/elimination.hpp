@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <limits>
-#include <sstream>
 
 #include <dynamics/body/workspace.hpp>
 
@@ -19,13 +18,12 @@ namespace kreisel::detail {
 
 [[noreturn]] inline void refuse_singular(const BodyTree& tree, const Link& link, const char* motion,
                                          const Vector3<double>& axis) {
-  std::ostringstream text;
-  text.precision(6);
-  text << "body '" << tree.body(link.body).name << "': " << motion << " (" << axis.x() << ", "
-       << axis.y() << ", " << axis.z()
-       << ") on guide axes moves no inertia, so no force determines it: a body without mass at the "
-          "end of a chain, or an axis that coincides with one further out";
-  throw ComputationFailed(text.str());
+  char direction[64];
+  std::snprintf(direction, sizeof direction, " (%.6g, %.6g, %.6g)", axis.x(), axis.y(), axis.z());
+  throw ComputationFailed("body '" + tree.body(link.body).name + "': " + motion + direction +
+                          " on guide axes moves no inertia, so no force determines it: a body "
+                          "without mass at the end of "
+                          "a chain, or an axis that coincides with one further out");
 }
 
 /// What of an inertia may be the rounding of larger ones.
@@ -33,18 +31,22 @@ namespace kreisel::detail {
   return 16 * std::numeric_limits<double>::epsilon() * size;
 }
 
-/// The direction in which a matrix is smallest.
-[[nodiscard]] inline Vector3<double> weakest(const Matrix3<double>& m) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3<double>> eigen(m);
-  return eigen.eigenvectors().col(0);
+inline void factor(const BodyTree& tree, const Link& link, FactoredSymmetric3<>& result,
+                   const Symmetric3<>& m, double size, const char* motion) {
+  result = FactoredSymmetric3<>(m);
+  for (int k = 0; k < 3; ++k) {
+    if (!(result.pivots()[k] <= rounding(size))) continue;
+    const Vector3<double> weakest = result.witness(k);
+    refuse_singular(tree, link, motion, weakest / std::sqrt(dot(weakest, weakest)));
+  }
 }
 
-inline void factor(const BodyTree& tree, const Link& link, Eigen::LDLT<Matrix3<double>>& result,
-                   const Matrix3<double>& m, double size, const char* motion) {
-  result.compute(m);
-  if (result.vectorD().minCoeff() <= rounding(size)) {
-    refuse_singular(tree, link, motion, weakest(m));
-  }
+/// B^t m^-1 B, with m factored, of the columns of B.
+[[nodiscard]] inline Symmetric3<> congruent(const FactoredSymmetric3<>& m, const Vector3<double>& x,
+                                            const Vector3<double>& y, const Vector3<double>& z) {
+  const Vector3<double> by_y = m.solve(y);
+  const Vector3<double> by_z = m.solve(z);
+  return {dot(x, m.solve(x)), dot(y, by_y), dot(z, by_z), dot(x, by_y), dot(x, by_z), dot(y, by_z)};
 }
 
 /// Eliminates a joint with one coordinate from the inertia A of its link.
@@ -60,7 +62,7 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
     e.U.resultant = A.linear * s;
     e.U.moment = multiply(A.mixed, s);
   }
-  const double resistance = s.dot(turns ? e.U.moment : e.U.resultant);
+  const double resistance = dot(s, turns ? e.U.moment : e.U.resultant);
   if (resistance <= rounding(turns ? size.angular : size.linear)) {
     refuse_singular(tree, link, turns ? "the rotation about" : "the displacement along", s);
   }
@@ -74,15 +76,15 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
                                              BallElimination& e) {
   e.mixed = A.mixed;
   if (link.kind == LinkKind::spherical) {
-    factor(tree, link, e.angular, A.angular.matrix(), size.angular, "the rotation about");
-    const Matrix3<double> taken = e.mixed.transpose() * e.angular.solve(e.mixed);
-    A = {A.linear - Symmetric3<>::from(taken), Matrix3<double>::Zero(), {}};
+    factor(tree, link, e.angular, A.angular, size.angular, "the rotation about");
+    const Symmetric3<> taken =
+        congruent(e.angular, column(e.mixed, 0), column(e.mixed, 1), column(e.mixed, 2));
+    A = {A.linear - taken, Matrix3<double>::Zero(), {}};
     return;
   }
-  factor(tree, link, e.linear, A.linear.matrix(), size.linear, "the displacement along");
-  const Matrix3<double> about_centre =
-      A.angular.matrix() - e.mixed * e.linear.solve(Matrix3<double>(e.mixed.transpose()));
-  factor(tree, link, e.angular, about_centre, size.angular, "the rotation about");
+  factor(tree, link, e.linear, A.linear, size.linear, "the displacement along");
+  const Symmetric3<> taken = congruent(e.linear, row(e.mixed, 0), row(e.mixed, 1), row(e.mixed, 2));
+  factor(tree, link, e.angular, A.angular - taken, size.angular, "the rotation about");
   A = {};  // its parent feels nothing of it
 }
 
@@ -112,7 +114,7 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
   add_shifted(w.articulated[parent], pose.r, A);
   Size& above = w.size[parent];
   above.linear += size.linear;
-  above.angular += size.angular + 2 * pose.r.squaredNorm() * size.linear;
+  above.angular += size.angular + 2 * dot(pose.r, pose.r) * size.linear;
 }
 
 /// The force that a spherical or free joint hands on of P.
@@ -121,15 +123,13 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
                                              const Motor<>& P, BallElimination& e) {
   const Vector3<double> torque = pose.R * three(joint_force + link.v);
   if (link.kind == LinkKind::spherical) {
-    e.x.resultant = e.angular.solve(Vector3<double>(torque - P.moment));
-    return {P.resultant + e.mixed.transpose() * e.x.resultant, torque};
+    e.x.resultant = e.angular.solve(torque - P.moment);
+    return {P.resultant + transposed_product(e.mixed, e.x.resultant), torque};
   }
   Motor<> given{parent.R * three(joint_force + link.v + 3), torque};
   const Motor<> rest = given - P;
-  e.x.resultant =
-      e.angular.solve(Vector3<double>(rest.moment - e.mixed * e.linear.solve(rest.resultant)));
-  e.x.moment =
-      e.linear.solve(Vector3<double>(rest.resultant - e.mixed.transpose() * e.x.resultant));
+  e.x.resultant = e.angular.solve(rest.moment - e.mixed * e.linear.solve(rest.resultant));
+  e.x.moment = e.linear.solve(rest.resultant - transposed_product(e.mixed, e.x.resultant));
   return given;
 }
 
@@ -142,7 +142,7 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
   if (link.moved_by_forces()) {
     if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
       SingleElimination& e = w.single[i];
-      e.rest = joint_force[link.v] - pose.axis.dot(link.kind == LinkKind::revolute ? n : f);
+      e.rest = joint_force[link.v] - dot(pose.axis, link.kind == LinkKind::revolute ? n : f);
       const double q = e.rest * e.inverse;
       f += q * e.U.resultant;
       n += q * e.U.moment;
@@ -154,7 +154,7 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
     }
   }
   w.force[parent].resultant += f;
-  w.force[parent].moment += n + pose.r.cross(f);
+  w.force[parent].moment += n + cross(pose.r, f);
 }
 
 /// The acceleration of a spherical or free joint.
@@ -164,13 +164,13 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
   const Motor<> given = delta;
   delta.resultant = e.x.resultant;
   if (link.kind == LinkKind::spherical) {
-    delta.resultant -= e.angular.solve(Vector3<double>(e.mixed * given.moment));
+    delta.resultant -= e.angular.solve(e.mixed * given.moment);
   } else {
     delta.moment = e.x.moment;
-    const Vector3<double> slide = parent.R.transpose() * (delta.moment - given.moment);
+    const Vector3<double> slide = transposed_product(parent.R, delta.moment - given.moment);
     std::copy_n(slide.data(), 3, acceleration + link.v + 3);
   }
-  const Vector3<double> turn = pose.R.transpose() * (delta.resultant - given.resultant);
+  const Vector3<double> turn = transposed_product(pose.R, delta.resultant - given.resultant);
   std::copy_n(turn.data(), 3, acceleration + link.v);
 }
 
@@ -180,7 +180,7 @@ inline void accelerate(const Link& link, std::size_t i, double* acceleration, Bo
   const LinkPose<>& pose = w.pose[i];
   Motor<>& delta = w.delta[i];
   delta.resultant = w.delta[parent].resultant;
-  delta.moment = w.delta[parent].moment + delta.resultant.cross(pose.r);
+  delta.moment = w.delta[parent].moment + cross(delta.resultant, pose.r);
   if (!link.moved_by_forces()) {
     for (int k = 0; k < rate_count(link.kind); ++k) acceleration[link.v + k] = 0;
     return;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dynamics/body/description.hpp>
+#include <dynamics/body/check.hpp>
 
 namespace kreisel {
 
@@ -35,6 +35,25 @@ struct Link {
   [[nodiscard]] bool moves() const { return rule != JointRule::held && kind != LinkKind::fixed; }
 };
 
+/// Makes a link turn about an axis of its parent, on which it stands as `still` says, after
+/// Rodrigues:  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
+inline void turn_about(Link& link, const Vector3<double>& axis) {
+  link.kind = LinkKind::revolute;
+  link.axis = normalized(axis);
+  const Vector3<double>& a = link.axis;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3<double> o(link.still(0, k), link.still(1, k), link.still(2, k));
+    const Vector3<double> along = dot(a, o) * a;
+    const Vector3<double> across = o - along;
+    const Vector3<double> turned = cross(a, o);
+    for (int i = 0; i < 3; ++i) {
+      link.still(i, k) = along[i];
+      link.cosine(i, k) = across[i];
+      link.sine(i, k) = turned[i];
+    }
+  }
+}
+
 /// A rotor beside the links: no pass over the tree comes across it.
 struct RotorLink {
   Link link = {};  ///< as of any revolute joint, for what is read out; link.parent is the carrier
@@ -48,9 +67,8 @@ struct RotorLink {
 
   /// On axes on which the rotor's is e: with the moment of inertia C about it, or with another.
   [[nodiscard]] Inertia<> inertia(const Vector3<double>& e, double moment) const {
-    const Matrix3<double> along = (moment - across) * e * e.transpose();
     return {mass, first_moment * e,
-            Symmetric3<>::from(Matrix3<double>(across * Matrix3<double>::Identity() + along))};
+            Symmetric3<>{across, across, across} + square(e, moment - across)};
   }
 };
 

@@ -19,7 +19,7 @@ template <class S>
     return on_guide->g.template cast<S>();
   }
   if (const auto* inertial = std::get_if<UniformGravity<Inertial>>(&gravity)) {
-    return guide.X.value.rotation.transpose() * inertial->g.template cast<S>();
+    return transposed_product(guide.X.value.rotation, inertial->g.template cast<S>().eval());
   }
   return Vector3<S>::Zero();
 }
@@ -43,7 +43,7 @@ template <class S>
   const Matrix3<S>& R = w.pose[link].R;
   return {t,
           {{R, x}},
-          {{R.transpose() * V.resultant, R.transpose() * V.moment}},
+          {{transposed_product(R, V.resultant), transposed_product(R, V.moment)}},
           guide,
           {lifted<S>(tree.body(body).inertia.value)}};
 }

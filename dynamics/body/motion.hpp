@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include <dynamics/body/tree.hpp>
+#include <motor/absent.hpp>
 
 /// How the links of a tree move. All on the GUIDE's axes, each link about its own origin: then
 /// nothing is turned between the links, and inertias only shift.
@@ -37,7 +38,17 @@ template <class S>
 
 template <class S>
 [[nodiscard]] Matrix3<S> rotation(const S* q) {
-  return Pose<S>::from(Eigen::Quaternion<S>(q[3], q[0], q[1], q[2])).rotation;
+  return Turn<S>::from(Eigen::Quaternion<S>(q[3], q[0], q[1], q[2])).matrix();
+}
+
+template <class S>
+[[nodiscard]] Vector3<S> column(const Matrix3<S>& R, int k) {
+  return {R(0, k), R(1, k), R(2, k)};
+}
+
+template <class S>
+[[nodiscard]] Vector3<S> row(const Matrix3<S>& R, int k) {
+  return {R(k, 0), R(k, 1), R(k, 2)};
 }
 
 /// C = A B. Spelt out, because g++ 12 calls Eigen's instead of inlining it.
@@ -59,16 +70,22 @@ template <class S>
 template <class S>
 [[gnu::noinline]] void set_other_pose(const Link& link, const LinkPose<S>& parent, const S* q,
                                       LinkPose<S>& p) {
-  Vector3<S> offset = link.position.template cast<S>();
-  Matrix3<S> turned = link.still.template cast<S>();
+  const Vector3<double>& a = link.axis;
+  Vector3<S> offset(link.position.x(), link.position.y(), link.position.z());
+  Matrix3<S> still;
+  for (int k = 0; k < 9; ++k) still(k) = link.still(k);
   if (link.kind == LinkKind::prismatic) {
     p.axis = multiply(parent.R, link.axis);
-    offset += q[link.q] * link.axis.template cast<S>();
+    const S& x = q[link.q];
+    offset += Vector3<S>(x * a.x(), x * a.y(), x * a.z());
   }
   if (link.kind == LinkKind::free) offset += three(q + link.q + 4);
-  if (coordinate_count(link.kind) >= 4)
-    turned = link.still.template cast<S>() * rotation(q + link.q);
-  p.R = parent.R * turned;
+  if (coordinate_count(link.kind) >= 4) {
+    Matrix3<S> turned;
+    multiply(still, rotation(q + link.q), turned);
+    still = turned;
+  }
+  multiply(parent.R, still, p.R);
   p.r = parent.R * offset;
 }
 
@@ -101,17 +118,17 @@ template <class S>
                                         LinkMotion<S>& m) {
   if (link.kind == LinkKind::prismatic) {
     const S twice = 2.0 * v[link.v];
-    m.a += twice * above.w.cross(pose.axis);
+    m.a += twice * cross(above.w, pose.axis);
     if (dv) m.a += dv[link.v] * pose.axis;
     return;
   }
   const Vector3<S> turn = pose.R * three(v + link.v);
   m.w += turn;
-  m.dw += above.w.cross(turn);
+  m.dw += cross(above.w, turn);
   if (dv) m.dw += pose.R * three(dv + link.v);
   if (link.kind != LinkKind::free) return;
   const Vector3<S> slide = parent.R * three(v + link.v + 3);
-  m.a += S(2) * above.w.cross(slide);
+  m.a += S(2) * cross(above.w, slide);
   if (dv) m.a += parent.R * three(dv + link.v + 3);
 }
 
@@ -124,12 +141,12 @@ template <class S>
 void set_motion(const Link& link, const LinkPose<S>& pose, const LinkPose<S>& parent,
                 const LinkMotion<S>& above, const S* v, const std::type_identity_t<S>* dv,
                 LinkMotion<S>& m) {
-  m.a = above.a + above.dw.cross(pose.r) + above.w.cross(above.w.cross(pose.r));
+  m.a = above.a + cross(above.dw, pose.r) + cross(above.w, cross(above.w, pose.r));
   if (link.kind == LinkKind::revolute && link.moves()) {
     const Vector3<S> turn = v[link.v] * pose.axis;
     const S rate = dv ? dv[link.v] : S(0);
     m.w = above.w + turn;
-    m.dw = above.dw + above.w.cross(turn) + rate * pose.axis;
+    m.dw = above.dw + cross(above.w, turn) + rate * pose.axis;
     return;
   }
   m.w = above.w;
@@ -166,7 +183,7 @@ template <class S>
   const Vector3<S> zero = Vector3<S>::Zero();
   if (link.kind == LinkKind::revolute) return {pose.axis, zero};
   if (link.kind == LinkKind::prismatic) return {zero, pose.axis};
-  return k < 3 ? Motor<S>{pose.R.col(k), zero} : Motor<S>{zero, parent.R.col(k - 3)};
+  return k < 3 ? Motor<S>{column(pose.R, k), zero} : Motor<S>{zero, column(parent.R, k - 3)};
 }
 
 /// Ten numbers on the axes that R turns to:  (m; R s; R Theta R^t).
@@ -190,13 +207,13 @@ void turn(const Matrix3<S>& R, const Inertia<>& T, Inertia<S>& result) {
 /// Reduced at a point P, when r leads from P to the present origin.
 [[nodiscard]] inline Inertia<> shifted(const Vector3<double>& r, const Inertia<>& T) {
   return {T.mass, T.first_moment + T.mass * r,
-          T.tensor + offset_product(r, Vector3<double>(T.first_moment + (T.mass / 2) * r))};
+          T.tensor + offset_product(r, T.first_moment + (T.mass / 2) * r)};
 }
 
 /// A force motor at the end of r, reduced at its beginning.
 template <class S>
 [[nodiscard]] Motor<S> carried(const Vector3<S>& r, const Motor<S>& P) {
-  return {P.resultant, P.moment + r.cross(P.resultant)};
+  return {P.resultant, P.moment + cross(r, P.resultant)};
 }
 
 /// The force motor of the inertia T in that motion: the left side of the law, by the vectors of
@@ -205,8 +222,8 @@ template <class S>
 [[nodiscard]] Motor<S> inertia_force(const Inertia<S>& T, const LinkMotion<S>& m) {
   const auto& [w, dw, a] = m;
   const Vector3<S>& s = T.first_moment;
-  return {T.mass * a + dw.cross(s) + w.cross(w.cross(s)),
-          s.cross(a) + T.tensor * dw + w.cross(T.tensor * w)};
+  return {T.mass * a + cross(dw, s) + cross(w, cross(w, s)),
+          cross(s, a) + T.tensor * dw + cross(w, T.tensor * w)};
 }
 
 }  // namespace kreisel::detail

@@ -6,6 +6,7 @@
 
 #include <dynamics/body/elimination.hpp>
 #include <dynamics/body/rotors.hpp>
+#include <motor/attitude.hpp>
 
 /// The passes over a whole tree: outwards for what moves, inwards for what pushes. A parent has a
 /// lower number than what hangs on it, so they are plain loops.
@@ -110,7 +111,7 @@ void sum_inwards(const BodyTree& tree, MotionSpace<S>& w) {
     const Motor<S>& P = w.force[i];
     Motor<S>& above = w.force[static_cast<std::size_t>(tree.links()[i].parent)];
     above.resultant += P.resultant;
-    above.moment += P.moment + w.pose[i].r.cross(P.resultant);
+    above.moment += P.moment + cross(w.pose[i].r, P.resultant);
   }
 }
 
@@ -120,7 +121,7 @@ void project(const BodyTree& tree, const MotionSpace<S>& w, S* result) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
     const Link& link = tree.links()[i];
     if (link.kind == LinkKind::revolute) {
-      result[link.v] = w.pose[i].axis.dot(w.force[i].moment);
+      result[link.v] = dot(w.pose[i].axis, w.force[i].moment);
       continue;
     }
     const LinkPose<S>& parent = w.pose[static_cast<std::size_t>(link.parent)];
@@ -141,9 +142,9 @@ void set_coordinate_rates(const BodyTree& tree, const S* q, const S* v, S* resul
       dq[set++] = u[0];
     } else if (link.moves() && rate_count(link.kind) >= 3) {
       const S* p = q + link.q;
-      const Eigen::Quaternion<S> half(S(0), u[0] / 2, u[1] / 2, u[2] / 2);
-      const Eigen::Quaternion<S> rate = Eigen::Quaternion<S>(p[3], p[0], p[1], p[2]) * half;
-      for (; set < 4; ++set) dq[set] = rate.coeffs()[set];
+      const Eigen::Matrix<S, 4, 1> rate =
+          attitude_rate(Eigen::Quaternion<S>(p[3], p[0], p[1], p[2]), three(u));
+      for (; set < 4; ++set) dq[set] = rate[set];
       for (; set < coordinate_count(link.kind); ++set) dq[set] = u[set - 1];
     }
     for (; set < coordinate_count(link.kind); ++set) dq[set] = S(0);
@@ -174,7 +175,7 @@ inline void mass_matrix(const BodyTree& tree, BodyWorkspace& w, Eigen::MatrixXd&
     const Vector3<double> e = w.pose[j].R * rotor.link.axis;
     if (!rotor.regulated()) {
       Symmetric3<>& tensor = w.inertia[j].tensor;
-      tensor = tensor + Symmetric3<>::from(rotor.about * e * e.transpose());
+      tensor = tensor + square(e, rotor.about);
     }
     result(rotor.link.v, rotor.link.v) = rotor.about;
     const Motor<> P{Vector3<double>::Zero(), rotor.about * e};

@@ -44,8 +44,9 @@ namespace detail {
 [[nodiscard]] inline Force<Body> joint_reaction(const BodyTree& tree, int body,
                                                 const BodyWorkspace& w) {
   const std::size_t link = tree.link(body);
-  const auto to_body = w.pose[link].R.transpose();
-  return {{to_body * w.force[link].resultant, to_body * w.force[link].moment}};
+  const Matrix3<double>& R = w.pose[link].R;
+  const auto& [force, moment] = w.force[link];
+  return {{transposed_product(R, force), transposed_product(R, moment)}};
 }
 
 /// The terms of (26) of one body, from the absolute accelerations in w, from which g was taken off.
@@ -56,12 +57,13 @@ namespace detail {
   const auto& [x, V] = w.place[link];
   const Vector3<double>& u = s.guide.V.value.resultant;
   const Vector3<double>& du = s.guide.dV.value.resultant;
-  const Vector3<double> carried = s.guide.origin_acceleration() + du.cross(x) + u.cross(u.cross(x));
-  const Vector3<double> turn = absolute.dw - du - u.cross(V.resultant);
-  const Vector3<double> slide = absolute.a + g - carried - 2 * u.cross(V.moment);
-  const auto to_body = w.pose[link].R.transpose();
+  const Vector3<double> carried =
+      s.guide.origin_acceleration() + cross(du, x) + cross(u, cross(u, x));
+  const Vector3<double> turn = absolute.dw - du - cross(u, V.resultant);
+  const Vector3<double> slide = absolute.a + g - carried - 2.0 * cross(u, V.moment);
+  const Matrix3<double>& R = w.pose[link].R;
   const Rate<Body, Velocity<Body, Guide, Body>> dV_rel{
-      {to_body * turn, to_body * (slide - V.resultant.cross(V.moment))}};
+      {transposed_product(R, turn), transposed_product(R, slide - cross(V.resultant, V.moment))}};
   const Displacement<Body, Guide> X = s.X.inverse();
   return equation_of_motion(s.inertia, s.V_rel, X * s.guide.V, dV_rel, X * s.guide.dV);
 }

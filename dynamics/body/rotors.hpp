@@ -65,9 +65,9 @@ inline void add_rotor_forces(const BodyTree& tree, const double* v, const double
     const std::size_t c = carrier(rotor);
     const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
     const Vector3<double>& turn = w.motion[c].w;
-    const double l = momentum_weight(rotor, v[rotor.link.v], e.dot(turn));
+    const double l = momentum_weight(rotor, v[rotor.link.v], dot(e, turn));
     const double N = rotor.regulated() ? rotor.about * w.spin_up[k] : joint_force[rotor.link.v];
-    w.force[c].moment += l * turn.cross(e) + N * e;
+    w.force[c].moment += l * cross(turn, e) + N * e;
   }
 }
 
@@ -76,7 +76,7 @@ inline void add_rotor_forces(const BodyTree& tree, const double* v, const double
 template <class S>
 [[nodiscard]] S spin_torque(const RotorLink& rotor, const Vector3<S>& e, const S& ddphi,
                             const MotionSpace<S>& w) {
-  return rotor.about * (ddphi + e.dot(w.motion[carrier(rotor)].dw));
+  return rotor.about * (ddphi + dot(e, w.motion[carrier(rotor)].dw));
 }
 
 /// The same where all accelerations dv are given, and with them the motors' torques.
@@ -87,10 +87,10 @@ void add_rotor_forces_at(const BodyTree& tree, const S* v, const S* dv, MotionSp
     const std::size_t c = carrier(rotor);
     const Vector3<S>& e = w.pose[tree.rotor_slot(k)].axis;
     const Vector3<S>& turn = w.motion[c].w;
-    const S l = momentum_weight(rotor, v[rotor.link.v], S(e.dot(turn)));
+    const S l = momentum_weight(rotor, v[rotor.link.v], dot(e, turn));
     const S& ddphi = dv[rotor.link.v];
     const S N = rotor.regulated() ? S(rotor.about * ddphi) : spin_torque(rotor, e, ddphi, w);
-    w.force[c].moment += l * turn.cross(e) + N * e;
+    w.force[c].moment += l * cross(turn, e) + N * e;
   }
 }
 
@@ -114,7 +114,7 @@ inline void accelerate_rotors(const BodyTree& tree, const double* joint_force, d
     const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
     const Vector3<double> turn = w.motion[c].dw + w.delta[c].resultant;
     acceleration[rotor.link.v] =
-        rotor.regulated() ? w.spin_up[k] : joint_force[rotor.link.v] / rotor.about - e.dot(turn);
+        rotor.regulated() ? w.spin_up[k] : joint_force[rotor.link.v] / rotor.about - dot(e, turn);
   }
 }
 
@@ -125,7 +125,9 @@ void set_place_without_angle(const BodyTree& tree, std::size_t slot, const S* v,
   const Link& link = rotor(tree, slot).link;
   const auto c = static_cast<std::size_t>(link.parent);
   LinkPose<S>& pose = w.pose[slot];
-  multiply(w.pose[c].R, Matrix3<S>((link.still + link.cosine).template cast<S>()), pose.R);
+  Matrix3<S> turned;
+  for (int k = 0; k < 9; ++k) turned(k) = link.still(k) + link.cosine(k);
+  multiply(w.pose[c].R, turned, pose.R);
   pose.r = multiply(w.pose[c].R, link.position);
   w.place[slot] = place(link, pose, w.pose[c], w.place[c], v);
 }
@@ -174,10 +176,10 @@ inline void complete_rotor_forces(const BodyTree& tree, const double* v, const d
     const std::size_t slot = tree.rotor_slot(k);
     const auto& [R, r, e] = w.pose[slot];
     const auto& [turn, dw, a] = w.motion[carrier(rotor)];
-    const LinkMotion<> along{turn, dw, a + dw.cross(r) + turn.cross(turn.cross(r))};
+    const LinkMotion<> along{turn, dw, a + cross(dw, r) + cross(turn, cross(turn, r))};
     w.force[slot] += inertia_force(rotor.inertia(e, rotor.about), along);
     const double spin = rotor.about * v[rotor.link.v];
-    w.force[slot].moment += rotor.about * dv[rotor.link.v] * e + spin * turn.cross(e);
+    w.force[slot].moment += rotor.about * dv[rotor.link.v] * e + spin * cross(turn, e);
   }
 }
 

@@ -1,35 +1,18 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <sstream>
 #include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include <dynamics/body/check.hpp>
 #include <dynamics/body/link.hpp>
 #include <motor/displacement.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
-
-namespace detail {
-
-template <class... Words>
-[[noreturn]] void refuse_body(const std::string& name, const Words&... words) {
-  std::ostringstream text;
-  text.precision(10);
-  text << "body '" << name << "': ";
-  (text << ... << words);
-  throw InvalidInput(text.str());
-}
-
-[[nodiscard]] inline bool is_finite(const Vector3<double>& a) { return (a - a).isZero(0); }
-
-}  // namespace detail
 
 /// Where the coordinates and the rates of a body's joint lie.
 struct JointPlace {
@@ -52,7 +35,8 @@ class BodyTree {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const std::string& name = bodies_[i].name;
       if (name.empty() || name == "guide") {
-        detail::refuse_body(name, "number ", i + 1, " of the list needs a name other than 'guide'");
+        detail::refuse_body(name, "number " + std::to_string(i + 1) +
+                                      " of the list needs a name other than 'guide'");
       }
       if (!index_.emplace(name, static_cast<int>(i)).second) {
         detail::refuse_body(name, "the name is used twice; a body has one joint to one parent");
@@ -60,7 +44,7 @@ class BodyTree {
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       check_parent(static_cast<int>(i));
-      check_numbers(bodies_[i]);
+      detail::check_numbers(bodies_[i]);
       append(static_cast<int>(i));
     }
     for (std::size_t k = 0; k < rotors_.size(); ++k) {
@@ -123,9 +107,9 @@ class BodyTree {
     const std::string& parent = this->body(body).parent;
     if (parent == "guide") return;
     const auto found = index_.find(parent);
-    if (found == index_.end()) detail::refuse_body(name, "its parent '", parent, "' is unknown");
+    if (found == index_.end()) detail::refuse_body(name, "its parent '" + parent + "' is unknown");
     if (this->body(found->second).rotor) {
-      detail::refuse_body(name, "its parent '", parent, "' is a rotor, which can carry nothing");
+      detail::refuse_body(name, "its parent '" + parent + "' is a rotor, which can carry nothing");
     }
     if (found->second < body) return;
     // Up from the parent, to tell a loop from a list in the wrong order.
@@ -133,122 +117,14 @@ class BodyTree {
     auto above = found;
     for (std::size_t step = 0; step < bodies_.size(); ++step) {
       if (above->second == body) {
-        detail::refuse_body(name, "closed loop ", path, "; only trees are computed");
+        detail::refuse_body(name, "closed loop " + path + "; only trees are computed");
       }
       const std::string& next = this->body(above->second).parent;
       above = index_.find(next);
       if (above == index_.end()) break;
       path += " -> " + next;
     }
-    detail::refuse_body(name, "its parent '", parent, "' comes later; parents come first");
-  }
-
-  static void check_numbers(const BodyDescription& b) {
-    const Joint& joint = b.joint;
-    const auto check_axis = [&b](const Vector3<double>& axis, const char* which) {
-      if (!detail::is_finite(axis)) detail::refuse_body(b.name, which, " is not finite");
-      if (!(axis.norm() > 0)) detail::refuse_body(b.name, which, " is 0 and has no direction");
-    };
-    const bool has_axis = joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic ||
-                          joint.kind == JointKind::universal;
-    if (has_axis) check_axis(joint.axis, "the axis of its joint");
-    if (joint.kind == JointKind::universal) {
-      check_axis(joint.second_axis, "the second axis of its joint");
-      const double sine = joint.axis.normalized().cross(joint.second_axis.normalized()).norm();
-      if (!(sine > 1e-12)) {
-        detail::refuse_body(b.name, "both axes of its universal joint are parallel");
-      }
-    }
-    if (!detail::is_finite(joint.position)) {
-      detail::refuse_body(b.name, "the position of its joint is not finite");
-    }
-    const double norm2 = joint.orientation.squaredNorm();
-    if (!(norm2 > 0 && norm2 - norm2 == 0)) {
-      detail::refuse_body(b.name, "the orientation of its joint is no quaternion of finite norm");
-    }
-    check(b.inertia.value, Mass::zero_allowed, "body '" + b.name + "'");
-    check_forces(b);
-    if (b.rotor) check_rotor(b);
-  }
-
-  static void check_rotor(const BodyDescription& b) {
-    const Rotor& rotor = *b.rotor;
-    const auto refuse = [&b](const auto&... words) {
-      detail::refuse_body(b.name, "is no rotor: ", words...,
-                          "; leave `rotor` out and it is an ordinary body");
-    };
-    if (b.joint.kind != JointKind::revolute) refuse("it has no revolute joint");
-    if (b.rule != JointRule::forces) refuse("its joint is held or driven besides");
-    if (!std::isfinite(rotor.torque)) refuse("its torque is not finite");
-    if (rotor.torque != 0 && rotor.mode != RotorMode::torque) {
-      refuse("a torque is given, but not the mode torque");
-    }
-    if (rotor.acceleration && rotor.mode != RotorMode::regulated) {
-      refuse("an acceleration is given, but it is not regulated");
-    }
-    for (const JointForce& f : b.forces) {
-      if (f.stiffness != 0) refuse("a spring turns it by its angle");
-      if (rotor.mode == RotorMode::free && (f.damping != 0 || f.constant != 0)) {
-        refuse("a joint force changes the momentum of a free one, take the mode torque");
-      }
-    }
-    for (const BodyLoad& load : b.loads) {
-      if (!load.ignores_spin()) refuse("it has a load that may depend on its angle or spin");
-    }
-    check_symmetry(b, refuse);
-  }
-
-  /// Calls refuse where a body is not that of a rotor.
-  template <class Refuse>
-  static void check_symmetry(const BodyDescription& b, const Refuse& refuse) {
-    constexpr double tolerance = 32 * std::numeric_limits<double>::epsilon();
-    const Inertia<>& T = b.inertia.value;
-    const Vector3<double> e = axis_on_body(b.joint);
-    const Matrix3<double> tensor = T.tensor.matrix();
-    const double trace = tensor.trace();
-    const double about = e.dot(tensor * e);
-    if (!(about > tolerance * trace)) refuse("it has no moment of inertia about its axis");
-    const double off_axis = T.first_moment.cross(e).norm();
-    if (off_axis > tolerance * std::sqrt(T.mass * trace)) {
-      refuse("it is unbalanced, its centre of mass lies ", off_axis / T.mass, " m off the axis");
-    }
-    const double across = (trace - about) / 2;
-    const Matrix3<double> symmetric =
-        across * Matrix3<double>::Identity() + (about - across) * e * e.transpose();
-    const double off = (tensor - symmetric).norm();
-    if (off > tolerance * trace) {
-      refuse("its tensor is not symmetric about its axis, by ", off, " kg m^2");
-    }
-  }
-
-  [[nodiscard]] static Vector3<double> axis_on_body(const Joint& joint) {
-    return Pose<>::from(joint.orientation).rotation.transpose() * joint.axis.normalized();
-  }
-
-  static void check_forces(const BodyDescription& b) {
-    const JointKind kind = b.joint.kind;
-    const std::size_t rates = kind == JointKind::fixed       ? 0
-                              : kind == JointKind::universal ? 2
-                              : kind == JointKind::spherical ? 3
-                              : kind == JointKind::free      ? 6
-                                                             : 1;
-    if (!b.forces.empty() && b.forces.size() != rates) {
-      detail::refuse_body(b.name, b.forces.size(), " joint forces for a joint of ", rates,
-                          " degrees of freedom");
-    }
-    for (const JointForce& force : b.forces) {
-      for (const double x : {force.stiffness, force.rest, force.damping, force.constant}) {
-        if (x - x != 0) detail::refuse_body(b.name, "a number of its joint forces is not finite");
-      }
-      if (rates > 2 && force.stiffness != 0) {
-        detail::refuse_body(b.name,
-                            "a spring needs a single coordinate, which a spherical or free joint "
-                            "has not; take a load");
-      }
-    }
-    if (b.rule == JointRule::constant_rate && kind != JointKind::revolute) {
-      detail::refuse_body(b.name, "only a revolute joint can be driven at a constant rate");
-    }
+    detail::refuse_body(name, "its parent '" + parent + "' comes later; parents come first");
   }
 
   void append(int body) {
@@ -259,23 +135,23 @@ class BodyTree {
     link.rule = b.rule;
     link.position = b.joint.position;
     link.parent = b.parent == "guide" ? 0 : static_cast<int>(this->link(index_.at(b.parent)));
-    link.still = Pose<>::from(b.joint.orientation).rotation;
+    link.still = detail::Turn<double>::from(b.joint.orientation).matrix();
     switch (b.joint.kind) {
       case JointKind::fixed: break;
-      case JointKind::revolute: turn_about(link, b.joint.axis); break;
+      case JointKind::revolute: detail::turn_about(link, b.joint.axis); break;
       case JointKind::prismatic:
         link.kind = LinkKind::prismatic;
-        link.axis = b.joint.axis.normalized();
+        link.axis = detail::normalized(b.joint.axis);
         break;
       case JointKind::universal: {
         detail::Link cross = link;
         cross.still = Matrix3<double>::Identity();
-        turn_about(cross, b.joint.axis);
+        detail::turn_about(cross, b.joint.axis);
         cross.is_cross = true;
         push(cross);
         link.position = Vector3<double>::Zero();
         link.parent = static_cast<int>(links_.size()) - 1;
-        turn_about(link, b.joint.second_axis);
+        detail::turn_about(link, b.joint.second_axis);
         break;
       }
       case JointKind::spherical: link.kind = LinkKind::spherical; break;
@@ -306,26 +182,15 @@ class BodyTree {
     rotor.link = link;
     rotor.mode = b.rotor->mode;
     const Inertia<>& T = b.inertia.value;
-    const Vector3<double> e = axis_on_body(b.joint);
+    const Vector3<double> e = detail::axis_on_body(b.joint);
     rotor.mass = T.mass;
-    rotor.first_moment = T.first_moment.dot(e);
-    rotor.about = e.dot(T.tensor * e);
+    rotor.first_moment = detail::dot(T.first_moment, e);
+    rotor.about = detail::dot(e, T.tensor * e);
     rotor.across = (T.tensor.xx + T.tensor.yy + T.tensor.zz - rotor.about) / 2;
     Inertia<>& carrier = links_[static_cast<std::size_t>(link.parent)].inertia;
     const Pose<> place{Matrix3<double>::Identity(), link.position};
     carrier = carrier + place * rotor.inertia(link.axis, rotor.regulated() ? rotor.about : 0);
     rotors_.push_back(rotor);
-  }
-
-  /// Rodrigues:  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
-  static void turn_about(detail::Link& link, const Vector3<double>& axis) {
-    link.kind = detail::LinkKind::revolute;
-    link.axis = axis.normalized();
-    const Matrix3<double> orientation = link.still;
-    const Matrix3<double> along = link.axis * link.axis.transpose();
-    link.still = along * orientation;
-    link.cosine = orientation - link.still;
-    link.sine = skew(link.axis) * orientation;
   }
 
   void push(detail::Link& link) {

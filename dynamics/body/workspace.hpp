@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
-
 #include <vector>
 
 #include <dynamics/body/articulated.hpp>
@@ -21,8 +19,8 @@ struct SingleElimination {
 
 /// The same of a spherical or free joint; x: its acceleration as long as the parent has none.
 struct BallElimination {
-  Eigen::LDLT<Matrix3<double>> linear = {};
-  Eigen::LDLT<Matrix3<double>> angular = {};
+  FactoredSymmetric3<> linear = {};
+  FactoredSymmetric3<> angular = {};
   Matrix3<double> mixed = Matrix3<double>::Zero();
   Motor<> x = {};
 };

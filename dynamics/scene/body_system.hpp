@@ -76,8 +76,10 @@ class BodySystem {
   }
 
   [[nodiscard]] static Vector to_vector(const State& state) {
-    Vector y(state.coordinates.size() + state.rates.size());
-    y << state.coordinates, state.rates;
+    const Eigen::Index n = state.coordinates.size();
+    Vector y(n + state.rates.size());
+    std::copy_n(state.coordinates.data(), n, y.data());
+    std::copy_n(state.rates.data(), state.rates.size(), y.data() + n);
     return y;
   }
 
