@@ -65,6 +65,11 @@ template <class S>
   return {v.x(), v.y(), v.z()};
 }
 
+template <class S>
+[[nodiscard]] Vector3<S> vector(const Components<S>& a) {
+  return {a.x, a.y, a.z};
+}
+
 /// Absent components come out as 0.
 template <class S, class X, class Y, class Z>
 [[nodiscard]] Vector3<S> vector(const Components<X, Y, Z>& a) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include <motor/absent.hpp>
 #include <motor/motor.hpp>
@@ -47,7 +48,10 @@ struct Pose {
   }
 
   [[gnu::always_inline]] friend Pose operator*(const Pose& a, const Pose& b) {
-    return {detail::product(a.rotation, b.rotation), a.point(b.translation)};
+    Pose X{Matrix3<S>(), Vector3<S>()};  // not made the unit first
+    detail::multiply(a.rotation, b.rotation, X.rotation);
+    X.translation = a.point(b.translation);
+    return X;
   }
 
   /// A motor:  {R a; R a0 + x x R a}. Axes and point of reduction change together. Cost: 42 flops.
@@ -83,9 +87,13 @@ namespace detail {
 /// Below this squared angle three terms of the series in it leave an error under u/5000.
 template <class S>
 [[nodiscard]] S small_squared_angle() {
-  using std::cbrt;
-  static const S bound = cbrt(std::numeric_limits<S>::epsilon());
-  return bound;
+  if constexpr (std::is_same_v<S, double>) {
+    return 0x1.965fea53d6e3dp-18;  // a static has a guard to pass
+  } else {
+    using std::cbrt;
+    static const S bound = cbrt(std::numeric_limits<S>::epsilon());
+    return bound;
+  }
 }
 
 }  // namespace detail
@@ -127,13 +135,22 @@ template <class S>
     b = two_s * s / t2;
     c = (S(1) - a) / t2;
   }
+  const auto bw = b * w;
+  // Before the rotation, which would have to wait for it in registers.
+  detail::Components<S> x;
+  if (t2 < S(1)) {
+    const auto wv = cross(w, v);
+    x = v + (b * wv + c * cross(w, wv));
+  } else {
+    const S along = c * (w.x * v.x + w.y * v.y + w.z * v.z);
+    x = cross(bw, v) + (a * v + along * w);
+  }
   const S cosine = S(1) - b * t2;
   const auto aw = a * w;
-  const auto bw = b * w;
   const S xy = bw.x * w.y;
   const S xz = bw.x * w.z;
   const S yz = bw.y * w.z;
-  Pose<S> X;
+  Pose<S> X{Matrix3<S>(), Vector3<S>()};
   X.rotation(0, 0) = cosine + bw.x * w.x;
   X.rotation(1, 0) = xy + aw.z;
   X.rotation(2, 0) = xz - aw.y;
@@ -143,13 +160,7 @@ template <class S>
   X.rotation(0, 2) = xz + aw.y;
   X.rotation(1, 2) = yz - aw.x;
   X.rotation(2, 2) = cosine + bw.z * w.z;
-  const auto wv = cross(w, v);
-  if (t2 < S(1)) {
-    X.translation = detail::vector<S>(v + (b * wv + c * cross(w, wv)));
-  } else {
-    const S along = c * (w.x * v.x + w.y * v.y + w.z * v.z);
-    X.translation = detail::vector<S>(b * wv + (a * v + along * w));
-  }
+  X.translation = detail::vector<S>(x);
   return X;
 }
 
@@ -162,6 +173,25 @@ template <class S>
   if (q.w() < S(0)) q.coeffs() = -q.coeffs();
   return q;
 }
+
+namespace detail {
+
+/// The logarithm beyond 120 degrees. Apart, for others not to save the registers that it takes.
+template <class S>
+[[nodiscard, gnu::noinline]] Motor<S> log_of_wide_turn(const Pose<S>& X) {
+  using std::atan2;
+  using std::sqrt;
+  const Eigen::Quaternion<S> q = quaternion(X.rotation);
+  const Vector3<S>& x = X.translation;
+  const Vector3<S> n = q.vec();
+  const S n2 = n.squaredNorm();
+  const S n1 = sqrt(n2);
+  const S ratio = atan2(n1, q.w()) / n1;  // theta / 2 / sin(theta/2)
+  return {S(2) * ratio * n,
+          ratio * (q.w() * x - n.cross(x)) + (S(1) - ratio * q.w()) / n2 * n.dot(x) * n};
+}
+
+}  // namespace detail
 
 /// The logarithm of a displacement: the motor A with exp(A) = X and |A.resultant| <= pi.
 ///
@@ -185,12 +215,12 @@ template <class S>
   using std::atan2;
   using std::sqrt;
   const Matrix3<S>& R = X.rotation;
-  const Vector3<S>& x = X.translation;
-  const S cosine = (R.trace() - S(1)) / S(2);
+  const S cosine = (R(0, 0) + R(1, 1) + R(2, 2) - S(1)) / S(2);
   if (cosine > S(-0.5)) {
-    const Vector3<S> sine =
-        Vector3<S>(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)) / S(2);
-    const S s2 = sine.squaredNorm();
+    const auto x = detail::components(X.translation);
+    const detail::Components<S> sine{S((R(2, 1) - R(1, 2)) / S(2)), S((R(0, 2) - R(2, 0)) / S(2)),
+                                     S((R(1, 0) - R(0, 1)) / S(2))};
+    const S s2 = sine.x * sine.x + sine.y * sine.y + sine.z * sine.z;
     S ratio;  // theta / sin(theta)
     if (s2 < std::numeric_limits<S>::epsilon()) {
       ratio = S(1) + s2 / S(6);
@@ -198,23 +228,24 @@ template <class S>
       const S s = sqrt(s2);
       ratio = (s2 < S(0.25) ? S(asin(s)) : S(atan2(s, cosine))) / s;
     }
-    const Vector3<S> w = ratio * sine;
-    const S t2 = w.squaredNorm();
+    const auto w = ratio * sine;
+    const S t2 = ratio * ratio * s2;
     const S gamma = ratio * (S(1) + cosine) / S(2);
     const S c = t2 < detail::small_squared_angle<S>()
                     ? S(S(1) / S(12) + t2 / S(720) * (S(1) + t2 / S(42)))
                     : S((S(1) - gamma) / t2);
-    const Vector3<S> wx = w.cross(x);
-    if (t2 < S(1)) return {w, x - (wx / S(2) - c * w.cross(wx))};
-    return {w, (gamma * x + c * w.dot(x) * w) - wx / S(2)};
+    const auto half = S(0.5) * w;
+    const auto half_wx = cross(half, x);
+    detail::Components<S> moment;
+    if (t2 < S(1)) {
+      moment = x - (half_wx - S(S(2) * c) * cross(w, half_wx));
+    } else {
+      const S along = c * (w.x * x.x + w.y * x.y + w.z * x.z);
+      moment = (gamma * x + along * w) - half_wx;
+    }
+    return {detail::vector<S>(w), detail::vector<S>(moment)};
   }
-  const Eigen::Quaternion<S> q = quaternion(R);
-  const Vector3<S> n = q.vec();
-  const S n2 = n.squaredNorm();
-  const S n1 = sqrt(n2);
-  const S ratio = atan2(n1, q.w()) / n1;  // theta / 2 / sin(theta/2)
-  return {S(2) * ratio * n,
-          ratio * (q.w() * x - n.cross(x)) + (S(1) - ratio * q.w()) / n2 * n.dot(x) * n};
+  return detail::log_of_wide_turn(X);
 }
 
 }  // namespace kreisel

@@ -32,13 +32,13 @@ template <class S>
   return {component(R, 0, v), component(R, 1, v), component(R, 2, v)};
 }
 
+/// C = A B. In place: nine numbers made first and stored later have not room enough in registers.
 template <class S>
-[[nodiscard, gnu::always_inline]] inline Matrix3<S> product(const Matrix3<S>& A,
-                                                            const Matrix3<S>& B) {
-  const Vector3<S> x = product(A, Vector3<S>(B(0, 0), B(1, 0), B(2, 0)));
-  const Vector3<S> y = product(A, Vector3<S>(B(0, 1), B(1, 1), B(2, 1)));
-  const Vector3<S> z = product(A, Vector3<S>(B(0, 2), B(1, 2), B(2, 2)));
-  return (Matrix3<S>() << x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z()).finished();
+[[gnu::always_inline]] inline void multiply(const Matrix3<S>& A, const Matrix3<S>& B,
+                                            Matrix3<S>& C) {
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) C(i, k) = A(i, 0) * B(0, k) + A(i, 1) * B(1, k) + A(i, 2) * B(2, k);
+  }
 }
 
 /// R^t v

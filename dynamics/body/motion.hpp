@@ -51,14 +51,6 @@ template <class S>
   return {R(k, 0), R(k, 1), R(k, 2)};
 }
 
-/// C = A B. Spelt out, because g++ 12 calls Eigen's instead of inlining it.
-template <class S>
-void multiply(const Matrix3<S>& A, const Matrix3<S>& B, Matrix3<S>& C) {
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) C(i, k) = A(i, 0) * B(0, k) + A(i, 1) * B(1, k) + A(i, 2) * B(2, k);
-  }
-}
-
 template <class S>
 [[nodiscard]] Vector3<S> multiply(const Matrix3<S>& A, const Vector3<double>& b) {
   return {A(0, 0) * b[0] + A(0, 1) * b[1] + A(0, 2) * b[2],

@@ -36,7 +36,7 @@ struct RotatingFrame {
         turned_back(detail::Turn<S>::from(turn.rotation),
                     turned_back(axes, components(origin_velocity)) + components(turn.translation));
     FrameMotion<G, I, S> motion;
-    motion.X.value.rotation = detail::product(X.value.rotation, turn.rotation);
+    detail::multiply(X.value.rotation, turn.rotation, motion.X.value.rotation);
     motion.X.value.translation =
         detail::vector<S>(components(X.value.translation) + t * components(origin_velocity) +
                           turned(axes, (t * t) * twice_integrated(w, a)));
