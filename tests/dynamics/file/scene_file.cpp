@@ -3,7 +3,9 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/scene_system.hpp>
@@ -253,6 +255,42 @@ BOOST_AUTO_TEST_CASE(carry_loads) {
   BOOST_TEST((P.value.moment == Vector3<double>(0, 0, 5)));
 }
 
+// The body is turned by a quarter about z against the guide, and the guide against the inertial frame.
+BOOST_AUTO_TEST_CASE(carry_loads_on_any_axes) {
+  const auto read = scene(
+      one_body("joint = { kind = \"free\" }\nload = [ { force = [1, 0, 0], axes = \"guide\" }, "
+               "{ torque = [1, 0, 0], axes = \"inertial\" }, { force = [1, 0, 0] } ]"));
+  const Matrix3<double> quarter =
+      Eigen::AngleAxisd(std::acos(-1.0) / 2, Vector3<double>::UnitZ()).toRotationMatrix();
+  Situation<> s;
+  s.X.value.rotation = quarter;
+  s.guide.X.value.rotation = quarter;
+  const auto& loads = read.bodies.at(0).loads;
+  BOOST_REQUIRE(loads.size() == 3U);
+  BOOST_TEST((loads[0](s).value.resultant - Vector3<double>(0, -1, 0)).norm() < 1e-15);
+  BOOST_TEST((loads[1](s).value.moment - Vector3<double>(-1, 0, 0)).norm() < 1e-15);
+  BOOST_TEST((loads[2](s).value.resultant - Vector3<double>(1, 0, 0)).norm() < 1e-15);
+}
+
+BOOST_AUTO_TEST_CASE(slide_on_springs) {
+  const auto read = scene(
+      one_body("joint = { kind = \"prismatic\", axis = [0, 1, 0] }\nspring = { stiffness = 3, "
+               "rest = 0.5 }\ninitial = { displacement = 1, rate = 2 }"));
+  BOOST_TEST(read.bodies.at(0).forces.at(0).rest == 0.5);
+  BOOST_TEST(read.start.at(0).coordinates == std::vector<double>({1}));
+  BOOST_TEST(read.start.at(0).rates == std::vector<double>({2}));
+}
+
+// In radian, and back in degrees.
+BOOST_AUTO_TEST_CASE(begin_at_angles_in_degrees) {
+  constexpr double degree = 0.017453292519943295;
+  const auto read =
+      scene(one_body("joint = { kind = \"universal\", axis = [0, 1, 0], second_axis = [1, 0, 0] }\n"
+                     "initial = { angle_deg = [90, 45], rate_deg = [1, 2] }"));
+  BOOST_TEST(read.start.at(0).coordinates == std::vector<double>({90 * degree, 45 * degree}));
+  BOOST_TEST(read.start.at(0).rates == std::vector<double>({1 * degree, 2 * degree}));
+}
+
 BOOST_AUTO_TEST_CASE(may_be_rotors) {
   const std::string axis = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
   const auto with = [&](const std::string& rest) { return scene(one_body(axis + rest)); };
@@ -264,6 +302,19 @@ BOOST_AUTO_TEST_CASE(may_be_rotors) {
   BOOST_TEST((regulated.bodies.at(0).rotor->mode == RotorMode::regulated));
   const auto torque = with("rotor = { mode = \"torque\", torque = 2 }");
   BOOST_TEST(torque.bodies.at(0).rotor->torque == 2);
+  // A torque of friction or a constant one makes a free rotor a driven one.
+  const auto rubbed = with("rotor = { mode = \"free\", speed = 3 }\ndamping = 0.1");
+  BOOST_TEST((rubbed.bodies.at(0).rotor->mode == RotorMode::torque));
+  BOOST_TEST(rubbed.bodies.at(0).rotor->torque == 0);
+  // A load may ask for the angle, which a rotor does not keep.
+  const std::string load = "\nload = { torque = [0, 0, 1] }";
+  const auto loaded = with("rotor = { mode = \"torque\", torque = 2 }\nforce = 5" + load);
+  BOOST_TEST(!loaded.bodies.at(0).rotor);
+  BOOST_TEST(loaded.bodies.at(0).forces.at(0).constant == 7);
+  const auto kept = with("rotor = { mode = \"regulated\", speed = 3 }" + load);
+  BOOST_TEST(!kept.bodies.at(0).rotor);
+  BOOST_TEST((kept.bodies.at(0).rule == JointRule::constant_rate));
+  BOOST_TEST(kept.start.at(0).rates.at(0) == 3);
   BOOST_TEST((with("drive = \"constant-rate\"").bodies.at(0).rule == JointRule::constant_rate));
   BOOST_TEST((with("hold = true").bodies.at(0).rule == JointRule::held));
 }
@@ -285,6 +336,37 @@ BOOST_AUTO_TEST_CASE(makes_output_times) {
   BOOST_TEST(times("t_end = 1\noutput_times = [0.25, 0.5]", {.t_end = 0.3}) ==
              std::vector<double>({0.25}));
   BOOST_TEST(times("output_step = 1", {.t_end = 2}) == std::vector<double>({0, 1, 2}));
+}
+
+BOOST_AUTO_TEST_CASE(says_by_which_equations_and_how_well) {
+  const auto solve = [](const std::string& rest) { return scene(body + run + rest); };
+  BOOST_TEST((solve("").model == SceneModel::exact));
+  BOOST_TEST((solve("model = \"linear\"").model == SceneModel::linear));
+  BOOST_TEST((solve("model = \"precession\"").model == SceneModel::precession));
+  BOOST_TEST((solve("method = \"gauss16\"").method == Method::gauss16));
+  BOOST_TEST(solve("").tolerance == 1e-10);
+  BOOST_TEST(solve("tolerance = 1e-6").tolerance == 1e-6);
+  BOOST_TEST(parse_scene(body + run, "s.toml", {.tolerance = 1e-7}).tolerance == 1e-7);
+  BOOST_TEST(!solve("").reactions);
+  const SceneFile told = scene(body + run + "[report]\nreactions = true\n");
+  BOOST_TEST(told.reactions);
+  BOOST_TEST(!told.terms);
+  BOOST_TEST(scene(body + run + "[report]\nterms = true\n").terms);
+}
+
+BOOST_AUTO_TEST_CASE(is_read_from_a_file_of_bearable_size) {
+  const test::Scratch folder;
+  const auto file = folder.write("scene.toml", "title = \"a 'b' # c\"\n" + body + run);
+  BOOST_TEST(read_scene(file).title == "a 'b' # c");
+  BOOST_TEST(read_scene(file).t_end == 4);
+  BOOST_TEST(read_scene(file, {.t_end = 3}).t_end == 3);
+  std::filesystem::resize_file(file, (64U << 20U) + 1);
+  try {
+    (void)read_scene(file);
+    BOOST_ERROR("not refused");
+  } catch (const InvalidInput& error) {
+    BOOST_TEST(error.what() == file.string() + ": is larger than 64 MB");
+  }
 }
 
 BOOST_AUTO_TEST_CASE(knows_the_methods) {
@@ -354,6 +436,121 @@ BOOST_AUTO_TEST_CASE(are_told_with_line_column_key_and_reason) {
     const std::string found = mistakes(text);
     BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
   }
+}
+
+// In each place where a scene may be at odds with itself.
+BOOST_AUTO_TEST_CASE(are_told_wherever_they_are) {
+  const std::string revolute = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
+  const std::string prismatic = "joint = { kind = \"prismatic\", axis = [0, 0, 1] }\n";
+  const std::string free = "joint = { kind = \"free\" }\n";
+  const auto solve = [](const std::string& rest) { return body + "[solve]\nt_end = 1\n" + rest; };
+  const auto guide = [](const std::string& rest) { return "[guide]\n" + rest + body + run; };
+  const auto earth = [&guide](const std::string& height, const std::string& azimuth,
+                              const std::string& rate) {
+    return guide("kind = \"earth\"\nlatitude_deg = 50\nheight = " + height +
+                 "\nazimuth_deg = " + azimuth + "\nrate = " + rate + "\n");
+  };
+  const auto second = [&revolute](const std::string& rest) {
+    return body + "[[body]]\nname = \"b\"\nmass = 1\ninertia = [1, 1, 1]\n" + revolute + rest + run;
+  };
+  std::string chain = "{ kind = \"inertial\" }";
+  for (int depth = 0; depth < 9; ++depth) chain = "{ kind = \"chain\", links = [ " + chain + " ] }";
+  const std::pair<std::string, std::string> cases[] = {
+      {solve("tolerance = 0.1\n"), "s.toml:9:13: solve.tolerance: lies outside [1e-15, 1e-2]"},
+      {solve("tolerance = 1e-16\n"), "solve.tolerance: lies outside [1e-15, 1e-2]"},
+      {solve("output_step = 0.1\noutput_times = [0.5]\n"),
+       "solve.output_times: is given beside 'output_step'"},
+      {solve("output_times = []\n"), "solve.output_times: is empty"},
+      {solve("output_times = [-0.5]\n"), "solve.output_times: begins before t = 0"},
+      {solve("output_times = [0.5, 1.5]\n"), "solve.output_times: goes on after t_end"},
+      {solve("output_times = 0.5\n"),
+       "solve.output_times: must be a list of numbers, not a number"},
+      {"solve = true\n" + body, "s.toml:1:9: solve: must be a table, not true or false"},
+      {guide("kind = \"chain\"\n"), "guide.links: is missing"},
+      {guide("kind = \"chain\"\nlinks = []\n"), "guide.links: is empty"},
+      {guide("kind = \"chain\"\nlinks = [3]\n"),
+       "guide.links[0]: must be a table, not a whole number"},
+      {guide("kind = \"chain\"\nlinks = { kind = \"inertial\" }\n"),
+       "guide.links: must be a list of tables, not a table"},
+      {guide("kind = \"chain\"\nlinks = [ " + chain + " ]\n"),
+       ".links: is a chain in a chain, nine deep"},
+      {guide("kind = \"chain\"\nlinks = [ {} ]\n"), "guide.links[0].kind: is missing"},
+      {guide("kind = \"harmonic\"\n"), "guide.angular_velocity: is missing"},
+      {guide("kind = \"harmonic\"\nangular_velocity = { constant = [0, 0, 3e5] }\n"),
+       "guide.kind: 'harmonic' turns too fast for so long a run"},
+      {guide("kind = \"table\"\nfile = \"\"\n"), "guide.file: is empty"},
+      {guide("kind = \"table\"\nfile = 1979-05-27\n"),
+       "guide.file: must be a text, not a date or a time"},
+      {earth("2e7", "0", "0"), "s.toml:4:10: guide.height: 20000000 m lies outside"},
+      {earth("0", "361", "0"), "s.toml:5:15: guide.azimuth_deg: 361 degrees lies outside"},
+      {earth("0", "0", "1001"), "s.toml:6:8: guide.rate: 1001 rad/s lies outside"},
+      {"[gravity]\nkind = \"moon\"\nvector = [0, 0, 1]\n" + body + run,
+       "s.toml:2:8: gravity.kind: 'moon' is none of"},
+      {"body = []\n" + run, "s.toml:1:8: body: is empty"},
+      {one_body(revolute + "parent = \"a\""), "body 'a'.parent: is the body itself"},
+      {second("parent = \"c\"\n"), "body 'b'.parent: 'c' is no body"},
+      {"[[body]]\nname = \"b\"\nparent = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n" + revolute + body +
+           run,
+       "s.toml:3:10: body 'b'.parent: 'a' comes later; parents come before children"},
+      {body + "rotor = { mode = \"free\", speed = 1 }\n[[body]]\nname = \"b\"\nparent = \"a\"\n" +
+           "mass = 1\ninertia = [1, 1, 1]\n" + revolute + run,
+       "body 'b'.parent: 'a' is a rotor, which can carry nothing"},
+      {"[[body]]\nname = \"guide\"\nmass = 1\ninertia = [1, 1, 1]\n" + revolute + run,
+       "body 'guide'.name: 'guide' is reserved for the guide frame"},
+      {"[[body]]\nname = \"\"\nmass = 1\ninertia = [1, 1, 1]\n" + revolute + run,
+       "body[0].name: is empty"},
+      {"[[body]]\nmass = 1\ninertia = [1, 1, 1]\n" + revolute + run, "body[0].name: is missing"},
+      {one_body("joint = { kind = \"universal\", axis = [0, 0, 1], second_axis = [0, 0, -2] }"),
+       "body 'a'.joint.second_axis: is parallel to 'axis'"},
+      {one_body("joint = { kind = \"hinge\", axis = [0, 0, 1] }"),
+       "body 'a'.joint.kind: 'hinge' is none of"},
+      {one_body(""), "body 'a'.joint: is missing"},
+      {"[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 1, 0]\n" + revolute + run,
+       "body 'a'.inertia: must be 3 numbers, or 6 (xx, yy, zz, xy, xz, yz), not 4"},
+      {"[[body]]\nname = \"a\"\nmass = 1\n" + revolute + run, "body 'a'.inertia: is missing"},
+      {one_body(revolute + "centre = [0, 0]"), "body 'a'.centre: must be 3 numbers, not 2"},
+      {one_body(free + "damping = 1"),
+       "body 'a'.damping: has no single coordinate in this kind of joint"},
+      {one_body(revolute + "spring = { rest = 0 }"), "body 'a'.spring.stiffness: is missing"},
+      {one_body("joint = { kind = \"universal\", axis = [0, 0, 1], second_axis = [0, 1, 0] }\n" +
+                std::string("initial = { angle = [0, 1], angle_deg = [0, 1] }")),
+       "body 'a'.initial.angle_deg: is given in radian too, as 'angle'"},
+      {one_body(revolute + "hold = true\ninitial = { rate = 1 }"),
+       "body 'a'.hold: locks a joint whose initial rate is not 0"},
+      {one_body(revolute + "hold = true\ndrive = \"constant-rate\""),
+       "body 'a'.hold: and 'drive' exclude each other"},
+      {one_body(revolute + "hold = \"yes\""), "body 'a'.hold: must be true or false, not a text"},
+      {one_body(free + "load = { point = [0, 0, 1] }"), "body 'a'.load.force: is missing"},
+      {one_body(prismatic + "rotor = { mode = \"free\", speed = 1 }"),
+       "body 'a'.rotor: is for a revolute joint"},
+      {one_body(revolute + "rotor = { mode = \"free\" }"), "body 'a'.rotor.speed: is missing"},
+      {one_body(revolute + "rotor = { mode = \"free\", speed = 1, torque = 2 }"),
+       "body 'a'.rotor.torque: is for mode = 'torque'"},
+      {one_body(revolute + "rotor = { mode = \"torque\" }"), "body 'a'.rotor.torque: is missing"},
+      {one_body(revolute + "hold = true\nrotor = { mode = \"free\", speed = 1 }"),
+       "body 'a'.hold: does not go with a rotor"},
+      {"[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 2, 2]\n" + revolute +
+           "rotor = { mode = \"free\", speed = 1 }\n" + run,
+       "body 'a'.rotor: is not symmetric about its axis"},
+      {"[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 0]\n" + revolute +
+           "rotor = { mode = \"free\", speed = 1 }\n" + run,
+       "body 'a'.rotor: has no moment of inertia about its axis"},
+  };
+  for (const auto& [text, reason] : cases) {
+    const std::string found = mistakes(text);
+    BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
+  }
+}
+
+// One line each, and none longer than a screen is wide several times.
+BOOST_AUTO_TEST_CASE(show_texts_of_the_file_short_and_in_one_line) {
+  const std::string found =
+      mistakes("[guide]\nkind = \"a\\nb\\u007f" + std::string(100, 'c') + "\"\n" + body + run);
+  BOOST_TEST(found.find("guide.kind: 'a?b?" + std::string(56, 'c') + "...' is none of") !=
+                 std::string::npos,
+             found);
+  BOOST_TEST(mistakes("\"a\\tb\" = 1\n" + body + run).find("a?b: is no key here") !=
+             std::string::npos);
 }
 
 // Mass, tensor and axis are wrong at once, and all are told, in the order of the file.
