@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/gsl_errors.hpp>
 #include <dynamics/step/jacobian.hpp>
@@ -151,13 +152,7 @@ class GslSteps {
         control_(accuracy, blocks, dimension),
         step_(gsl_odeiv2_step_alloc(detail::gsl_type(method), dimension), &gsl_odeiv2_step_free),
         evolve_(gsl_odeiv2_evolve_alloc(dimension), &gsl_odeiv2_evolve_free) {
-    if (!(accuracy.relative >= 1e-16 && accuracy.relative <= 1e-2)) {
-      detail::refuse_steps("accuracy.relative = ", accuracy.relative,
-                           " lies outside [1e-16, 1e-2]");
-    }
-    if (!(accuracy.smallest >= 0)) {
-      detail::refuse_steps("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
-    }
+    detail::check(accuracy);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
     if (!finite(y)) detail::refuse_steps("the state at the start is not finite");
     const bool implicit = method == GslMethod::msbdf || method == GslMethod::bsimp;

@@ -174,6 +174,42 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
   BOOST_TEST(near(steps.y()[2], 1e-9, 1e-9, 1e6));
 }
 
+// msadams and msbdf ask for what is allowed of each component, and steer by it themselves.
+BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size_with_several_steps_too) {
+  const auto field = [](const auto& /*t*/, const auto& y) {
+    using S = typename std::decay_t<decltype(y)>::Scalar;
+    return Eigen::Matrix<S, 4, 1>(-y[1], y[0], -3 * y[3], 3 * y[2]);
+  };
+  const auto error = [&](GslMethod method, const auto& blocks) {
+    GslSteps steps(method, field, forward_jacobian<4>(field), 0.0, State<4>(1, 0, 1e-9, 0),
+                   {.relative = 1e-6, .smallest = 0}, blocks);
+    steps.advance_to(2 * std::numbers::pi);
+    return (steps.y().template tail<2>() / 1e-9 - State<2>(1, 0)).norm();
+  };
+  for (const GslMethod method : {GslMethod::msadams, GslMethod::msbdf}) {
+    const double apart = error(method, std::array{2, 2});
+    const double together = error(method, std::array{4});
+    BOOST_TEST_MESSAGE(static_cast<int>(method) << ": " << apart << ", as one block " << together);
+    BOOST_TEST(apart < 1e-3);
+    BOOST_TEST(together > 10 * apart);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
+  GslSteps steps(GslMethod::rkf45, circle, 5.0, State<2>(1, 0));
+  BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
+  BOOST_TEST(steps.effort().evaluations == 0);
+}
+
+BOOST_AUTO_TEST_CASE(tell_at_once_of_a_field_that_is_no_number) {
+  const auto field = [](double, const State<1>&) { return State<1>(not_a_number); };
+  GslSteps steps(GslMethod::rkf45, field, 3.0, State<1>(1.0));
+  BOOST_CHECK_EXCEPTION(steps.advance_to(4), ComputationFailed, [](const ComputationFailed& e) {
+    return std::string(e.what()) == "integration stopped at t = 3 s: the field is not finite";
+  });
+  BOOST_TEST(steps.effort().evaluations == 1);
+}
+
 BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   const auto with = [](const Accuracy& accuracy) {
     GslSteps steps(GslMethod::rkf45, circle, 0.0, State<2>(1, 0), accuracy);
@@ -181,7 +217,10 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   };
   BOOST_CHECK_THROW(with({.relative = 1e-17}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(with({.relative = 0.1}), InvalidInput);
   BOOST_CHECK_THROW(with({.smallest = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(with({.most_evaluations = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(GslSteps(static_cast<GslMethod>(9), circle, 0.0, State<2>(1, 0)), InvalidInput);
   BOOST_CHECK_EXCEPTION(
       GslSteps(GslMethod::bsimp, circle, 0.0, State<2>(1, 0)), InvalidInput,
       [](const InvalidInput& e) { return starts_with(e, "GSL bsimp needs a Jacobian"); });
