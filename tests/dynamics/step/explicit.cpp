@@ -207,6 +207,8 @@ BOOST_AUTO_TEST_CASE(go_there_and_back) {
 BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
   ExplicitSteps steps(circle, 5.0, State<2>(1, 0));
   BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
+  steps.step_towards(5);
+  BOOST_TEST(steps.t() == 5);
   BOOST_TEST(steps.effort().evaluations == 0);
 }
 
@@ -237,6 +239,17 @@ BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
   BOOST_TEST(std::abs(steps.t() - 1) < 1e-12);
   BOOST_TEST(near(steps.y()[0], std::exp(steps.t()), 3.0, 20));
   BOOST_TEST(steps.effort().evaluations < 1e4);
+}
+
+BOOST_AUTO_TEST_CASE(tell_at_once_of_a_field_that_is_no_number) {
+  const auto field = [](double, const State<1>&) {
+    return State<1>(std::numeric_limits<double>::quiet_NaN());
+  };
+  ExplicitSteps steps(field, 3.0, State<1>(1.0));
+  BOOST_CHECK_EXCEPTION(steps.advance_to(4), ComputationFailed, [](const ComputationFailed& e) {
+    return std::string(e.what()) == "integration stopped at t = 3 s: the field is not finite";
+  });
+  BOOST_TEST(steps.effort().evaluations == 1);
 }
 
 // A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
@@ -287,7 +300,10 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(with({.relative = 1e-17}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = 0}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = nan}), InvalidInput);
+  BOOST_CHECK_THROW(with({.relative = 0.1}), InvalidInput);
   BOOST_CHECK_THROW(with({.smallest = nan}), InvalidInput);
+  BOOST_CHECK_THROW(with({.most_evaluations = nan}), InvalidInput);
+  BOOST_CHECK_THROW(with({.most_evaluations = 0}), InvalidInput);
   BOOST_CHECK_THROW(ExplicitSteps(circle, nan, State<2>(1, 0)), InvalidInput);
   BOOST_CHECK_THROW(ExplicitSteps(circle, 0.0, State<2>(nan, 0)), InvalidInput);
   ExplicitSteps steps(circle, 0.0, State<2>(1, 0));

@@ -185,6 +185,10 @@ BOOST_AUTO_TEST_CASE(take_equal_steps_no_longer_than_asked) {
   steps.advance_to(1);
   BOOST_TEST(steps.effort().steps == 4);
   BOOST_TEST(steps.t() == 1);
+  steps.take_steps_of(0.1);
+  steps.advance_to(2);
+  BOOST_TEST(steps.effort().steps == 14);
+  BOOST_CHECK_THROW(steps.take_steps_of(not_a_number), InvalidInput);
 }
 
 BOOST_AUTO_TEST_CASE(stop_where_the_stages_do_not_converge) {

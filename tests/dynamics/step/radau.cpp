@@ -236,10 +236,45 @@ BOOST_AUTO_TEST_CASE(keep_the_last_good_state_where_the_field_ends) {
   BOOST_TEST(std::isfinite(steps.y()[0]));
 }
 
+BOOST_AUTO_TEST_CASE(say_what_stops_them) {
+  const auto says = [](auto field, auto jacobian, const Accuracy& accuracy, const char* why) {
+    RadauSteps<State<1>, decltype(field), decltype(jacobian)> steps(field, jacobian, 3, State<1>(1),
+                                                                    accuracy);
+    BOOST_CHECK_EXCEPTION((void)steps.advance_to(4), ComputationFailed,
+                          [&](const ComputationFailed& e) {
+                            BOOST_TEST_MESSAGE(e.what());
+                            return std::string(e.what()).ends_with(why);
+                          });
+    BOOST_TEST(steps.y()[0] == 1);
+    BOOST_TEST(steps.t() == 3);
+  };
+  const auto with = [](double slope) {
+    return [slope](double, const State<1>&) { return Jacobian<1>{State<1>(slope), State<1>(0)}; };
+  };
+  const auto nowhere = [](double, const State<1>&) { return State<1>(not_a_number); };
+  says(nowhere, with(0), {}, "the field is not finite");
+  const auto rest = [](double, const State<1>&) { return State<1>(0); };
+  says(rest, with(not_a_number), {}, "the Jacobian of the field is not finite");
+  const auto only_here = [](double, const State<1>& y) {
+    return State<1>(y[0] == 1 ? 1 : not_a_number);
+  };
+  says(only_here, with(0), {}, "the step has become too short to move time on");
+  says(only_here, with(0), {.most_evaluations = 100}, "100 evaluations are spent");
+}
+
+BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
+  auto steps = radau<7>(Pendulum{}, 5, State<2>(1, 0), {});
+  steps.step_towards(5);
+  BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
+  BOOST_TEST(steps.effort().evaluations == 0);
+}
+
 BOOST_AUTO_TEST_CASE(refuse_nonsense) {
   const Pendulum field;
   const State<2> y(1, 0);
   BOOST_CHECK_THROW((void)radau<7>(field, 0, y, {.relative = 0}), InvalidInput);
+  BOOST_CHECK_THROW((void)radau<7>(field, 0, y, {.relative = 0.1}), InvalidInput);
+  BOOST_CHECK_THROW((void)radau<7>(field, 0, y, {.most_evaluations = 0}), InvalidInput);
   BOOST_CHECK_THROW((void)radau<7>(field, not_a_number, y, {}), InvalidInput);
   BOOST_CHECK_THROW((void)radau<7>(field, 0, State<2>(not_a_number, 0), {}), InvalidInput);
   auto steps = radau<7>(field, 0, y, {});

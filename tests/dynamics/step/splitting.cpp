@@ -254,6 +254,32 @@ BOOST_AUTO_TEST_CASE(stop_where_the_torque_ends_and_keep_the_last_state) {
   BOOST_TEST(angle(steps.attitude(), exact.attitude) < 1e-11);
 }
 
+BOOST_AUTO_TEST_CASE(give_up_when_told) {
+  const Top top{.spin = 300};
+  for (const double evaluations : {0.0, 700.0}) {
+    auto steps = top.steps<Blanes864>(1e-3);
+    steps.give_up_after(evaluations);
+    steps.advance_to(0);
+    BOOST_TEST(steps.effort().evaluations == 0);
+    BOOST_CHECK_THROW(steps.advance_to(10), ComputationFailed);
+    BOOST_TEST(steps.effort().evaluations <= evaluations + 7);
+    const Top stopped{.spin = 300, .end = steps.t()};
+    BOOST_TEST((steps.t() > 0));
+    BOOST_TEST(angle(steps.attitude(), stopped.exact().attitude) < 1e-8);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(become_shorter_when_told) {
+  const Top top{.spin = 300};
+  auto steps = top.steps<Blanes864>(4e-3);
+  steps.advance_to(0.4);
+  BOOST_TEST(steps.effort().steps == 100);
+  steps.take_steps_of(2e-3);
+  steps.advance_to(0.8);
+  BOOST_TEST(steps.effort().steps == 300);
+  BOOST_CHECK_THROW(steps.take_steps_of(0), InvalidInput);
+}
+
 BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   const auto with = [](double t, double q, double w, double step) {
     return SplittingSteps(SymmetricFreeFlow(2, 1), Gravity{1}, t, Quaternion(q, 0, 0, 0), {0, 0, w},
