@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 
-#include <dynamics/file/csv.hpp>
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
 
@@ -57,25 +56,6 @@ std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<
     *value = from + static_cast<Real>(i) * step;
     kreisel::check(place);
     sites.push_back({"", place});
-  }
-  return sites;
-}
-
-std::vector<Site> listed_sites(const std::string& file, Real rotation_rate) {
-  const auto table = kreisel::CsvTable::read(file, {"name", "latitude", "height", "azimuth"});
-  std::vector<Site> sites;
-  for (std::size_t row = 0; row < table.size(); ++row) {
-    const auto read = [&](const char* column) {
-      return number(table.where(row) + ": " + column, table.text(row, column));
-    };
-    Site site{table.text(row, "name"),
-              {read("latitude"), read("azimuth"), read("height"), rotation_rate}};
-    try {
-      kreisel::check(site.place);
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(table.where(row) + ": " + error.what());
-    }
-    sites.push_back(std::move(site));
   }
   return sites;
 }

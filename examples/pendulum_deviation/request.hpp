@@ -5,16 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/guide/earth.hpp>
 #include <dynamics/scene/pendulum_deviation.hpp>
 
-/// Decimals are read in long double, so that what the user typed counts as exact.
-using Real = long double;
-
-struct Site {
-  std::string name;  // empty unless it comes from a list of sites
-  kreisel::EarthSite<Real> place;
-};
+#include "sites.hpp"
 
 /// What the command line asks for, checked.
 struct Request {

@@ -3,12 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <string>
-#include <type_traits>
-
 #include <motor/error.hpp>
+
+#include "number.hpp"
 
 /// What the programs share in reading their command lines.
 namespace command_line {
@@ -26,22 +23,6 @@ namespace command_line {
     throw kreisel::InvalidInput(error.what());
   }
   return true;
-}
-
-/// Throws : kreisel::InvalidInput unless the whole text is a finite number
-template <class Real = double>
-[[nodiscard]] Real number(const std::string& what, const std::string& text) {
-  char* end = nullptr;
-  Real value = 0;
-  if constexpr (std::is_same_v<Real, long double>) {
-    value = std::strtold(text.c_str(), &end);
-  } else {
-    value = std::strtod(text.c_str(), &end);
-  }
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw kreisel::InvalidInput(fmt::format("{} = '{}' is not a finite number", what, text));
-  }
-  return value;
 }
 
 }  // namespace command_line

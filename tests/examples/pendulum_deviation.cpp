@@ -173,6 +173,9 @@ BOOST_AUTO_TEST_CASE(a_plot_is_a_picture) {
 BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_one_line_and_no_file) {
   const Scratch folder;
   const auto half = folder.write("half.csv", "name,latitude,height,azimuth\nA,10,0,90\nB,20,0\n");
+  // A number does not end at a byte 0.
+  const auto cut = folder.write(
+      "cut.csv", std::string("name,latitude,height,azimuth\nA,45") + '\0' + "6,0,90\n");
   const auto beyond =
       folder.write("beyond.csv", "name,latitude,height,azimuth\nA,10,0,90\nB,95,0,90\n");
   const std::string out = " --csv '" + (folder.path() / "out.csv").string() + "'";
@@ -196,6 +199,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_one_line_and_no_file) {
       {theta + "--theta-b -0.21 --theta-c 0.2", "principal moments"},
       {"--sites '" + half.string() + "'", "half.csv:3: 3 fields"},
       {"--sites '" + beyond.string() + "'", "beyond.csv:3: latitude = 95"},
+      {"--sites '" + cut.string() + "'", "cut.csv:2: latitude = '45"},
       {"--sites none.csv", "none.csv: cannot be read"},
       {"--sites '" + half.string() + "' --latitude 45", "of its own"},
       {"--sweep latitude=0:91:1", "latitude = 91"},

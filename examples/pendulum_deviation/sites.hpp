@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <dynamics/guide/earth.hpp>
+
+/// Decimals are read in long double, so that what the user typed counts as exact.
+using Real = long double;
+
+struct Site {
+  std::string name;  // empty unless it comes from a list of sites
+  kreisel::EarthSite<Real> place;
+};
+
+/// A table of sites: columns name, latitude, height, azimuth, in degrees and metres.
+///
+/// Throws : kreisel::InvalidInput naming file, line and column
+[[nodiscard]] std::vector<Site> listed_sites(const std::filesystem::path& file, Real rotation_rate);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <type_traits>
+
+#include <motor/error.hpp>
+
+namespace command_line {
+
+/// Throws : kreisel::InvalidInput unless the whole text is a finite number
+template <class Real = double>
+[[nodiscard]] Real number(const std::string& what, const std::string& text) {
+  char* end = nullptr;
+  Real value = 0;
+  if constexpr (std::is_same_v<Real, long double>) {
+    value = std::strtold(text.c_str(), &end);
+  } else {
+    value = std::strtod(text.c_str(), &end);
+  }
+  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
+    throw kreisel::InvalidInput(fmt::format("{} = '{}' is not a finite number", what, text));
+  }
+  return value;
+}
+
+}  // namespace command_line
