@@ -1,5 +1,7 @@
 #include "approximation.hpp"
 
+#include <unsupported/Eigen/MatrixFunctions>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,7 +15,7 @@
 
 #include "../analyze/steady.hpp"
 
-using Eigen::MatrixXd, Eigen::VectorXd;
+using Eigen::VectorXd;
 using kreisel::InvalidInput;
 using kreisel::RunStatus;
 using kreisel::Trajectory;
@@ -24,20 +26,6 @@ VectorXd joined(const JointState& state) {
   VectorXd y(state.coordinates.size() + state.rates.size());
   y << state.coordinates, state.rates;
   return y;
-}
-
-/// exp(A): a Taylor series where |A| is below 1/2, and squares of it; what is cut off is below
-/// 2^-17/17! of the sum.
-MatrixXd exponential(const MatrixXd& A) {
-  constexpr int terms = 16;
-  const double size = A.cwiseAbs().rowwise().sum().maxCoeff();
-  const int halvings = size > 0 ? std::max(0, std::ilogb(size) + 2) : 0;
-  const MatrixXd part = std::ldexp(1.0, -halvings) * A;
-  const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols());
-  MatrixXd sum = one;
-  for (int k = terms; k >= 1; --k) sum = one + part * sum / k;
-  for (int k = 0; k < halvings; ++k) sum = sum * sum;
-  return sum;
 }
 
 /// States of the linear equations about a steady motion.
@@ -62,7 +50,7 @@ class LinearMotion {
     double before = 0;
     std::vector<VectorXd> result;
     for (const double t : times) {
-      eta = exponential(MatrixXd((t - before) * about_.A)) * eta;
+      eta = ((t - before) * about_.A).exp() * eta;
       before = t;
       const VectorXd steady = tangent.moved(about_.state, VectorXd(t * about_.rate));
       result.push_back(tangent.moved(steady, eta));
