@@ -91,9 +91,7 @@ class SceneReader {
         "method",
         {"auto", "automatic", "closed form", "verner98", "gauss16", "radau13", "splitting"});
     scene_.method = request_.method.value_or(*method_named(method));
-    const std::string model = solve->choice("model", {"exact", "linear", "precession"});
-    if (model == "linear") scene_.model = SceneModel::linear;
-    if (model == "precession") scene_.model = SceneModel::precession;
+    read_model(*solve);
     const auto step = solve->number("output_step", Range::positive);
     const auto times = solve->numbers("output_times");
     if (step && times) {
@@ -105,6 +103,17 @@ class SceneReader {
     if (times) check_times(*solve, *times);
     solve->finish();
     if (mistakes_.none()) set_times(step, times);
+  }
+
+  void read_model(Section& solve) {
+    using enum SceneModel;
+    const SceneModel models[] = {exact, linear, precession, foeppl, fuchs_weigand};
+    std::vector<std::string> names;
+    for (const SceneModel model : models) names.emplace_back(name(model));
+    const std::string chosen = solve.choice("model", names);
+    for (const SceneModel model : models) {
+      if (chosen == name(model)) scene_.model = model;
+    }
   }
 
   void check_times(Section& solve, const std::vector<double>& times) const {

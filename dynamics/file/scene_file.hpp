@@ -77,9 +77,23 @@ struct JointStart {
 /// The equations that a scene is computed by.
 enum class SceneModel {
   exact,
-  linear,     ///< about the steady motion next to the start
-  precession  ///< technical equations, in which the nutations are left out
+  linear,        ///< about the steady motion next to the start
+  precession,    ///< technical equations, in which the nutations are left out
+  foeppl,        ///< small oscillations of a Cardan gyro with a symmetric rotor
+  fuchs_weigand  ///< the same with a rotor of any moments at constant speed
 };
+
+/// As a scene file has it.
+[[nodiscard]] constexpr const char* name(SceneModel model) {
+  switch (model) {
+    case SceneModel::exact: return "exact";
+    case SceneModel::linear: return "linear";
+    case SceneModel::precession: return "precession";
+    case SceneModel::foeppl: return "foeppl";
+    case SceneModel::fuchs_weigand: return "fuchs-weigand";
+  }
+  return "none";
+}
 
 struct SceneFile {
   std::string title;

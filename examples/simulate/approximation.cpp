@@ -14,6 +14,7 @@
 #include <motor/error.hpp>
 
 #include "../analyze/steady.hpp"
+#include "gimbal_motion.hpp"
 
 using Eigen::VectorXd;
 using kreisel::InvalidInput;
@@ -172,8 +173,15 @@ class Approximation final : public Model {
 
 std::unique_ptr<Model> make_approximation(const kreisel::SceneFile& scene,
                                           std::unique_ptr<Model> exact) {
-  if (scene.model == kreisel::SceneModel::linear) {
-    return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));
+  switch (scene.model) {
+    case kreisel::SceneModel::linear:
+      return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));
+    case kreisel::SceneModel::precession:
+      return std::make_unique<Approximation<PrecessionMotion>>(scene, std::move(exact));
+    case kreisel::SceneModel::foeppl:
+    case kreisel::SceneModel::fuchs_weigand:
+      return std::make_unique<Approximation<GimbalMotion>>(scene, std::move(exact));
+    case kreisel::SceneModel::exact: break;
   }
-  return std::make_unique<Approximation<PrecessionMotion>>(scene, std::move(exact));
+  return exact;
 }

@@ -4,6 +4,5 @@
 
 std::unique_ptr<Model> make_model(const kreisel::SceneFile& scene) {
   auto exact = scene.rests() ? make_resting_model(scene) : make_moving_model(scene);
-  if (scene.model == kreisel::SceneModel::exact) return exact;
   return make_approximation(scene, std::move(exact));
 }

@@ -36,15 +36,6 @@ std::string gravity_name(const kreisel::SceneFile& scene) {
   return names[scene.gravity.index()];
 }
 
-const char* name(kreisel::SceneModel model) {
-  switch (model) {
-    case kreisel::SceneModel::exact: return "exact";
-    case kreisel::SceneModel::linear: return "linear";
-    case kreisel::SceneModel::precession: return "precession";
-  }
-  return "";
-}
-
 ordered_json json(const std::vector<Term>& terms) {
   ordered_json list = ordered_json::array();
   for (const Term& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
@@ -108,6 +99,11 @@ std::vector<Term> terms_dropped(const Result& result) {
         {"nutations",
          "accelerations across the gyroscopic moments, and terms of second order in the "
          "velocities"});
+  }
+  if (scene.model == kreisel::SceneModel::foeppl ||
+      scene.model == kreisel::SceneModel::fuchs_weigand) {
+    terms.push_back({"products of the rings' angles and rates", "small against those themselves"});
+    terms.push_back({"changes of the rotor's speed", "of second order in the rings' angles"});
   }
   if (scene.gravity.index() == 3) {
     terms.push_back({"gravity gradient over a body", "gravitation is taken at the centre of mass"});
