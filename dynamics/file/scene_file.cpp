@@ -370,8 +370,15 @@ class SceneReader {
     check_name(section, i, names);
     body.parent = section.text("parent").value_or("guide");
     check_parent(section, body.parent, i, names);
-    body.joint = read_joint(section);
+    const std::optional<Joint> joint = read_joint(section);
     read_inertia(section, body);
+    if (!joint) {  // and so nobody knows what else belongs to the body
+      section.ignore_rest();
+      scene_.bodies.push_back(std::move(body));
+      scene_.start.emplace_back();
+      return;
+    }
+    body.joint = *joint;
     read_forces(section, body);
     const std::string drive = section.choice("drive", {"none", "constant-rate"});
     const bool driven = drive == "constant-rate";
@@ -430,10 +437,11 @@ class SceneReader {
     }
   }
 
-  static Joint read_joint(Section& body) {
+  /// Nothing where the kind of joint is missing or unknown.
+  static std::optional<Joint> read_joint(Section& body) {
     Joint joint;
     auto section = body.required_section("joint");
-    if (!section) return joint;
+    if (!section) return {};
     const std::string kind = section->required_choice(
         "kind", {"fixed", "revolute", "prismatic", "universal", "spherical", "free"});
     const auto axis = [&section](std::string_view key) {
@@ -457,7 +465,7 @@ class SceneReader {
     joint.position = section->vector("position").value_or(Vector3<double>::Zero());
     joint.orientation =
         quaternion(*section, "orientation").value_or(Eigen::Quaterniond::Identity());
-    if (section->text("kind").value_or("") != kind) section->ignore_rest();
+    if (section->text("kind").value_or("") != kind) return {};
     section->finish();
     return joint;
   }

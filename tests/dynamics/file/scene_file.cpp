@@ -572,6 +572,16 @@ t_end = "soon"
              "s.toml:7:9: solve.t_end: must be a number, not a text");
 }
 
+// What goes with a joint is not blamed where the joint is.
+BOOST_AUTO_TEST_CASE(are_told_once) {
+  const std::string rest =
+      "damping = 1\ninitial = { angle = 1 }\nrotor = { mode = \"free\", speed = 1 }";
+  BOOST_TEST(mistakes(one_body("joint = { kind = \"revolut\", axis = [0, 0, 1] }\n" + rest)) ==
+             "s.toml:5:18: body 'a'.joint.kind: 'revolut' is none of 'fixed', 'revolute', "
+             "'prismatic', 'universal', 'spherical' or 'free' (did you mean 'revolute'?)");
+  BOOST_TEST(mistakes(one_body(rest)) == "s.toml:1:1: body 'a'.joint: is missing");
+}
+
 BOOST_AUTO_TEST_CASE(of_what_is_no_text_are_told_too) {
   const std::string nested = "a = " + std::string(100'000, '[');
   BOOST_TEST(mistakes(nested).find("nested more than 64 deep") != std::string::npos);
