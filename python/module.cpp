@@ -6,6 +6,7 @@
 #include <examples/simulate/model.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,11 +34,14 @@ struct Scene {
 
 struct Run {
   std::string title;
+  std::string model;
   std::vector<std::string> columns;
   py::array_t<double> rows;
   py::dict coordinates;
   py::dict rates;
   py::dict reactions;
+  py::array_t<double> errors;
+  std::vector<kreisel::Term> terms;
   kreisel::RunReport report;
 };
 
@@ -53,6 +58,85 @@ Scene scene_of_file(const std::filesystem::path& path) {
 Scene scene_of_text(std::string text, std::filesystem::path path) {
   static_cast<void>(kreisel::parse_scene(text, path));
   return {std::move(text), std::move(path)};
+}
+
+/// A text in TOML's quotes.
+std::string quoted(const std::string& text) {
+  std::ostringstream out;
+  out << '"' << std::hex << std::setfill('0');
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F) {
+      out << "\\u" << std::setw(4) << static_cast<int>(byte);
+    } else {
+      if (c == '"' || c == '\\') out << '\\';
+      out << c;
+    }
+  }
+  return out.str() + '"';
+}
+
+/// A key of TOML, in quotes where it needs them.
+std::string key_of(const std::string& word) {
+  const bool bare =
+      !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
+  return bare ? word : quoted(word);
+}
+
+std::string toml_of(const std::string& key, const py::handle& value);
+
+/// `between` stands between what lies in the list.
+std::string toml_list(const std::string& key, const py::handle& values,
+                      const std::string& between) {
+  std::string text = "[" + between;
+  int i = 0;
+  for (const py::handle item : values) {
+    text += toml_of(key + "[" + std::to_string(i) + "]", item) + "," + between;
+    ++i;
+  }
+  return text + "]";
+}
+
+std::string toml_table(const std::string& key, const py::dict& table) {
+  std::string text = "{";
+  for (const auto& [name, value] : table) {
+    if (!py::isinstance<py::str>(name)) throw py::type_error(key + ": a key is no text");
+    const auto word = name.cast<std::string>();
+    if (text.size() > 1) text += ", ";
+    text += key_of(word) + " = " + toml_of(key + "." + word, value);
+  }
+  return text + "}";
+}
+
+/// A Python value as TOML; numbers keep all their digits.
+///
+/// Throws : TypeError, naming the key, for what TOML has not
+std::string toml_of(const std::string& key, const py::handle& value) {
+  if (py::hasattr(value, "tolist")) return toml_of(key, value.attr("tolist")());  // numpy's
+  if (py::hasattr(value, "__fspath__")) return toml_of(key, value.attr("__fspath__")());
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::int_>(value))
+    return py::str(py::int_(py::reinterpret_borrow<py::object>(value)));
+  if (py::isinstance<py::float_>(value)) return py::repr(py::float_(value.cast<double>()));
+  if (py::isinstance<py::str>(value)) return quoted(value.cast<std::string>());
+  if (py::isinstance<py::dict>(value)) return toml_table(key, value.cast<py::dict>());
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    return toml_list(key, value, "");
+  }
+  throw py::type_error(key + ": a scene has no value of type " +
+                       py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
+}
+
+/// A line for each keyword, and for each body.
+Scene scene_of_keywords(const py::kwargs& keywords) {
+  std::string text;
+  for (const auto& [name, value] : keywords) {
+    const auto key = name.cast<std::string>();
+    const bool list =
+        key == "body" && (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
+    text += key_of(key) + " = " + (list ? toml_list(key, value, "\n") : toml_of(key, value)) + "\n";
+  }
+  return scene_of_text(std::move(text), "keywords");
 }
 
 /// Asks Python ten times a second whether a signal has come: taking its lock costs more than an
@@ -140,6 +224,11 @@ Run solve(const Scene& scene, std::optional<double> t_end, std::optional<double>
 
   Run result;
   result.title = file.title;
+  result.model = name(file.model);
+  const kreisel::Terms terms = model->equation_terms();
+  result.terms.assign(terms.begin(), terms.end());
+  result.errors =
+      py::array_t<double>(static_cast<py::ssize_t>(run.errors.size()), run.errors.data());
   result.report = run.report;
   result.columns = columns(model->tree(), reactions);
   const std::size_t width = result.columns.size();
@@ -187,28 +276,40 @@ PYBIND11_MODULE(kreisel, m) {
   m.attr("ComputationFailed").attr("__doc__") = "The data are legal, the answer cannot be had.";
 
   py::class_<kreisel::InvariantDrift>(m, "Invariant", "A number that should not change in a run.")
-      .def_readonly("name", &kreisel::InvariantDrift::name)
+      .def_readonly("name", &kreisel::InvariantDrift::name, "energy, momenta, ...")
       .def_readonly("start", &kreisel::InvariantDrift::start, "in SI units")
       .def_readonly("largest_drift", &kreisel::InvariantDrift::largest,
                     "greatest distance from the start, same unit");
 
+  py::class_<kreisel::Term>(m, "Term", "A term of the equation of motion.")
+      .def_readonly("part", &kreisel::Term::part, "relative, guide, Coriolis or load")
+      .def_readonly("name", &kreisel::Term::name, "its formula")
+      .def_readonly("kept", &kreisel::Term::kept, "whether it is computed")
+      .def_readonly("why", &kreisel::Term::why, "why not, or which components are not");
+
   using Report = kreisel::RunReport;
   py::class_<Report>(m, "Report", "How far a run is off and what it cost.")
-      .def_readonly("method", &Report::method)
+      .def_readonly("method", &Report::method, "that computed it")
       .def_readonly("tolerance", &Report::tolerance, "asked for")
       .def_readonly("error_estimate", &Report::error_estimate,
                     "of the global error: attitudes in rad, others relative to their size")
-      .def_readonly("tolerance_kept", &Report::tolerance_kept)
+      .def_readonly("tolerance_kept", &Report::tolerance_kept, "error_estimate <= tolerance")
       .def_readonly("all_evaluations", &Report::all_evaluations,
                     "with those for the estimate and for attempts that fell short")
       .def_readonly("run_time", &Report::run_time, "s")
-      .def_readonly("invariants", &Report::invariants)
-      .def_property_readonly("steps", [](const Report& r) { return r.effort.steps; })
-      .def_property_readonly("rejected", [](const Report& r) { return r.effort.rejected; })
-      .def_property_readonly("evaluations", [](const Report& r) { return r.effort.evaluations; });
+      .def_readonly("invariants", &Report::invariants, "what should not have changed")
+      .def_property_readonly(
+          "steps", [](const Report& r) { return r.effort.steps; }, "taken")
+      .def_property_readonly(
+          "rejected", [](const Report& r) { return r.effort.rejected; },
+          "steps too long, taken again")
+      .def_property_readonly(
+          "evaluations", [](const Report& r) { return r.effort.evaluations; },
+          "of the equations, for what is returned");
 
   py::class_<Run>(m, "Run", "A motion that was computed. Arrays are by output time.")
-      .def_readonly("title", &Run::title)
+      .def_readonly("title", &Run::title, "of the scene")
+      .def_readonly("model", &Run::model, "exact, or the approximation that was asked for")
       .def_readonly("columns", &Run::columns, "names of the columns of rows")
       .def_readonly("rows", &Run::rows, "the numbers of simulate --csv")
       .def_property_readonly(
@@ -222,10 +323,22 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("reactions", &Run::reactions,
                     "by body, where asked for: 'force' in N and 'torque' in N m that the parent "
                     "exerts at the joint, on body axes, and 'drive_torque' in N m")
-      .def_readonly("report", &Run::report);
+      .def_readonly("errors", &Run::errors,
+                    "estimates of the global error, measured as Report.error_estimate, which is "
+                    "the greatest")
+      .def_readonly("terms", &Run::terms, "of the exact equation, kept or not")
+      .def_readonly("report", &Run::report, "how far the run is off and what it cost");
 
   py::class_<Scene>(m, "Scene", "A mechanical system on a guide frame, as a scene file has it.")
       .def(py::init(&scene_of_file), "path"_a, "Reads a scene file, TOML.")
+      .def(py::init(&scene_of_keywords),
+           "The same of keyword arguments: title, guide, gravity, body, solve, report as the file "
+           "has\nthem. Tables are dicts, body is a list of them; arrays of numpy are lists.\n\n"
+           "    Scene(gravity={'kind': 'uniform', 'vector': [0, 0, -9.81]},\n"
+           "          body=[{'name': 'rod', 'joint': {'kind': 'revolute', 'axis': [0, 1, 0]},\n"
+           "                 'mass': 1, 'centre': [0, 0, -1], 'inertia': [0.1, 0.1, 0.1]}],\n"
+           "          solve={'t_end': 2})")
+      .def_readonly("text", &Scene::text, "as a scene file has it")
       .def_static("from_text", &scene_of_text, "text"_a, "path"_a = "scene.toml",
                   "The same of a text; path names it in messages, tables are looked for beside it.")
       .def("solve", &solve, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),

@@ -88,6 +88,86 @@ class AsSimulate(unittest.TestCase):
         self.assertEqual((run.report.tolerance, run.report.method), (1e-6, "radau13"))
 
 
+class OfKeywords(unittest.TestCase):
+    BODY = {"name": "rod \"1\"\t\N{GREEK SMALL LETTER PHI}", "mass": np.int64(1),
+            "joint": {"kind": "revolute", "axis": np.array([0, 1, 0])},
+            "centre": (0, 0, -1.0), "inertia": [np.float64(0.1)] * 3, "hold": False,
+            "initial": {"angle": 0.5}}
+
+    def scene(self, **rest):
+        rest.setdefault("body", [self.BODY])
+        return kreisel.Scene(title="rod", gravity={"kind": "uniform", "vector": [0, 0, -9.81]},
+                             solve={"t_end": 2, "output_step": 0.5}, **rest)
+
+    def test_as_of_a_file(self):
+        run = self.scene().solve()
+        self.assertEqual(run.title, "rod")
+        self.assertEqual(list(run.coordinates), [self.BODY["name"]])
+        np.testing.assert_array_equal(run.rows, kreisel.Scene.from_text(ROD).solve().rows)
+        again = kreisel.Scene.from_text(self.scene().text)
+        np.testing.assert_array_equal(run.rows, again.solve().rows)
+
+    def test_numbers_keep_their_digits(self):
+        angle = np.nextafter(0.1, 1)
+        run = self.scene(body=[self.BODY | {"initial": {"angle": angle}}]).solve()
+        self.assertEqual(run.coordinates[self.BODY["name"]][0], angle)
+
+    def test_a_table_beside_the_program(self):
+        run = self.scene(guide={"kind": "table", "file": SCENES.resolve() / "ship_roll.csv"}).solve()
+        self.assertGreater(abs(run.coordinates[self.BODY["name"]][-1]), 0)
+
+    def test_mistakes(self):
+        with self.assertRaisesRegex(kreisel.SceneMistakes, r"body 'a'\.mass: is missing"):
+            self.scene(body=[{"name": "a"}])
+        with self.assertRaisesRegex(kreisel.SceneMistakes, "did you mean 'guide'"):
+            self.scene(gude={})
+        with self.assertRaisesRegex(kreisel.SceneMistakes, "is NaN, not a finite number"):
+            self.scene(body=[self.BODY | {"mass": float("nan")}])
+        with self.assertRaisesRegex(TypeError, r"body\[0\]\.mass: .* NoneType"):
+            self.scene(body=[self.BODY | {"mass": None}])
+        with self.assertRaisesRegex(TypeError, "guide: a key is no text"):
+            self.scene(guide={1: 2})
+        with self.assertRaises(kreisel.SceneMistakes):
+            kreisel.Scene()
+
+
+class Page(unittest.TestCase):
+    def test_runs(self):
+        root = SCENES.resolve().parent.parent
+        page = (root / "docs/site/programs.md").read_text().replace('"examples/', f'"{root}/examples/')
+        code = page.split("```python\n")[1].split("```")[0]
+        names = {}
+        exec(code, names)
+        self.assertEqual(names["run"].model, "linear")
+
+
+class Reports(unittest.TestCase):
+    def test_errors_by_output_time(self):
+        run = kreisel.Scene.from_text(ROD).solve()
+        self.assertEqual(run.errors.shape, run.times.shape)
+        self.assertEqual(run.errors.max(), run.report.error_estimate)
+        self.assertTrue((run.errors >= 0).all())
+
+    def test_of_an_approximation(self):
+        text = ROD + 'model = "linear"\n'
+        exact, linear = (kreisel.Scene.from_text(t).solve() for t in [ROD, text])
+        self.assertEqual((exact.model, linear.model), ("exact", "linear"))
+        off = np.abs(exact.coordinates["rod"] - linear.coordinates["rod"])
+        self.assertTrue((off <= 1.0001 * linear.errors * 0.5 + 1e-15).all())
+
+    def test_terms(self):
+        terms = kreisel.Scene.from_text(ROD).solve().terms
+        guide = [term for term in terms if term.part == "guide"]
+        self.assertEqual([(term.kept, term.why) for term in guide], [(False, "the guide rests")])
+
+    def test_all_are_documented(self):
+        for kind in [kreisel.Scene, kreisel.Run, kreisel.Report, kreisel.Invariant, kreisel.Term]:
+            self.assertTrue(kind.__doc__)
+            for name in vars(kind):
+                if not name.startswith("_"):
+                    self.assertTrue(getattr(kind, name).__doc__, f"{kind.__name__}.{name}")
+
+
 class Errors(unittest.TestCase):
     def test_derive_from_one(self):
         self.assertTrue(issubclass(kreisel.SceneMistakes, kreisel.InvalidInput))
