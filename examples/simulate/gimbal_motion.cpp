@@ -72,7 +72,7 @@ void check_joints(const kreisel::SceneFile& scene, const Refusal& refuse) {
 /// Moments about the axes of outer ring, inner ring and, across them, rotor.
 Vector3d principal(const BodyDescription& body, const Matrix3d& axes, const Refusal& refuse) {
   const Matrix3d tensor = axes.transpose() * body.inertia.value.tensor.matrix() * axes;
-  const Vector3d moments = tensor.diagonal();
+  Vector3d moments = tensor.diagonal();
   if ((tensor - Matrix3d(moments.asDiagonal())).norm() > slack * moments.sum()) {
     refuse(body, "has products of inertia about the three axes");
   }
