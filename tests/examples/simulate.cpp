@@ -388,6 +388,22 @@ BOOST_AUTO_TEST_CASE(a_full_disk_exits_with_3) {
   BOOST_TEST(text.back() == '\n');
 }
 
+// Where steps have been made shorter the run that stands may have begun a last digit beside the
+// start: its first row is that of the scene all the same, and rows that a full disk cut off go on.
+BOOST_AUTO_TEST_CASE(begins_its_rows_with_the_start_itself) {
+  const Scratch folder;
+  const std::string command =
+      std::string(KREISEL_SIMULATE) + " " + scene("double_pendulum") + " --t-end 20 --csv ";
+  const std::string part = (folder.path() / "part.csv").string();
+  const Outcome limited =
+      test::run("bash -c \"trap '' XFSZ; ulimit -f 31; " + command + part + "\"");
+  BOOST_TEST(limited.status == 3, limited.err);
+  BOOST_TEST(lines(folder.read("part.csv")).at(1) == "0,2,0,0.5,0");
+  BOOST_TEST(test::run(command + part + " --resume").status == 0);
+  BOOST_TEST(test::run(command + (folder.path() / "whole.csv").string()).status == 0);
+  BOOST_TEST(folder.read("part.csv") == folder.read("whole.csv"));
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
   const Scratch folder;
   const std::string good = folder.write("scene.toml", two_rods).string();
