@@ -43,8 +43,8 @@ namespace kreisel::detail {
 }
 
 inline void check_axis(const BodyDescription& b, const Vector3<double>& axis, const char* which) {
-  if (!is_finite(axis)) refuse_body(b.name, which + std::string(" is not finite"));
-  if (!(length(axis) > 0)) refuse_body(b.name, which + std::string(" is 0 and has no direction"));
+  if (!is_finite(axis)) refuse_body(b.name, std::string(which) + " is not finite");
+  if (!(length(axis) > 0)) refuse_body(b.name, std::string(which) + " is 0 and has no direction");
 }
 
 inline void check_joint(const BodyDescription& b) {
