@@ -1,0 +1,22 @@
+// Any bytes at all as pendulum_deviation's table of sites: they are read or refused.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <examples/pendulum_deviation/sites.hpp>
+
+#include <motor/error.hpp>
+
+#include "memory_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const kreisel::test::MemoryFile file(data, size);
+  try {
+    for (const Site& site : listed_sites(file.path(), Real(7.292115e-5L))) {
+      if (!(std::abs(site.place.latitude) <= 90)) std::abort();
+    }
+  } catch (const kreisel::InvalidInput&) {  // as it should be
+  }
+  return 0;
+}
