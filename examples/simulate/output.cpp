@@ -125,13 +125,14 @@ void print_json(const Result& result) {
     invariants.push_back(
         {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
   }
+  const auto whole = [](double count) { return static_cast<long long>(count); };
   const ordered_json summary{{"title", result.scene.title},
                              {"method", r.method},
                              {"model", name(result.scene.model)},
-                             {"steps", r.effort.steps},
-                             {"rejected", r.effort.rejected},
-                             {"evaluations", r.effort.evaluations},
-                             {"all_evaluations", r.all_evaluations},
+                             {"steps", whole(r.effort.steps)},
+                             {"rejected", whole(r.effort.rejected)},
+                             {"evaluations", whole(r.effort.evaluations)},
+                             {"all_evaluations", whole(r.all_evaluations)},
                              {"run_time_s", r.run_time},
                              {"tolerance", r.tolerance},
                              {"error_estimate", json(r.error_estimate)},
