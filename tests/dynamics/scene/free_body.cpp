@@ -160,6 +160,44 @@ BOOST_AUTO_TEST_CASE(is_refused_when_it_is_none) {
   const Matrix3<double> needle = Vector3<double>(1, 1, 0).asDiagonal();
   const auto T = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, needle);
   BOOST_CHECK_THROW(FreeBody(T, RestingFrame<>{}), ComputationFailed);
+  // Nor is one that rounding has made thick, on whichever axis it lies.
+  for (int axis = 0; axis < 3; ++axis) {
+    Matrix3<double> rounded = Matrix3<double>::Identity();
+    rounded(axis, axis) = 1e-17;
+    BOOST_CHECK_THROW(
+        FreeBody(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, rounded), RestingFrame<>{}),
+        ComputationFailed);
+  }
+}
+
+// Of a guide in steady motion gravity and acceleration are made up beforehand, of any other when they
+// are felt.
+BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
+  const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
+  const auto on = [](const auto& guide) {
+    return FreeBody(lopsided_body(), guide, UniformGravity<Inertial>{{0.1, 0.2, -9.81}},
+                    UniformGravity<Guide>{{4, 5, 6}});
+  };
+  const auto known = on(steady);
+  const auto felt = on([steady](double t) { return steady(t); });
+  const auto y = known.to_vector(
+      {Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5), {0.4, -1, 2}, {{{0.3, 0.2, -0.1}, {1, 2, -3}}}});
+  for (const double t : {0.0, 0.7, 5.0}) {
+    BOOST_TEST(near(known.rates(t, y), felt.rates(t, y), 100.0, 8));
+  }
+}
+
+// The guide stops as it stands at 2 s; what its origin's acceleration makes felt stays.
+BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
+  const Vector3<double> a(1, 2, 3);
+  const UniformGravity<Inertial> gravity{{0.1, 0.2, -9.81}};
+  const RotatingFrame<> guide{{0.3, -0.2, 0.5}, a};
+  const FreeBody body(lopsided_body(), guide, gravity);
+  const FreeBody same(lopsided_body(), RestingFrame<>{guide(2).X}, gravity,
+                      UniformGravity<Guide>{-a});
+  const auto y = body.to_vector(
+      {Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5), {0.4, -1, 2}, {{{0.3, 0.2, -0.1}, {1, 2, -3}}}});
+  BOOST_TEST(near(body.without(GuideRate{}, 1, 3).rates(0, y), same.rates(0, y), 10.0, 8));
 }
 
 BOOST_AUTO_TEST_CASE(says_that_a_spring_without_length_has_no_direction) {

@@ -263,6 +263,36 @@ BOOST_AUTO_TEST_CASE(bears_a_guide_that_hardly_turns) {
   }
 }
 
+// Of a guide in steady motion gravity and acceleration are made up beforehand, of any other when they
+// are felt.
+BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
+  const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
+  const auto on = [](const auto& guide) {
+    return HeldBody(lopsided_body(), Vector3<double>(0.4, -0.1, 0.2), guide,
+                    UniformGravity<Inertial>{{0.1, 0.2, -9.81}}, UniformGravity<Guide>{{4, 5, 6}});
+  };
+  const auto known = on(steady);
+  const auto felt = on([steady](double t) { return steady(t); });
+  const auto y = known.to_vector({Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5), {0.4, -1, 2}});
+  for (const double t : {0.0, 0.7, 5.0}) {
+    BOOST_TEST(near(known.rates(t, y), felt.rates(t, y), 100.0, 8));
+  }
+}
+
+// The guide stops as it stands at 2 s; what its motion makes felt at the held point stays.
+BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
+  const Vector3<double> u(0.3, -0.2, 0.5);
+  const Vector3<double> a(1, 2, 3);
+  const Vector3<double> point(0.4, -0.1, 0.2);
+  const UniformGravity<Inertial> gravity{{0.1, 0.2, -9.81}};
+  const RotatingFrame<> guide{u, a};
+  const HeldBody body(lopsided_body(), point, guide, gravity);
+  const HeldBody same(lopsided_body(), point, RestingFrame<>{guide(2).X}, gravity,
+                      UniformGravity<Guide>{-a - u.cross(u.cross(point))});
+  const auto y = body.to_vector({Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5), {0.4, -1, 2}});
+  BOOST_TEST(near(body.without(GuideRate{}, 1, 3).rates(0, y), same.rates(0, y), 10.0, 8));
+}
+
 BOOST_AUTO_TEST_CASE(is_refused_when_its_rotation_is_not_determined) {
   const RestingFrame<> guide;
   const auto held = [&](const InertiaTensor<Body>& T) { return HeldBody(T, {0, 0, 0}, guide); };
