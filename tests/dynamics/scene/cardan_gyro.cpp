@@ -445,6 +445,13 @@ BOOST_AUTO_TEST_CASE(stops_where_nothing_resists) {
   const CardanGyro needle({{1, 0, 1}, {0, 0, 0}, {1, 1, 1}}, {}, RestingFrame<>{});
   BOOST_CHECK_EXCEPTION((void)needle.rates(0, Vector6::Zero()), ComputationFailed,
                         says("inner ring"));
+  // Rings of 1e4 times the rotor's mass do not make more of the rounding of a quarter turn.
+  const CardanGyro rod({symmetric.rotor, {1e4, 1e4, 0}, {0, 0, 0}}, {}, RestingFrame<>{});
+  BOOST_CHECK_EXCEPTION((void)rod.rates(0, y), ComputationFailed, says("gimbal lock"));
+  const CardanGyro needles({{0, 1, 1}, {1e4, 0, 1e4}, {1, 1, 1}}, {}, RestingFrame<>{});
+  BOOST_CHECK_EXCEPTION((void)needles.rates(0, Vector6::Unit(2) * std::acos(0.0)),
+                        ComputationFailed, says("inner ring"));
+  BOOST_TEST(needles.rates(0, Vector6::Unit(2)).allFinite());
   // Nor does a trial state that is not finite stop a run that a shorter step would save.
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   BOOST_TEST(

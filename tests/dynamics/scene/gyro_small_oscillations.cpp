@@ -89,6 +89,14 @@ BOOST_AUTO_TEST_CASE(err_in_the_order_that_is_stated) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(rub_in_both_bearings) {
+  const Turning turning{0.1, 30, false};
+  const GyroSmallOscillations smooth(unsymmetric, springs, speed, turning);
+  const GyroSmallOscillations rubbed(unsymmetric, {{2, 0.02}, {1.5, 0.03}}, speed, turning);
+  const Eigen::Matrix2d more = rubbed.coefficients(0.7).damping - smooth.coefficients(0.7).damping;
+  BOOST_TEST((more - Eigen::Matrix2d(Eigen::Vector2d(0.02, 0.03).asDiagonal())).norm() < 1e-15);
+}
+
 // Whoever leaves the drive's torque out, errs in second order where u_z changes.
 BOOST_AUTO_TEST_CASE(need_the_torque_of_the_drive) {
   struct WithoutDrive : GyroSmallOscillations<Turning> {
