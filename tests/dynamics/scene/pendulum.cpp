@@ -392,6 +392,8 @@ BOOST_DATA_TEST_CASE(is_never_exceeded, data::xrange(cases().size()), index) {
     BOOST_TEST(answer.equilibrium.exact.error <= 32 * u * abs(phi_0).convert_to<double>());
     BOOST_TEST(answer.period.exact_small->error <= 16 * u * small.convert_to<double>());
     BOOST_TEST(answer.period.at_amplitude->error <= 32 * u * small.convert_to<double>());
+    BOOST_TEST(answer.other_turning_point->error <=
+               32 * u * (0.1 + abs(phi_0).convert_to<double>()));
   }
 }
 
@@ -812,10 +814,37 @@ BOOST_AUTO_TEST_CASE(infinite_periods_are_refused) {
   // 1 - cos p = sin^2 p, p = pi/2: E (1 - cos p) + K sin^2 p = 1 - 1 = 0.
   const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
   const double rest = nearest_stable(equilibria(wells)).angle;
-  BOOST_CHECK_EXCEPTION((void)swing(wells, std::acos(0.0) - rest), ComputationFailed,
-                        [](const auto& error) {
-                          return std::string(error.what()).starts_with("the period is infinite");
-                        });
+  // From either side, to one barrier.
+  for (const double release : {std::acos(0.0), -std::acos(0.0)}) {
+    BOOST_CHECK_EXCEPTION((void)swing(wells, release - rest), ComputationFailed,
+                          [](const auto& error) {
+                            const std::string text = error.what();
+                            BOOST_TEST_MESSAGE(text);
+                            return text.starts_with("the period is infinite") &&
+                                   std::abs(std::stod(text.substr(text.find("phi = ") + 6))) < 1e-9;
+                          });
+  }
+}
+
+// The slope is  m (E' + 2 K') + F' (3 m^2 + d^2)/2  next to the equilibrium: where m and d are off by
+// a part delta, it is off by no more than  delta (|m| |E' + 2 K'| + |F'| (3 m^2 + d^2)).
+BOOST_DATA_TEST_CASE(rounding_is_magnified_as_foretold, data::xrange(100u), seed) {
+  Sample sample(seed);
+  const bool third = seed % 2 == 0;  // E' + 2 K' = 0: the moment is of second order
+  const detail::ShiftedMoment<double> moment{
+      third ? 0 : sample.uniform(-1, 1), third ? 0 : sample.uniform(-1, 1), sample.uniform(-1, 1)};
+  const double m = sample.uniform(-0.3, 0.3);
+  const double d = sample.uniform(0, 0.3);
+  const double slope = moment.slope(m, d);
+  constexpr double delta = 1e-6;
+  double worst = 0;
+  for (const double off : {m * (1 + delta), m * (1 - delta)}) {
+    worst = std::max({worst, std::abs(moment.slope(off, d * (1 + delta)) - slope),
+                      std::abs(moment.slope(off, d * (1 - delta)) - slope)});
+  }
+  const double foretold = moment.condition(m, d, slope) * std::abs(slope) * delta;
+  BOOST_TEST(worst <= 1.6 * foretold);
+  if (third) BOOST_TEST(worst >= 0.4 * foretold);
 }
 
 BOOST_AUTO_TEST_CASE(near_a_barrier_the_error_reached_is_named) {
