@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_one_line_and_no_file) {
     BOOST_TEST(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1, outcome.err);
     BOOST_TEST(outcome.err.find(reason) != std::string::npos, arguments << ": " << outcome.err);
   }
-  BOOST_TEST(folder.size() == 2u);  // the two lists, and no output
+  BOOST_TEST(folder.size() == 3u);  // the three lists, and no output
 }
 
 BOOST_AUTO_TEST_CASE(a_full_disk_exits_with_3) {
