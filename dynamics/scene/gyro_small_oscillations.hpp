@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include <cmath>
 #include <string>
@@ -70,47 +70,56 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
         kept_(kept) {}
 
   [[nodiscard]] Coefficients coefficients(double t) const {
-    const auto [T, dT] = tensor(t);
+    // In single numbers: expressions of matrices cost the compiler a quarter more.
+    const auto [P, Q, R] = across_inclined(t);
+    const auto [dP, dQ, dR] = across_rate(t);
     const auto [u, du] = turning(guide_, t);
     const auto& [about_a, about_b] = this->exact().bearings();
     const double C = this->exact().moments().rotor.z();
     const double H = C * this->speed();
-    const Eigen::Vector2d across(u.x(), u.y());
-    const Eigen::Vector2d d_across(du.x(), du.y());
+    const double x = u.x();
+    const double y = u.y();
     const double z = u.z();
     const double dz = du.z();
-    Eigen::Matrix2d S;
-    S << 0, 1, -1, 0;
-    // With w = (w_x, w_y) the components x and y of u x w are -u_z S w + S (u_x, u_y) w_z.
     Coefficients c;
-    c.mass = T;
-    c.damping = dT + H * S - z * S * T;
-    c.stiffness = -z * H * S * S;
-    c.stiffness(0, 0) += about_a.stiffness;
-    c.stiffness(1, 1) += about_b.stiffness;
-    c.damping(0, 0) += about_a.damping;
-    c.damping(1, 1) += about_b.damping;
-    c.force = -H * (S * across);
+    c.mass << P, R, R, Q;
+    c.damping << dP - z * R + about_a.damping, dR + H - z * Q,  //
+        dR - H + z * P, dQ + z * R + about_b.damping;
+    c.stiffness << z * H + about_a.stiffness, 0, 0, z * H + about_b.stiffness;
+    c.force << -H * y, H * x;
     if (kept_ == GuideMomentum::none) return c;
-    c.force -= dT * across + T * d_across - z * (S * (T * across)) + C * z * (S * across);
+    c.force[0] -= dP * x + dR * y + P * du.x() + R * du.y() - z * (R * x + Q * y) + C * z * y;
+    c.force[1] -= dR * x + dQ * y + R * du.x() + Q * du.y() + z * (P * x + R * y) - C * z * x;
     if (kept_ == GuideMomentum::constant) return c;
-    // g = E x: J_f gains u_z E x across and (u_x, u_y) . E x along z.
-    Eigen::Matrix2d E, dE;
-    E << T(0, 1), C - T(0, 0), T(1, 1) - C, -T(0, 1);
-    dE << dT(0, 1), -dT(0, 0), dT(1, 1), -dT(0, 1);
-    c.damping += z * E;
-    c.stiffness += z * dE + dz * E - z * z * (S * E) + (S * across) * (across.transpose() * E);
-    c.stiffness(1, 0) += C * dz;
+    // g_a and g_b: J_f gains u_z g across and along z  along = u_x g_a + u_y g_b.
+    const double along_a = x * R + y * (Q - C);
+    const double along_b = x * (C - P) - y * R;
+    c.damping(0, 0) += z * R;
+    c.damping(0, 1) += z * (C - P);
+    c.damping(1, 0) += z * (Q - C);
+    c.damping(1, 1) -= z * R;
+    c.stiffness(0, 0) += z * dR + dz * R - z * z * (Q - C) + y * along_a;
+    c.stiffness(0, 1) += -z * dP + dz * (C - P) + z * z * R + y * along_b;
+    c.stiffness(1, 0) += z * dQ + dz * (Q - C) + z * z * R - x * along_a + C * dz;
+    c.stiffness(1, 1) += -z * dR - dz * R - z * z * (P - C) - x * along_b;
     return c;
   }
 
   /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, alpha', beta').
   [[nodiscard]] Vector rates(double t, const Vector& y) const {
-    const Coefficients c = coefficients(t);
-    const Eigen::Vector2d force = c.force - c.damping * Eigen::Vector2d(y[2], y[3]) -
-                                  c.stiffness * Eigen::Vector2d(y[0], y[1]);
-    const Eigen::Vector2d acceleration = c.mass.inverse() * force;
-    return {y[2], y[3], acceleration[0], acceleration[1]};
+    const auto [mass, damping, stiffness, force] = coefficients(t);
+    const auto torque = [&](int i) {
+      return force[i] - damping(i, 0) * y[2] - damping(i, 1) * y[3] - stiffness(i, 0) * y[0] -
+             stiffness(i, 1) * y[1];
+    };
+    const double first = torque(0);
+    const double second = torque(1);
+    const double P = mass(0, 0);
+    const double R = mass(0, 1);
+    const double Q = mass(1, 1);
+    const double determinant = P * Q - R * R;
+    return {y[2], y[3], (Q * first - R * second) / determinant,
+            (P * second - R * first) / determinant};
   }
 
   /// What rates() computes: see kreisel::terms.
@@ -139,26 +148,36 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
   /// Units  : N m s
   /// Error  : of third order across, of fourth along z; with u'_C = Omega + alpha' beta
   [[nodiscard]] Vector3<double> relative_momentum(double t, const State& s) const {
-    const Eigen::Matrix2d T = tensor(t).first;
+    const auto [P, Q, R] = across_inclined(t);
     const double spin = this->exact().moments().rotor.z() * (this->speed() + s.alpha_rate * s.beta);
-    const Eigen::Vector2d across = T * Eigen::Vector2d(s.alpha_rate, s.beta_rate);
+    const double x = P * s.alpha_rate + R * s.beta_rate;
+    const double y = R * s.alpha_rate + Q * s.beta_rate;
     const double squares = s.alpha * s.alpha + s.beta * s.beta;
-    return {across.x() + spin * s.beta, across.y() - spin * s.alpha,
-            s.alpha * across.y() - s.beta * across.x() + spin * (1 - squares / 2)};
+    return {x + spin * s.beta, y - spin * s.alpha,
+            s.alpha * y - s.beta * x + spin * (1 - squares / 2)};
   }
 
  private:
-  /// The rotor's moments across and their rate:  (P R; R Q).
-  [[nodiscard]] std::pair<Eigen::Matrix2d, Eigen::Matrix2d> tensor(double t) const {
+  /// The rotor's moments across its axis, in the axes of the rings.
+  struct Across {
+    double P, Q, R;
+  };
+
+  [[nodiscard]] Across across_inclined(double t) const {
     const auto& rotor = this->exact().moments().rotor;
     const double mean = (rotor.x() + rotor.y()) / 2;
     const double half = (rotor.x() - rotor.y()) / 2;
-    const double c = half * std::cos(2 * this->speed() * t);
-    const double s = half * std::sin(2 * this->speed() * t);
-    Eigen::Matrix2d T, dT;
-    T << mean + c, s, s, mean - c;
-    dT << -s, c, c, s;
-    return {T, 2 * this->speed() * dT};
+    const double angle = 2 * this->speed() * t;
+    const double c = half * std::cos(angle);
+    return {mean + c, mean - c, half * std::sin(angle)};
+  }
+
+  [[nodiscard]] Across across_rate(double t) const {
+    const auto& rotor = this->exact().moments().rotor;
+    const double swing = (rotor.x() - rotor.y()) * this->speed();
+    const double angle = 2 * this->speed() * t;
+    const double s = swing * std::sin(angle);
+    return {-s, s, swing * std::cos(angle)};
   }
 
   M guide_;
