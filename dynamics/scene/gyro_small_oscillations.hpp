@@ -107,16 +107,16 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
 
   /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, alpha', beta').
   [[nodiscard]] Vector rates(double t, const Vector& y) const {
-    const auto [mass, damping, stiffness, force] = coefficients(t);
+    const Coefficients c = coefficients(t);
     const auto torque = [&](int i) {
-      return force[i] - damping(i, 0) * y[2] - damping(i, 1) * y[3] - stiffness(i, 0) * y[0] -
-             stiffness(i, 1) * y[1];
+      return c.force[i] - c.damping(i, 0) * y[2] - c.damping(i, 1) * y[3] -
+             c.stiffness(i, 0) * y[0] - c.stiffness(i, 1) * y[1];
     };
     const double first = torque(0);
     const double second = torque(1);
-    const double P = mass(0, 0);
-    const double R = mass(0, 1);
-    const double Q = mass(1, 1);
+    const double P = c.mass(0, 0);
+    const double R = c.mass(0, 1);
+    const double Q = c.mass(1, 1);
     const double determinant = P * Q - R * R;
     return {y[2], y[3], (Q * first - R * second) / determinant,
             (P * second - R * first) / determinant};
