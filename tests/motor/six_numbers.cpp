@@ -1,0 +1,52 @@
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+#include <motor/six_numbers.hpp>
+
+using namespace kreisel;
+
+namespace {
+
+const Motor<> V{{1, 2, 3}, {4, 5, 6}};
+const Motor<> F{{-7, 8, 9}, {10, -11, 12}};
+using Six = SixNumbers<double>;
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(six_numbers)
+
+BOOST_AUTO_TEST_CASE(lie_as_other_libraries_have_them) {
+  BOOST_TEST((velocity_numbers(V, Halves::angular_first) == Six(1, 2, 3, 4, 5, 6)));
+  BOOST_TEST((velocity_numbers(V, Halves::linear_first) == Six(4, 5, 6, 1, 2, 3)));
+  BOOST_TEST((force_numbers(F, Halves::angular_first) == Six(10, -11, 12, -7, 8, 9)));
+  BOOST_TEST((force_numbers(F, Halves::linear_first) == Six(-7, 8, 9, 10, -11, 12)));
+}
+
+BOOST_AUTO_TEST_CASE(come_back_and_do_the_same_work) {
+  for (const Halves order : {Halves::angular_first, Halves::linear_first}) {
+    const Six v = velocity_numbers(V, order);
+    const Six f = force_numbers(F, order);
+    const Motor<> again = velocity_of(v, order);
+    BOOST_TEST((again.resultant == V.resultant && again.moment == V.moment));
+    const Motor<> force = force_of(f, order);
+    BOOST_TEST((force.resultant == F.resultant && force.moment == F.moment));
+    // In either order the scalar product of six numbers is the power.
+    BOOST_TEST(v.dot(f) == V.resultant.dot(F.moment) + V.moment.dot(F.resultant));
+  }
+}
+
+// A wheel that rolls along x, its centre at height 1 over the world's origin: the point that touches
+// the ground is at rest.
+BOOST_AUTO_TEST_CASE(are_brought_from_their_points_to_the_origin) {
+  const Vector3<double> centre(0, 0, 1);
+  const Six cvel(0, 2, 0, 2, 0, 0);
+  const Motor<> of_cvel = velocity_of_cvel(cvel, centre);
+  BOOST_TEST((of_cvel.resultant == Vector3<double>(0, 2, 0)));
+  BOOST_TEST(of_cvel.moment.norm() == 0);
+  const Motor<> aligned = velocity_of_world_aligned(Six(2, 0, 0, 0, 2, 0), centre);
+  BOOST_TEST((aligned.resultant == Vector3<double>(0, 2, 0)));
+  BOOST_TEST(aligned.moment.norm() == 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
