@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,8 +32,9 @@ namespace kreisel {
 /// Source : paper 002 (23), the first integral
 /// Units  : rad, rad/s, s
 /// Error  : of the phase  (4 |theta| + 32) epsilon condition()   (tests/dynamics/scene/physical_pendulum)
-/// Throws : ComputationFailed so near a barrier, or at rest on one, that 1024 terms are not enough:
-///          about 1e-3 of its height; InvalidInput where nothing pulls at all
+/// Throws : InvalidInput where nothing pulls at all, or the start is not finite; ComputationFailed at
+///          rest at an equilibrium, or so near a barrier that 1024 terms are not enough: between 2e-6
+///          and 2e-7 of its height (case pendulum-barrier of the catalogue)
 template <class S>
 class SteadyPendulumMotion {
  public:
@@ -44,6 +46,8 @@ class SteadyPendulumMotion {
   SteadyPendulumMotion(const PendulumBody<S>& body, const PendulumCoefficients<S>& c,
                        const S& angle, const S& rate)
       : theta_c_(body.theta_c), forwards_(!(rate < S(0))) {
+    require_finite(angle, "angle");
+    require_finite(rate, "rate");
     const std::vector<Equilibrium<S>> all = equilibria(c);
     count_from_nearest(all, angle);
     moment_ = detail::ShiftedMoment<S>::at(c, origin_);
@@ -81,8 +85,10 @@ class SteadyPendulumMotion {
   }
   [[nodiscard]] S rate_per_phase() const { return rate_per_phase_; }
 
+  /// Throws : InvalidInput for a time that is not finite
   [[nodiscard]] Point at(const S& time) const {
-    using std::cos, std::round, std::sin;
+    using std::round, std::sin;
+    require_finite(time, "time");
     const S from_zero = time + begin_time_;
     const S turns = round(S(from_zero / period()));
     const S theta = phase_at(S(from_zero - turns * period()));
@@ -108,6 +114,11 @@ class SteadyPendulumMotion {
   [[nodiscard]] static S pi() {
     using std::acos;
     return acos(S(-1));
+  }
+
+  static void require_finite(const S& number, const char* what) {
+    if (number - number == S(0)) return;
+    throw InvalidInput(std::string("motion of a pendulum: the ") + what + " is not finite");
   }
 
   void count_from_nearest(const std::vector<Equilibrium<S>>& all, const S& angle) {

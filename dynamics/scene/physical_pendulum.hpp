@@ -62,7 +62,8 @@ class SteadyPendulumMotionError {
 ///
 /// Source : paper 002 (23)
 /// Units  : rad, rad/s, s
-/// Error  : by closed form 2u of angle and rate, and of the phase 2e-19 of the angle it has gone through
+/// Error  : by closed form 2u of angle and rate, and what the phase makes of them, which is off by 4e-19
+///          of the radians it has gone through, more near a barrier
 ///          (tests/dynamics/scene/physical_pendulum.cpp)
 /// Throws : InvalidInput for what no body can be: see check(PendulumBody)
 template <class Motion = PendulumGuide<>, class Damping = NoDamping, class... Known>

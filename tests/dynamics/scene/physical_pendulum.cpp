@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dynamics/exact/pendulum_motion.hpp>
@@ -213,6 +214,11 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
 BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
   BOOST_CHECK_THROW(PhysicalPendulum({.arm = -1}, room), InvalidInput);
   BOOST_CHECK_THROW(PhysicalPendulum({.arm = 1, .theta_c = 0.5}, room), InvalidInput);
+  for (const auto& [angle, rate] : {std::pair(NAN, 0.0), {0.1, HUGE_VAL}}) {
+    BOOST_CHECK_THROW(SteadyPendulumMotion<double>(rod, {19.62}, angle, rate), InvalidInput);
+  }
+  BOOST_CHECK_THROW((void)SteadyPendulumMotion<double>(rod, {19.62}, 0.1, 0.0).at(NAN),
+                    InvalidInput);
   BOOST_CHECK_THROW(solve(PhysicalPendulum(rod, room), {.angle = NAN}, {.times = {1}}),
                     InvalidInput);
 }
