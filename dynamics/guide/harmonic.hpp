@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <dynamics/guide/piecewise.hpp>
+#include <dynamics/guide/series.hpp>
 
 namespace kreisel {
 
@@ -49,6 +50,27 @@ struct HarmonicSeries {
   }
 
   [[nodiscard]] Vector3<S> rate(const S& t) const { return with_rate(t).second; }
+
+  /// The coefficients up to `order`, in powers of (time - t)/h.
+  template <class Coefficients>
+  void expand(const S& t, const S& h, int order, Coefficients& c) const {
+    using std::cos;
+    using std::sin;
+    c[0] = detail::components(constant);
+    for (int n = 1; n <= order; ++n) c[std::size_t(n)] = {};
+    for (const Term& k : terms) {
+      const auto amplitude = detail::components(k.amplitude);
+      const S angle = k.frequency * t + k.phase;
+      const S s = sin(angle);
+      const S cs = cos(angle);
+      const S cycle[] = {s, cs, -s, -cs};
+      S factor(1);  // (w h)^n / n!
+      for (int n = 0; n <= order; ++n) {
+        c[std::size_t(n)] = c[std::size_t(n)] + (factor * cycle[n % 4]) * amplitude;
+        factor *= k.frequency * h / S(n + 1);
+      }
+    }
+  }
 
   /// The same in another scalar.
   template <class T>
@@ -104,6 +126,25 @@ class HarmonicFrame {
     motion.V.value = {u, v};
     motion.dV.value = {du, a_(t) - u.cross(v)};
     return motion;
+  }
+
+  /// What rests in the inertial frame turns on these axes:  og = -u x g.
+  [[nodiscard]] GuideSeries series(
+      double t, double h, int order,
+      const detail::Components<double>& g) const requires std::is_same_v<S, double> {
+    GuideSeries result;
+    u_.expand(t, h, order, result.u);
+    a_.expand(t, h, order, result.g);
+    GuideSeries::Coefficients down;
+    down[0] = turned_back(detail::Turn<double>::from(pose_(t).q), g);
+    for (std::size_t n = 0; n <= std::size_t(order); ++n) {
+      result.g[n] = down[n] - result.g[n];
+      if (n == std::size_t(order)) break;
+      detail::Components<double> sum;
+      for (std::size_t k = 0; k <= n; ++k) sum = sum + cross(down[n - k], result.u[k]);
+      down[n + 1] = (h / double(n + 1)) * sum;
+    }
+    return result;
   }
 
   [[nodiscard]] FrameTurning<S> turning(const S& t) const {

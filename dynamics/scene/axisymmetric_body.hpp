@@ -70,6 +70,12 @@ class AxisymmetricBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
+  /// The Taylor series of the motion, for TaylorSteps.
+  [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
+    const auto body = body_.template series_on<detail::RateAxes::resal>();
+    return Series<std::remove_const_t<decltype(body)>>{body};
+  }
+
   /// What rates() computes: that of the body, on axes without its spin. See kreisel::terms.
   [[nodiscard]] Terms terms() const {
     Terms list = body_.terms();
@@ -105,6 +111,20 @@ class AxisymmetricBody {
   }
 
  private:
+  /// That of the body, and the spin's angle beside.
+  template <class BodySeries>
+  struct Series {
+    BodySeries body;
+
+    static constexpr int most_order = BodySeries::most_order;
+
+    template <class Coefficients>
+    void operator()(double t, double h, int order, Coefficients& c) {
+      body(t, h, order, c);
+      for (int k = 0; k < order; ++k) c(7, k + 1) = h * c(6, k) / (k + 1);
+    }
+  };
+
   Held body_;
 };
 

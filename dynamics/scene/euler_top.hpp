@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/attitude_series.hpp>
 #include <dynamics/scene/structure.hpp>
 #include <dynamics/scene/terms.hpp>
 #include <dynamics/step/lanes.hpp>
@@ -120,6 +121,14 @@ class BasicEulerTop {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
+  /// The Taylor series of the motion, for TaylorSteps.
+  [[nodiscard]] auto series() const requires std::is_same_v<P, double> {
+    const detail::Components<S> k = detail::components(weight_moment_);
+    const detail::Components<S> h = detail::components(rotor_momentum_);
+    return detail::AttitudeSeries<detail::PrincipalTensor<>, detail::Components<S>, Downwards,
+                                  detail::RateAxes::body, detail::Components<S>>(tensor_, k, {}, h);
+  }
+
   /// -k x gamma, what the weight does about the held point, on body axes.
   ///
   /// Units  : N m
@@ -189,6 +198,14 @@ class BasicEulerTop {
   }
 
  private:
+  /// A guide at rest with gravity, in units of its size.
+  struct Downwards {
+    detail::NoVector u = {};
+    detail::Components<S> g = {0, 0, -1};
+    struct {
+    } field = {};
+  };
+
   enum class Load : char { none, weight, rotor, both };
 
   [[nodiscard]] static constexpr Load load(bool heavy, bool has_rotor) {

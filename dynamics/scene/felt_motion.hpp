@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include <dynamics/guide/motion.hpp>
+#include <dynamics/guide/series.hpp>
 #include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/load.hpp>
 #include <dynamics/scene/structure.hpp>
@@ -49,6 +51,11 @@ template <class L>
     return is_force<L>;
   }
 }
+
+/// Whether a body feels nothing but uniform gravity and a guide that moves steadily, or analytically.
+template <class M, class... Loads>
+inline constexpr bool feels_analytically = (SteadyGuide<M> ||
+                                            AnalyticGuide<M>)&&!(is_force<Loads> || ...);
 
 template <class A, class... Loads>
 inline constexpr bool has_field = (std::is_same_v<Loads, UniformGravity<A>> || ...);
@@ -100,6 +107,19 @@ struct TurningField {
     const N angle = rate * t;
     return N(cos(angle)) * across + N(sin(angle)) * aside;
   }
+
+  /// Adds the coefficients below `order`, in powers of (time - t)/h.
+  void add_series(double t, double h, int order, GuideSeries::Coefficients& g) const {
+    const double c = std::cos(rate * t);
+    const double s = std::sin(rate * t);
+    const double cycle[] = {c, -s, -c, s};
+    double factor = 1;  // (|u| h)^n / n!
+    for (int n = 0; n < order; ++n) {
+      g[std::size_t(n)] = g[std::size_t(n)] + (factor * cycle[n % 4]) * across +
+                          (factor * cycle[(n + 3) % 4]) * aside;
+      factor *= rate * h / (n + 1);
+    }
+  }
 };
 
 /// What is known beforehand of g' and of the field that turns in the guide.
@@ -109,6 +129,22 @@ struct Known {
   G g;
   Field field;
 };
+
+/// The series of a field that turns.
+template <class U, class G>
+struct TurningSeries {
+  Known<U, G, TurningField> known;
+
+  [[nodiscard]] GuideSeries at(double t, double h, int order) const {
+    GuideSeries s;
+    s.u[0] = components(vector<double>(known.u));
+    s.g[0] = components(vector<double>(known.g));
+    known.field.add_series(t, h, order, s.g);
+    return s;
+  }
+};
+template <class U, class G>
+TurningSeries(Known<U, G, TurningField>) -> TurningSeries<U, G>;
 
 struct Nothing {};
 
@@ -162,6 +198,56 @@ template <bool gravity, class P, class M, class... Loads>
   }
 }
 
+/// The Taylor series of u and g' of an analytic guide.
+///
+/// A guide mostly moves slower than what it carries: a series of its motion serves several steps of
+/// the body, shifted to where each begins.
+template <class M, class P, class InGuide, class InInertial>
+class FeltSeries {
+ public:
+  FeltSeries(const M& guide, const P& r, const InGuide& field, const InInertial& inertial_field)
+      : guide_(guide), r_(r), field_(field), inertial_field_(inertial_field) {}
+
+  [[nodiscard]] GuideSeries at(double t, double h, int order) {
+    const double ahead = std::abs(t - begin_) + 1.25 * std::abs(h);
+    if (!(ahead < reach_)) expand(t, h);
+    return shifted(series_, (t - begin_) / unit_, h / unit_, order);
+  }
+
+ private:
+  void expand(double t, double h) {
+    begin_ = t;
+    unit_ = std::abs(h);
+    series_ =
+        guide_.series(t, unit_, most_series_order, components(vector<double>(inertial_field_)));
+    series_.g[0] = series_.g[0] + field_;
+    if constexpr (!P::absent) take_off_carried();
+    reach_ = unit_ * std::min(reached(series_.u, most_series_order),
+                              reached(series_.g, most_series_order - 1));
+  }
+
+  /// The acceleration of r against the guide's origin.
+  void take_off_carried() {
+    GuideSeries::Coefficients around;  // u x r
+    for (std::size_t k = 0; k < around.size(); ++k) around[k] = cross(series_.u[k], r_);
+    for (std::size_t k = 0; k + 1 < around.size(); ++k) {
+      Components<double> carried = (double(k + 1) / unit_) * around[k + 1];
+      for (std::size_t i = 0; i <= k; ++i) carried = carried + cross(series_.u[i], around[k - i]);
+      series_.g[k] = series_.g[k] - carried;
+    }
+    series_.g.back() = {};
+  }
+
+  M guide_;
+  P r_;
+  InGuide field_;
+  InInertial inertial_field_;
+  GuideSeries series_ = {};
+  double begin_ = 0;
+  double unit_ = 1;
+  double reach_ = 0;  ///< s, of the series from where it begins
+};
+
 /// The motion of a guide M as a body with these loads feels it at the guide-fixed point r.
 ///
 /// P is NoVector where r is the guide's origin. Without `gravity` g' is Absent: it does not matter
@@ -171,6 +257,19 @@ class FeltMotion {
  public:
   FeltMotion(const P& r, const M& guide, const std::string& what, const Loads&... loads)
       : r_(r), known_(known_motion<gravity>(r, guide, what, loads...)) {}
+
+  /// All that a body feels of a guide that moves steadily or analytically, for AttitudeSeries.
+  [[nodiscard]] auto whole(const M& guide, const Loads&... loads) const {
+    if constexpr (requires { known_.field.at(0.0); }) {
+      return TurningSeries{known_};
+    } else if constexpr (SteadyGuide<M>) {
+      return known_;
+    } else {
+      const auto in_guide = field_on<Guide>(loads...);
+      const auto inertial = field_on<Inertial>(loads...);
+      return FeltSeries(guide, r_, in_guide, inertial);
+    }
+  }
 
   template <class N>
   [[nodiscard]] auto at(const M& guide, const N& t, const Loads&... loads) const {

@@ -13,6 +13,7 @@
 
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/attitude_series.hpp>
 #include <dynamics/scene/dual_numbers.hpp>
 #include <dynamics/scene/felt_motion.hpp>
 #include <dynamics/scene/jacobi_integral.hpp>
@@ -137,6 +138,11 @@ class HeldBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
+  /// The Taylor series of the motion, for TaylorSteps.
+  [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
+    return series_on<detail::RateAxes::body>();
+  }
+
   [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {
     const Situation<S> s = situation(t, state);
     return std::apply(
@@ -246,6 +252,18 @@ class HeldBody {
   }
 
  private:
+  template <class OtherGuide, class... Others>
+  friend class AxisymmetricBody;
+
+  template <detail::RateAxes axes>
+  [[nodiscard]] auto series_on() const {
+    const auto felt =
+        std::apply([&](const Loads&... all) { return felt_.whole(guide_, all...); }, loads_);
+    using FeltWhole = std::remove_const_t<decltype(felt)>;
+    return detail::AttitudeSeries<detail::TensorOf<Loads...>, FirstMomentKept, FeltWhole, axes>(
+        tensor_, first_moment_, felt);
+  }
+
   template <class OtherGuide, class... Others>
   [[nodiscard]] HeldBody<OtherGuide, Others...> remade(const InertiaTensor<Body, S>& inertia,
                                                        const OtherGuide& guide,

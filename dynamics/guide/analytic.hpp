@@ -1,0 +1,64 @@
+#pragma once
+
+#include <utility>
+
+#include <dynamics/guide/posed.hpp>
+#include <dynamics/guide/power_series.hpp>
+#include <dynamics/guide/series.hpp>
+
+namespace kreisel {
+
+/// A frame whose pose is a function of time that the user writes, as PosedFrame, and who promises
+/// that it is analytic all along and changes no faster than what the guide carries: no distinction of
+/// cases, no short pulse. Then solve() takes the Taylor series of formula and motion together, which
+/// look at the formula where a step begins and nowhere else.
+///
+/// The function is called with PowerSeries besides: sine, cosine, tangent, exponential, hyperbolic
+/// functions, logarithm, roots and powers are known to it.
+template <class Function, class G = Guide, class I = Inertial>
+class AnalyticFrame {
+ public:
+  explicit AnalyticFrame(Function pose) : posed_(pose), pose_(std::move(pose)) {}
+
+  [[nodiscard]] FrameMotion<G, I> operator()(double t) const { return posed_(t); }
+
+  /// With R^t R' = skew(u).
+  [[nodiscard]] GuideSeries series(double t, double h, int order,
+                                   const detail::Components<double>& g) const {
+    const Pose<PowerSeries> pose = pose_(PowerSeries::time(t, h, order + 1));
+    const auto turned_back = [&pose](int k, const auto& x, const auto& y, const auto& z) {
+      const Matrix3<PowerSeries>& R = pose.rotation;
+      return R(0, k) * x + R(1, k) * y + R(2, k) * z;
+    };
+    const auto turning = [&](int k, int i) {
+      const Matrix3<PowerSeries>& R = pose.rotation;
+      return turned_back(k, R(0, i).derivative(h), R(1, i).derivative(h), R(2, i).derivative(h));
+    };
+    const PowerSeries u[] = {turning(2, 1), turning(0, 2), turning(1, 0)};
+    const auto felt = [&](double along, int i) {
+      return along - pose.translation[i].derivative(h).derivative(h);
+    };
+    const PowerSeries x = felt(g.x, 0), y = felt(g.y, 1), z = felt(g.z, 2);
+    const PowerSeries f[] = {turned_back(0, x, y, z), turned_back(1, x, y, z),
+                             turned_back(2, x, y, z)};
+    GuideSeries result;
+    for (int k = 0; k <= order; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      result.u[at] = {u[0][k], u[1][k], u[2][k]};
+      result.g[at] = {f[0][k], f[1][k], f[2][k]};
+    }
+    return result;
+  }
+
+ private:
+  PosedFrame<Function, G, I> posed_;
+  Function pose_;
+};
+
+/// The frame G whose pose in I is the analytic function given.
+template <class G = Guide, class I = Inertial, class Function>
+[[nodiscard]] AnalyticFrame<Function, G, I> analytic(Function pose) {
+  return AnalyticFrame<Function, G, I>(std::move(pose));
+}
+
+}  // namespace kreisel

@@ -1,0 +1,176 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <dynamics/guide/series.hpp>
+
+namespace kreisel {
+
+/// A function of time as a number: its coefficients in powers of (time - t)/h. Formulas that are
+/// written for any number type give the coefficients of what they compute.
+///
+/// What is not analytic is not there: no comparisons, no abs, min, max.
+///
+/// Source : the recurrences of each function: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+///          Differential Equations I, I.8
+/// Error  : of each coefficient some 10u * sum of |terms|   (tests/dynamics/guide/analytic.cpp)
+class PowerSeries {
+ public:
+  /// A guide's u takes one derivative more than it has coefficients.
+  static constexpr int most_order = most_series_order + 1;
+
+  PowerSeries(double constant = 0) {  // NOLINT: numbers are constants
+    coefficient_.setZero();
+    (*this)[0] = constant;
+  }
+
+  /// Time itself, about t, up to an order.
+  [[nodiscard]] static PowerSeries time(double t, double h, int order) {
+    PowerSeries result(t);
+    result.order_ = order;
+    result[1] = h;
+    return result;
+  }
+
+  /// That of order k; those above order() are 0.
+  [[nodiscard]] double operator[](int k) const { return coefficient_[zeros + k]; }
+  [[nodiscard]] int order() const { return order_; }
+
+  PowerSeries& operator+=(const PowerSeries& b) { return *this = *this + b; }
+  PowerSeries& operator-=(const PowerSeries& b) { return *this = *this - b; }
+  PowerSeries& operator*=(const PowerSeries& b) { return *this = *this * b; }
+  PowerSeries& operator/=(const PowerSeries& b) { return *this = *this / b; }
+
+  friend PowerSeries operator-(const PowerSeries& a) { return {-a.coefficient_, a.order_}; }
+  friend PowerSeries operator+(const PowerSeries& a, const PowerSeries& b) {
+    return {a.coefficient_ + b.coefficient_, std::max(a.order_, b.order_)};
+  }
+  friend PowerSeries operator-(const PowerSeries& a, const PowerSeries& b) {
+    return {a.coefficient_ - b.coefficient_, std::max(a.order_, b.order_)};
+  }
+  friend PowerSeries operator*(const PowerSeries& a, const PowerSeries& b) {
+    if (a.order_ == 0) return {a[0] * b.coefficient_, b.order_};
+    if (b.order_ == 0) return {b[0] * a.coefficient_, a.order_};
+    PowerSeries c;
+    c.order_ = std::max(a.order_, b.order_);
+    // Four coefficients at a time; what is read before the first of b is 0.
+    for (int k = 0; k <= c.order_; k += 4) {
+      Eigen::Array4d sum = Eigen::Array4d::Zero();
+      for (int i = 0; i <= k + 3; ++i) sum += a[i] * b.coefficient_.segment<4>(zeros + k - i);
+      c.coefficient_.segment<4>(zeros + k) = sum;
+    }
+    for (int k = c.order_ + 1; k < places - zeros; ++k) c[k] = 0;
+    return c;
+  }
+  friend PowerSeries operator/(const PowerSeries& a, const PowerSeries& b) {
+    PowerSeries c = a;
+    c.order_ = std::max(a.order_, b.order_);
+    for (int k = 0; k <= c.order_; ++k) {
+      for (int i = 0; i < k; ++i) c[k] -= c[i] * b[k - i];
+      c[k] /= b[0];
+    }
+    return c;
+  }
+
+  friend PowerSeries sin(const PowerSeries& a) { return sine_and_cosine(a)[0]; }
+  friend PowerSeries cos(const PowerSeries& a) { return sine_and_cosine(a)[1]; }
+  friend PowerSeries tan(const PowerSeries& a) {
+    const auto [s, c] = sine_and_cosine(a);
+    return s / c;
+  }
+  friend PowerSeries exp(const PowerSeries& a) {
+    PowerSeries e(std::exp(a[0]));
+    e.order_ = a.order_;
+    for (int k = 1; k <= a.order_; ++k) {
+      double sum = 0;
+      for (int i = 1; i <= k; ++i) sum += i * a[i] * e[k - i];
+      e[k] = sum / k;
+    }
+    return e;
+  }
+  friend PowerSeries sinh(const PowerSeries& a) { return (exp(a) - exp(-a)) / 2; }
+  friend PowerSeries cosh(const PowerSeries& a) { return (exp(a) + exp(-a)) / 2; }
+  friend PowerSeries tanh(const PowerSeries& a) { return 1 - 2 / (exp(2 * a) + 1); }
+  friend PowerSeries log(const PowerSeries& a) {
+    // a l' = a'
+    PowerSeries l(std::log(a[0]));
+    l.order_ = a.order_;
+    for (int k = 1; k <= a.order_; ++k) {
+      double sum = k * a[k];
+      for (int i = 1; i < k; ++i) sum -= i * l[i] * a[k - i];
+      l[k] = sum / (k * a[0]);
+    }
+    return l;
+  }
+  friend PowerSeries pow(const PowerSeries& a, double exponent) {
+    // a p' = exponent p a'
+    PowerSeries p(std::pow(a[0], exponent));
+    p.order_ = a.order_;
+    for (int k = 1; k <= a.order_; ++k) {
+      double sum = 0;
+      for (int i = 0; i < k; ++i) sum += (exponent * (k - i) - i) * p[i] * a[k - i];
+      p[k] = sum / (k * a[0]);
+    }
+    return p;
+  }
+  friend PowerSeries sqrt(const PowerSeries& a) { return pow(a, 0.5); }
+
+  /// The derivative by time.
+  [[nodiscard]] PowerSeries derivative(double h) const {
+    PowerSeries result;
+    result.order_ = std::max(order_ - 1, 0);
+    for (int k = 0; k < order_; ++k) result[k] = (k + 1) * (*this)[k + 1] / h;
+    return result;
+  }
+
+ private:
+  static constexpr int zeros = 4;
+  static constexpr int places = (zeros + most_order + 1 + 6) / 4 * 4;  ///< up to 3 are read beyond
+  using Coefficients = Eigen::Array<double, places, 1>;
+
+  PowerSeries(const Coefficients& coefficient, int order)
+      : coefficient_(coefficient), order_(order) {}
+
+  double& operator[](int k) { return coefficient_[zeros + k]; }
+
+  [[nodiscard]] static std::array<PowerSeries, 2> sine_and_cosine(const PowerSeries& a) {
+    PowerSeries s(std::sin(a[0]));
+    PowerSeries c(std::cos(a[0]));
+    s.order_ = c.order_ = a.order_;
+    int bends = a.order_;  // the last coefficient of a that is not 0
+    while (bends > 1 && a[bends] == 0) --bends;
+    for (int k = 1; k <= a.order_; ++k) {
+      double ds = 0;
+      double dc = 0;
+      for (int i = 1; i <= std::min(k, bends); ++i) {
+        ds += i * a[i] * c[k - i];
+        dc -= i * a[i] * s[k - i];
+      }
+      s[k] = ds / k;
+      c[k] = dc / k;
+    }
+    return {s, c};
+  }
+
+  Coefficients coefficient_;
+  int order_ = 0;
+};
+
+}  // namespace kreisel
+
+template <>
+struct Eigen::NumTraits<kreisel::PowerSeries> : Eigen::NumTraits<double> {
+  using Real = kreisel::PowerSeries;
+  using NonInteger = kreisel::PowerSeries;
+  using Nested = kreisel::PowerSeries;
+  enum {
+    RequireInitialization = 1,
+    ReadCost = 25,
+    AddCost = 25,
+    MulCost = 300,
+  };
+};

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+
+#include <motor/absent.hpp>
+
+namespace kreisel {
+
+/// Of Taylor series the greatest order that is asked for.
+inline constexpr int most_series_order = 24;
+
+/// What a body at a guide's origin feels of its motion, on guide axes: coefficients in powers of
+/// (time - t)/h of the angular velocity u, and of gravity less the origin's inertial acceleration.
+///
+/// Units  : rad/s, m/s^2
+struct GuideSeries {
+  using Coefficients = std::array<detail::Components<double>, most_series_order + 1>;
+
+  Coefficients u = {};
+  Coefficients g = {};
+};
+
+/// A guide whose motion is analytic: it gives the coefficients up to `order` at t, for the uniform
+/// gravity g on inertial axes. None of u beyond `order` is asked for, and of g none from there on.
+template <class M>
+concept AnalyticGuide = requires(const M& guide, double t, const detail::Components<double>& g) {
+  { guide.series(t, t, 0, g) } -> std::same_as<GuideSeries>;
+};
+
+namespace detail {
+
+/// How far a series to order n carries, in units of its time: its last two terms are then 1e-17 of
+/// the first.
+[[nodiscard]] inline double reached(const GuideSeries::Coefficients& c, int n) {
+  const auto size = [&c](int k) {
+    const Components<double>& a = c[std::size_t(k)];
+    return std::hypot(a.x, a.y, a.z);
+  };
+  double reach = std::numeric_limits<double>::infinity();
+  for (int k = n - 1; k <= n; ++k) {
+    if (size(k) > 0) reach = std::min(reach, std::pow(1e-17 * size(0) / size(k), 1.0 / k));
+  }
+  return reach;
+}
+
+/// The series up to `order` from another point on, `by` units of time later, in units of time that
+/// are `unit` of the old ones. By Horner's scheme.
+[[nodiscard]] inline GuideSeries shifted(const GuideSeries& s, double by, double unit, int order) {
+  using Six = Eigen::Array<double, 6, 1>;
+  std::array<Six, most_series_order + 1> c;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    c[k] << s.u[k].x, s.u[k].y, s.u[k].z, s.g[k].x, s.g[k].y, s.g[k].z;
+  }
+  if (by != 0) {
+    for (std::size_t i = 0; i + 1 < c.size(); ++i) {
+      for (std::size_t k = c.size() - 1; k-- > i;) c[k] += by * c[k + 1];
+    }
+  }
+  GuideSeries result;
+  double power = 1;
+  for (std::size_t k = 0; k <= std::size_t(order); ++k) {
+    const Six a = power * c[k];
+    result.u[k] = {a[0], a[1], a[2]};
+    result.g[k] = {a[3], a[4], a[5]};
+    power *= unit;
+  }
+  return result;
+}
+
+}  // namespace detail
+
+}  // namespace kreisel

@@ -1,0 +1,212 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <dynamics/step/accuracy.hpp>
+#include <dynamics/step/compensated.hpp>
+#include <dynamics/step/shared.hpp>
+
+namespace kreisel {
+
+/// Integration of  y' = f(t, y)  by the Taylor series of the solution, with adaptive steps, for
+/// scenes whose series can be had coefficient by coefficient.
+///
+/// The step follows from the last two coefficients, so no step is ever rejected; what they cannot
+/// know is a field that changes its formula on the way: its jumps have to be announced. Output
+/// between the ends of a step is the series itself and costs no evaluation.
+///
+/// Vector : Eigen::Matrix<double, n, 1>
+/// Series : series(t, h, order, c) fills the columns 1 to `order` of an n x (most_order + 1) matrix c
+///          with the coefficients of the solution in powers of (time - t)/h, from column 0, which is
+///          the state at t; Series::most_order is the greatest order it is asked for
+/// Blocks : as ExplicitSteps
+/// Source : order and step: A. Jorba, M. Zou, A software package for the numerical integration of
+///          ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99
+/// Error  : that of a step, relative, is about `accuracy.relative`
+/// Cost   : a series of order 9 to 21 a step, by the accuracy; its coefficients count as evaluations
+/// Throws : as ExplicitSteps
+template <class Vector, class Series>
+class TaylorSteps {
+ public:
+  using Scalar = double;
+
+  TaylorSteps(Series series, double t, const Vector& y, const Accuracy& accuracy = {},
+              std::span<const int> blocks = {})
+      : series_(std::move(series)),
+        accuracy_(accuracy),
+        time_{t, 0},
+        state_{y, Vector::Zero()},
+        sizes_(blocks, accuracy.smallest, y),
+        before_{time_, state_} {
+    detail::check(accuracy);
+    if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
+    if (!(y - y).isZero(0)) detail::refuse_steps("the state at the start is not finite");
+    order_ = order_for(accuracy.relative);
+    coefficient_.setZero();
+  }
+
+  [[nodiscard]] const double& t() const { return time_.value; }
+  [[nodiscard]] const Vector& y() const { return state_.value; }
+  [[nodiscard]] const Effort& effort() const { return effort_; }
+
+  /// Times at which the field jumps, in any order. Steps end there exactly.
+  void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
+
+  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  const Vector& advance_to(double end) {
+    while (end != t()) step_towards(end);
+    return y();
+  }
+
+  /// One step towards `end`, not past it.
+  void step_towards(double end) {
+    if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
+    if (end == t()) return;
+    const double goal = detail::next_stop(t(), end, jumps_);
+    expand();
+    const double left = (goal - time_.value) - time_.rest;
+    const double reach = scale_ * reached_from_here();
+    const bool last = !(reach < std::abs(left));
+    const double h = last ? left : std::copysign(reach, left);
+    if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t())) {
+      if (!last) detail::stop_integration(t(), "the step has become too short to move time on");
+    }
+    before_ = {time_, state_};
+    state_.add(change(h / scale_));
+    if (!(y() - y()).isZero(0)) {
+      state_ = before_.state;
+      detail::stop_integration(t(), "the field is not finite");
+    }
+    time_.add(h);
+    if (last) time_ = {goal, 0};
+    sizes_.note(y());
+    effort_.steps += 1;
+    next_scale_ = reach < std::numeric_limits<double>::max() ? reach : std::abs(h);
+  }
+
+  /// Whether a time lies within the last step.
+  [[nodiscard]] bool covers(double time) const {
+    const double from = before_.time.value;
+    return time >= std::min(from, t()) && time <= std::max(from, t());
+  }
+
+  /// The state at a time within the last step.
+  ///
+  /// Throws : InvalidInput for a time outside of it
+  [[nodiscard]] Vector at(double time) const {
+    const double from = before_.time.value;
+    if (!covers(time)) {
+      detail::refuse_steps("t = ", time, " s lies outside the last step, [", from, ", ", t(),
+                           "] s");
+    }
+    if (time == t()) return y();
+    if (time == from) return before_.state.value;
+    const double part = ((time - from) - before_.time.rest) / scale_;
+    return before_.state.value + (change(part) + before_.state.rest);
+  }
+
+  /// Goes back to a time within the last step and continues from there.
+  void back_to(double time) {
+    state_ = {at(time), Vector::Zero()};
+    time_ = {time, 0};
+    before_ = {time_, state_};
+  }
+
+  /// What the steps go on from, outputs within the last step included.
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(time_, state_, before_.time, before_.state, scale_, next_scale_, sizes_, coefficient_,
+             effort_);
+  }
+
+ private:
+  static constexpr int most_order = Series::most_order;
+  using Coefficients = Eigen::Matrix<double, Vector::RowsAtCompileTime, most_order + 1>;
+
+  /// Where a step began.
+  struct Begin {
+    detail::Compensated<double> time;
+    detail::Compensated<Vector> state;
+  };
+
+  /// Coefficients cost the more the higher their order, and lengthen the step the less. As measured,
+  /// orders by four off take a tenth longer.
+  [[nodiscard]] static int order_for(double relative) {
+    return std::clamp(int(std::lround(7.5 - 0.37 * std::log(relative))), 9, most_order);
+  }
+
+  /// The series from here on. The unit of time is the last step: powers of it stay within range.
+  void expand() {
+    if (effort_.evaluations > accuracy_.most_evaluations) {
+      detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
+    }
+    coefficient_.col(0) = y();
+    if (next_scale_ == 0) next_scale_ = first_scale();
+    constexpr int most_tries = 40;  // from 1e308 down to any rate that is a number
+    for (int i = 0; i < most_tries; ++i) {
+      scale_ = next_scale_;
+      series_(t(), scale_, order_, coefficient_);
+      effort_.evaluations += order_;
+      if ((coefficient_ - coefficient_).leftCols(order_ + 1).isZero(0)) return;
+      next_scale_ *= 1e-8;
+    }
+    detail::stop_integration(t(), "the field is not finite");
+  }
+
+  /// The time in which the state changes by itself.
+  [[nodiscard]] double first_scale() {
+    series_(t(), 1, 1, coefficient_);
+    effort_.evaluations += 1;
+    const Vector rate = coefficient_.col(1);
+    if (!(rate - rate).isZero(0)) detail::stop_integration(t(), "the field is not finite");
+    return 100 * sizes_.first_step(rate);
+  }
+
+  /// How far the series carries, in units of its time.
+  [[nodiscard]] double reached_from_here() const {
+    const double reach = reached(1);
+    // The first unit is a guess, which the change in a step is not to be judged by.
+    return effort_.steps == 0 ? reached(std::min(reach, 1.0)) : reach;
+  }
+
+  /// To where the last two terms are what a step of about `length` may err by. Two, for of an even or
+  /// odd solution one of them vanishes.
+  [[nodiscard]] double reached(double length) const {
+    double reach = std::numeric_limits<double>::infinity();
+    const Vector change = length * coefficient_.col(1);
+    for (int k = order_ - 1; k <= order_; ++k) {
+      const double size = sizes_.relative(coefficient_.col(k), change) / accuracy_.relative;
+      if (size > 0) reach = std::min(reach, std::pow(size, -1.0 / k));
+    }
+    return reach;
+  }
+
+  /// What the series makes of the state in s of its units of time, from the smallest terms on.
+  [[nodiscard]] Vector change(double s) const {
+    Vector sum = coefficient_.col(order_);
+    for (int k = order_ - 1; k > 0; --k) sum = s * sum + coefficient_.col(k);
+    return s * sum;
+  }
+
+  Series series_;
+  Accuracy accuracy_;
+  int order_;
+  detail::Compensated<double> time_;
+  detail::Compensated<Vector> state_;
+  detail::BlockSizes<Vector> sizes_;
+  std::vector<double> jumps_;
+  Begin before_;
+  Coefficients coefficient_;  ///< of the last step, in powers of its time over scale_
+  double scale_ = 1;
+  double next_scale_ = 0;
+  Effort effort_;
+};
+
+}  // namespace kreisel

@@ -1,0 +1,189 @@
+#include <boost/test/unit_test.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/events.hpp>
+#include <dynamics/step/taylor.hpp>
+
+#include <support/near.hpp>
+
+using namespace kreisel;
+using test::near;
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+using Vector = Eigen::Matrix<double, 2, 1>;
+
+/// y'' = -y, by its series.
+struct Circle {
+  static constexpr int most_order = 24;
+
+  template <class Coefficients>
+  void operator()(double /*t*/, double h, int order, Coefficients& c) const {
+    for (int k = 0; k < order; ++k) {
+      c(0, k + 1) = h * c(1, k) / (k + 1);
+      c(1, k + 1) = -h * c(0, k) / (k + 1);
+    }
+  }
+};
+
+/// y' = y^2, which ends at t = 1/y(0); and a clock beside it.
+struct Pole {
+  static constexpr int most_order = 24;
+
+  template <class Coefficients>
+  void operator()(double /*t*/, double h, int order, Coefficients& c) const {
+    for (int k = 0; k < order; ++k) {
+      double sum = 0;
+      for (int i = 0; i <= k; ++i) sum += c(0, i) * c(0, k - i);
+      c(0, k + 1) = h * sum / (k + 1);
+      c(1, k + 1) = k == 0 ? h : 0;
+    }
+  }
+};
+
+/// y' = 0 before t = 1, then 1.
+struct Switched {
+  static constexpr int most_order = 24;
+
+  template <class Coefficients>
+  void operator()(double t, double h, int order, Coefficients& c) const {
+    c.middleCols(1, order).setZero();
+    if (t >= 1) c(0, 1) = h;
+  }
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(taylor)
+
+// A hundred turns. What a step errs by adds up, at worst.
+BOOST_AUTO_TEST_CASE(keeps_the_accuracy_asked_for) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
+    TaylorSteps steps(Circle{}, 0, Vector(1, 0), {.relative = accuracy});
+    const Vector y = steps.advance_to(628);
+    const double error = (y - Vector(std::cos(628), -std::sin(628))).norm();
+    BOOST_TEST_MESSAGE(accuracy << ": off by " << error << " in " << steps.effort().steps
+                                << " steps of order "
+                                << steps.effort().evaluations / steps.effort().steps);
+    BOOST_TEST(error <= steps.effort().steps * (accuracy + 1e-16));
+    BOOST_TEST(error >= 1e-4 * accuracy);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(goes_backwards_to_where_it_came_from) {
+  TaylorSteps steps(Circle{}, 3, Vector(1, 0.5));
+  steps.advance_to(20);
+  const Vector y = steps.advance_to(3);
+  BOOST_TEST(steps.t() == 3);
+  BOOST_TEST(near(y, Vector(1, 0.5), 1.0, 40));
+}
+
+// Output is the series itself: as good as the steps, and it does not disturb them.
+BOOST_AUTO_TEST_CASE(gives_output_on_the_way) {
+  TaylorSteps undisturbed(Circle{}, 0, Vector(1, 0));
+  undisturbed.advance_to(10);
+  TaylorSteps steps(Circle{}, 0, Vector(1, 0));
+  for (double t = 0; t < 10; t += 0.03125) {
+    while (!steps.covers(t)) steps.step_towards(10);
+    BOOST_TEST(near(steps.at(t), Vector(std::cos(t), -std::sin(t)), 1.0, 20));
+  }
+  steps.advance_to(10);
+  BOOST_TEST(steps.y() == undisturbed.y());
+  BOOST_TEST(steps.effort().evaluations == undisturbed.effort().evaluations);
+  BOOST_CHECK_THROW((void)steps.at(11), InvalidInput);
+}
+
+BOOST_AUTO_TEST_CASE(finds_events) {
+  TaylorSteps steps(Circle{}, 0, Vector(1, 0));
+  const auto first = advance_to_event(
+      steps, [](double /*t*/, const Vector& y) { return y[0]; }, 100, Crossing::rising);
+  BOOST_REQUIRE(first);
+  BOOST_TEST(near(*first, 4.71238898038468985769, 1.0, 40));
+  steps.advance_to(6);
+  BOOST_TEST(near(steps.y(), Vector(std::cos(6), -std::sin(6)), 1.0, 40));
+}
+
+// Where the series ends steps get ever shorter: the way to there is right, and there they stop. What
+// errs in time by a last digit errs in y by y^2 times that.
+BOOST_AUTO_TEST_CASE(comes_near_a_pole_and_stops_before_it) {
+  TaylorSteps steps(Pole{}, 0, Vector(1, 0));
+  const std::array<int, 2> blocks = {1, 1};
+  TaylorSteps apart(Pole{}, 0, Vector(1, 0), {}, blocks);
+  BOOST_TEST(near(apart.advance_to(0.999)[0], 1000.0, 1e6, 40));
+  BOOST_TEST(near(apart.y()[1], 0.999, 1.0, 2));
+  BOOST_CHECK_EXCEPTION(steps.advance_to(2), ComputationFailed, [&](const ComputationFailed& e) {
+    BOOST_TEST_MESSAGE(e.what());
+    return std::string(e.what()).find("integration stopped at t = 0.99999999") == 0;
+  });
+  BOOST_TEST(steps.y()[0] > 1e8);
+  BOOST_TEST(steps.t() < 1);
+}
+
+BOOST_AUTO_TEST_CASE(ends_steps_where_the_field_jumps) {
+  TaylorSteps steps(Switched{}, 0, Vector(0, 1));
+  steps.stop_at({1});
+  BOOST_TEST(near(steps.advance_to(3)[0], 2.0, 1.0, 2));
+}
+
+// What rests needs one step, whatever the way; a way of no length needs none.
+BOOST_AUTO_TEST_CASE(takes_no_more_steps_than_needed) {
+  TaylorSteps steps(Circle{}, 0, Vector(0, 0), {.smallest = 0});
+  BOOST_TEST(steps.advance_to(1e9).isZero(0));
+  BOOST_TEST(steps.effort().steps == 1);
+  steps.advance_to(1e9);
+  BOOST_TEST(steps.effort().steps == 1);
+}
+
+// A state of 1e-200 among units of 1, and one at the upper end of the range.
+BOOST_AUTO_TEST_CASE(does_not_mind_the_size_of_the_state) {
+  for (const double size : {1e-200, 1e200}) {
+    TaylorSteps steps(Circle{}, 0, Vector(size, 0), {.smallest = 0});
+    BOOST_TEST(
+        near(Vector(steps.advance_to(6) / size), Vector(std::cos(6), -std::sin(6)), 1.0, 20));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(goes_back_within_a_step) {
+  TaylorSteps steps(Circle{}, 0, Vector(1, 0));
+  steps.step_towards(10);
+  const double half = steps.t() / 2;
+  steps.back_to(half);
+  BOOST_TEST(steps.t() == half);
+  BOOST_TEST(near(steps.advance_to(6), Vector(std::cos(6), -std::sin(6)), 1.0, 20));
+}
+
+BOOST_AUTO_TEST_CASE(goes_on_from_a_bookmark_to_the_last_bit) {
+  TaylorSteps whole(Circle{}, 0, Vector(1, 0));
+  for (int i = 0; i < 5; ++i) whole.step_towards(100);
+  detail::Bookmark taken;
+  whole.pass(taken);
+  TaylorSteps resumed(Circle{}, 0, Vector(1, 0));
+  detail::Bookmark set(taken.numbers());
+  resumed.pass(set);
+  set.finish();
+  BOOST_TEST(resumed.at(resumed.t() - 0.01) == whole.at(whole.t() - 0.01));
+  BOOST_TEST(resumed.advance_to(100) == whole.advance_to(100));
+  BOOST_TEST(resumed.effort().steps == whole.effort().steps);
+}
+
+BOOST_AUTO_TEST_CASE(refuses_what_is_none) {
+  const Vector y(1, 0);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, not_a_number, y), InvalidInput);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, Vector(1, not_a_number)), InvalidInput);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.relative = 1e-17}), InvalidInput);
+  TaylorSteps steps(Circle{}, 0, y);
+  BOOST_CHECK_THROW(steps.advance_to(not_a_number), InvalidInput);
+  TaylorSteps few(Circle{}, 0, y, {.most_evaluations = 100});
+  BOOST_CHECK_THROW(few.advance_to(1000), ComputationFailed);
+  TaylorSteps infinite(Pole{}, 0, Vector(1e200, 0));
+  BOOST_CHECK_THROW(infinite.advance_to(1), ComputationFailed);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
