@@ -346,7 +346,7 @@ PYBIND11_MODULE(kreisel, m) {
            "The motion from t = 0.\n\n"
            "t_end      s; times in s, increasing, instead of the scene's output times\n"
            "tolerance  of the global error, see Report.error_estimate\n"
-           "method     auto, closed form, verner98, gauss16, radau13, splitting\n"
+           "method     auto, closed form, verner98, gauss16, radau13, splitting, taylor\n"
            "reactions  whether to tell what every joint carries\n\n"
            "What is left out is the scene's. Python's lock is released meanwhile.");
 }

@@ -87,9 +87,9 @@ class SceneReader {
       }
     }
     scene_.tolerance = request_.tolerance.value_or(scene_.tolerance);
-    const std::string method = solve->choice(
-        "method",
-        {"auto", "automatic", "closed form", "verner98", "gauss16", "radau13", "splitting"});
+    const std::string method =
+        solve->choice("method", {"auto", "automatic", "closed form", "verner98", "gauss16",
+                                 "radau13", "splitting", "taylor"});
     scene_.method = request_.method.value_or(*method_named(method));
     read_model(*solve);
     const auto step = solve->number("output_step", Range::positive);
@@ -726,8 +726,9 @@ bool SceneFile::rests() const {
 
 std::optional<Method> method_named(std::string_view word) {
   if (word == "auto") return Method::automatic;
-  for (const Method method : {Method::automatic, Method::closed_form, Method::verner98,
-                              Method::gauss16, Method::radau13, Method::splitting}) {
+  for (const Method method :
+       {Method::automatic, Method::closed_form, Method::verner98, Method::gauss16, Method::radau13,
+        Method::splitting, Method::taylor}) {
     if (word == name(method)) return method;
   }
   return std::nullopt;

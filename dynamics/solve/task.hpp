@@ -11,14 +11,16 @@ namespace kreisel {
 
 /// How a run is computed.
 enum class Method {
-  /// The closed form where the scene has one; splitting for a fast top; else verner98, which gives
-  /// way to radau13 where the field proves stiff and to gauss16 where a long run asks for it.
+  /// The closed form where the scene has one; splitting for a fast top; taylor where the scene knows
+  /// its series; else verner98, which gives way to radau13 where the field proves stiff. To gauss16
+  /// where a long run asks for it.
   automatic,
   closed_form,  ///< of the scene; see closed_form.hpp
   verner98,     ///< ExplicitSteps, adaptive
   gauss16,      ///< GaussSteps, fixed: the last digits of 1e4 periods and more
   radau13,      ///< RadauSteps, adaptive: for stiff fields
-  splitting     ///< SplittingSteps, fixed: for a symmetric top whose spin commands its weight
+  splitting,    ///< SplittingSteps, fixed: for a symmetric top whose spin commands its weight
+  taylor        ///< TaylorSteps, adaptive: for scenes that know their series()
 };
 
 [[nodiscard]] constexpr const char* name(Method method) {
@@ -29,6 +31,7 @@ enum class Method {
     case Method::gauss16: return "gauss16";
     case Method::radau13: return "radau13";
     case Method::splitting: return "splitting";
+    case Method::taylor: return "taylor";
   }
   return "none";
 }
@@ -52,7 +55,7 @@ struct Task {
   std::function<bool(double t)> progress = nullptr;
 
   /// Called after every output but the last with what gives a bookmark, for whoever wants to keep
-  /// one. Verner98, gauss16 and radau13 have them, closed forms and splitting need none.
+  /// one. Verner98, taylor, gauss16 and radau13 have them, closed forms and splitting need none.
   std::function<void(const std::function<std::vector<double>()>& bookmark)> offer_bookmark =
       nullptr;
 

@@ -51,10 +51,10 @@ std::optional<Request> read_request(int argc, char** argv) {
            if (!request.solve.method) {
              throw InvalidInput("--method = '" + word +
                                 "' is none of auto, closed form, verner98, gauss16, radau13, "
-                                "splitting");
+                                "splitting, taylor");
            }
          },
-         "auto, closed form, verner98, gauss16, radau13, splitting")
+         "auto, closed form, verner98, gauss16, radau13, splitting, taylor")
       ->type_name("NAME")
       ->group("Instead of the scene's");
   app.add_flag("--reactions", request.reactions, "what every joint carries")->group("Output");

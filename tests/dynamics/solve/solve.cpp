@@ -70,7 +70,7 @@ struct Honesty {
 BOOST_AUTO_TEST_SUITE(solve_)
 
 // Against closed forms: free tops of all kinds and Lagrange's tops, from loose to the tightest.
-BOOST_AUTO_TEST_CASE(tells_its_error_honestly) {
+void tells_its_error_honestly(Method method) {
   Honesty honesty;
   for (unsigned seed = 0; seed < 20; ++seed) {
     test::Sample sample(seed);
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly) {
     const Vector3<double> w = sample.uniform(0.5, 5) * sample.direction();
     const double k = sample.uniform(0.5, 10);
     for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-12, 1e-14}) {
-      const Task task{.times = every(1, 10), .tolerance = tolerance, .method = Method::verner98};
+      const Task task{.times = every(1, 10), .tolerance = tolerance, .method = method};
       const EulerTop free({A, B, C});
       const auto run = solve(free, {tilted, w}, task);
       honesty.note(run.report, true_error(run, exact::FreeTop({A, B, C}, w, tilted)));
@@ -90,11 +90,43 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly) {
       honesty.note(spun.report, true_error(spun, exact::LagrangeTop(A, C, k, w, tilted)));
     }
   }
-  BOOST_TEST_MESSAGE(honesty.within << " of " << honesty.runs << " in [0.1, 1], greatest "
-                                    << honesty.greatest);
+  BOOST_TEST_MESSAGE(name(method) << ": " << honesty.within << " of " << honesty.runs
+                                  << " in [0.1, 1], greatest " << honesty.greatest);
   BOOST_TEST(honesty.within >= 0.95 * honesty.runs);
   BOOST_TEST(honesty.greatest <= 3);
   BOOST_TEST(honesty.promises_kept);
+}
+BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_stages) {
+  tells_its_error_honestly(Method::verner98);
+}
+BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
+  tells_its_error_honestly(Method::taylor);
+}
+
+// Bodies on guides that move steadily know their series; held against steps that do not.
+BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
+  const Matrix3<double> Theta = Vector3<double>(0.25, 0.27, 0.06).asDiagonal();
+  const HeldBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1},
+                      RotatingFrame<>{{0.1, -0.3, 0.2}}, UniformGravity<Guide>{{0, 0, -9.81}});
+  using Scene = std::remove_const_t<decltype(body)>;
+  const Scene::State start{tilted, {1, 0, 2}};
+  const auto times = every(0.5, 10);
+  const auto truth =
+      solve(body, start, {.times = times, .tolerance = 1e-13, .method = Method::verner98});
+  for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    const auto found = solve(body, start, {.times = times, .tolerance = tolerance});
+    BOOST_TEST(found.report.method == "taylor");
+    BOOST_TEST(found.report.tolerance_kept);
+    detail::ErrorMeasure<Scene> distance(1e-3);
+    double off = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      off = std::max(
+          off, distance(Scene::to_vector(found.states[i]), Scene::to_vector(truth.states[i])));
+    }
+    BOOST_TEST(off <= found.report.error_estimate);
+  }
+  const CardanGyro gyro({{5e-4, 5e-4, 8e-4}}, {}, RestingFrame<>{});
+  BOOST_CHECK_THROW((void)solve(gyro, {}, {.times = {1}, .method = Method::taylor}), InvalidInput);
 }
 
 // A pair of runs costs 1 + 10^(1/9) = 2.29 of the coarser one, or more by a rejected step and the
@@ -379,7 +411,7 @@ BOOST_AUTO_TEST_CASE(knows_what_last_digits_grow_to) {
   const Vector3<double> w(std::sqrt(2.0) * (1 + 1e-14), 1.5, 1);
   const EulerTop top({2, 3, 4});
   const exact::FreeTop truth(top.moments(), w, tilted);
-  for (const Method method : {Method::verner98, Method::gauss16, Method::radau13}) {
+  for (const Method method : {Method::verner98, Method::taylor, Method::gauss16, Method::radau13}) {
     const auto run =
         solve(top, {tilted, w}, {.times = every(2, 20), .tolerance = 1e-8, .method = method});
     const double error = true_error(run, truth);
