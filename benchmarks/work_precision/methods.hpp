@@ -18,6 +18,7 @@
 #include <dynamics/step/gsl.hpp>
 #include <dynamics/step/jacobian.hpp>
 #include <dynamics/step/radau.hpp>
+#include <dynamics/step/taylor.hpp>
 
 #include "point.hpp"
 #include "problem.hpp"
@@ -102,6 +103,7 @@ class Methods {
   /// All for fields that are not stiff.
   void not_stiff() {
     explicit_ones(budget());
+    taylor();
     gauss();
     cvode<false>();
   }
@@ -145,6 +147,15 @@ class Methods {
     });
     odeint("Odeint Bulirsch-Stoer", budget,
            [](double tolerance) { return od::bulirsch_stoer<Array>(tolerance, tolerance); });
+  }
+
+  void taylor() {
+    if constexpr (requires(const Scene& scene) { scene.series(); }) {
+      add("Taylor", thoroughness_.tolerances, [budget = budget()](const P& p, double tolerance) {
+        return kreisel::TaylorSteps(p.scene.series(), 0.0, p.start, budget.at(p, tolerance),
+                                    Scene::blocks);
+      });
+    }
   }
 
   void gauss() {

@@ -31,25 +31,14 @@ constexpr const char* blue = "#0072b2";
 constexpr const char* vermilion = "#d55e00";
 constexpr const char* purple = "#cc79a7";
 constexpr const char* grey = "#888888";
-constexpr Look looks[] = {{"auto", black, 7},
-                          {"closed form", black, 3},
-                          {"Verner98", blue, 5},
-                          {"Gauss 16", green, 9},
-                          {"Strang", purple, 4},
-                          {"Blanes864", purple, 11},
-                          {"KahanLi8", purple, 13},
-                          {"Radau 9", vermilion, 4},
-                          {"Radau 13", vermilion, 5},
-                          {"GSL rkf45", orange, 1},
-                          {"GSL rk8pd", orange, 6},
-                          {"GSL msadams", orange, 8},
-                          {"GSL bsimp", orange, 12},
-                          {"GSL msbdf", orange, 2},
-                          {"Odeint dopri5", sky, 1},
-                          {"Odeint rkf78", sky, 6},
-                          {"Odeint Bulirsch-Stoer", sky, 8},
-                          {"CVODE Adams", grey, 8},
-                          {"CVODE BDF", grey, 2}};
+constexpr Look looks[] = {
+    {"auto", black, 7},         {"closed form", black, 3}, {"Verner98", blue, 5},
+    {"Taylor", vermilion, 9},   {"Gauss 16", green, 9},    {"Strang", purple, 4},
+    {"Blanes864", purple, 11},  {"KahanLi8", purple, 13},  {"Radau 9", vermilion, 4},
+    {"Radau 13", vermilion, 5}, {"GSL rkf45", orange, 1},  {"GSL rk8pd", orange, 6},
+    {"GSL msadams", orange, 8}, {"GSL bsimp", orange, 12}, {"GSL msbdf", orange, 2},
+    {"Odeint dopri5", sky, 1},  {"Odeint rkf78", sky, 6},  {"Odeint Bulirsch-Stoer", sky, 8},
+    {"CVODE Adams", grey, 8},   {"CVODE BDF", grey, 2}};
 
 /// What is drawn upwards, and its name in the file's.
 struct Axis {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include <dynamics/guide/posed.hpp>
+#include <dynamics/guide/analytic.hpp>
 #include <dynamics/scene/held_body.hpp>
 #include <motor/attitude.hpp>
 
@@ -18,7 +18,7 @@ namespace work_precision {
 /// scene says nothing.
 void ship(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   using namespace kreisel;
-  const auto guide = posed([](const auto& t) {
+  const auto guide = analytic([](const auto& t) {
     using std::sin;
     using T = std::decay_t<decltype(t)>;
     const YawPitchRoll<T> turn{T(0.3 * t), T(0.1 * sin(1.3 * t + 0.4)), T(0.2 * sin(0.9 * t))};
