@@ -111,6 +111,24 @@ struct AxisOfTop {
             k * y[0],
             S(0)};
   }
+
+  /// The same coefficient by coefficient, for Taylor's steps.
+  struct Series {
+    static constexpr int most_order = kreisel::most_series_order;
+
+    template <class Coefficients>
+    void operator()(double /*t*/, double h, int order, Coefficients& c) const {
+      for (int n = 0; n < order; ++n) {
+        Vector3<double> turn = Vector3<double>::Zero();
+        for (int i = 0; i <= n; ++i) {
+          turn += c.col(i).template tail<3>().cross(c.col(n - i).template head<3>());
+        }
+        const double weight = h / (n + 1);
+        c.col(n + 1) << weight / A * turn, -weight * k * c(1, n), weight * k * c(0, n), 0;
+      }
+    }
+  };
+  [[nodiscard]] static Series series() { return {}; }
 };
 
 }  // namespace

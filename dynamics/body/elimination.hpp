@@ -19,7 +19,9 @@ namespace kreisel::detail {
 [[noreturn]] inline void refuse_singular(const BodyTree& tree, const Link& link, const char* motion,
                                          const Vector3<double>& axis) {
   char direction[64];
-  std::snprintf(direction, sizeof direction, " (%.6g, %.6g, %.6g)", axis.x(), axis.y(), axis.z());
+  const double none = 0;  // makes 0 of -0
+  std::snprintf(direction, sizeof direction, " (%.6g, %.6g, %.6g)", axis.x() + none,
+                axis.y() + none, axis.z() + none);
   throw ComputationFailed("body '" + tree.body(link.body).name + "': " + motion + direction +
                           " on guide axes moves no inertia, so no force determines it: a body "
                           "without mass at the end of "

@@ -45,28 +45,46 @@ class AttitudeSeries {
     const auto felt = felt_now(t, h, order);
     Table s;
     const double norm2 = c.col(0).template head<4>().squaredNorm();
-    s.put_attitude(0, c(0, 0), c(1, 0), c(2, 0), c(3, 0));
+    s.put_attitude(0, c.col(0).template head<4>());
     // At the beginning it is u' that is known, not w.
     Components<double> w{c(4, 0), c(5, 0), c(6, 0)};
     for (int k = 0;; ++k) {
-      const Turn<double> R = s.turn(k, 1 / norm2);
-      if constexpr (guide_changes) s.put_rows(k, R);
-      const auto guide = turned_back(s, k, R, felt.u);
+      Sums sums;
+      // What is known already comes first, and the newest coefficients last: they may still be on
+      // their way to memory.
+      for (std::size_t i = 1, j = std::size_t(k) - 1; i < std::size_t(k); ++i, --j) {
+        s.add_attitudes(i, j, sums);
+        s.add_rates(i, j, sums);
+        if constexpr (guide_changes) s.add_felt(i, j, felt, sums);
+      }
+      at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_attitudes(i, j, sums); });
+      const Turn<double> R = turn(sums, 1 / norm2);
+      if constexpr (guide_changes) {
+        s.put_rows(k, R);
+        at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_felt(i, j, felt, sums); });
+      }
+      const auto guide = turned_back(R, felt.u, sums.guide);
       if (k == 0) w = w + guide;
-      s.put_rate(k, w);
       const Components<double> u = w - guide;
-      s.put_relative(k, u);
       c(4, k) = u.x;
       c(5, k) = u.y;
       c(6, k) = u.z;
       if (k == order) return;
+      s.put_rates(k, w, by_whole_rate ? w : u);
+      if constexpr (on_resal_axes) {
+        const auto [A, C] = tensor_.across_and_along();
+        s.excess[std::size_t(k)] = C * w.z - A * (0.0 + guide.z);
+      }
+      at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_rates(i, j, sums); });
       const double weight = h / (k + 1);
-      const Components<double> moment = gyroscopic_torque(s, k, guide) + cross(momentum_, w) +
-                                        cross(first_moment_, turned_back(s, k, R, felt.g));
+      const Components<double> moment = gyroscopic_torque(sums) + cross(momentum_, w) +
+                                        cross(first_moment_, turned_back(R, felt.g, sums.gravity));
       w = weight * tensor_.solve(moment);
-      const Four dq = (weight / 2) * s.attitude_rate(k);
-      s.put_attitude(k + 1, dq[0], dq[1], dq[2], dq[3]);
-      for (int i = 0; i < 4; ++i) c(i, k + 1) = dq[i];
+      Four dq = sums.x + sums.y + sums.z;
+      if constexpr (by_whole_rate) dq -= s.turned_along(k, felt.u);
+      dq *= weight / 2;
+      s.put_attitude(k + 1, dq);
+      c.col(k + 1).template head<4>() = dq;
     }
   }
 
@@ -74,19 +92,26 @@ class AttitudeSeries {
   static constexpr bool on_resal_axes = axes == RateAxes::resal;
   static constexpr bool guide_changes = requires(Felt & felt) { felt.at(0.0, 0.0, 0); };
 
+  /// q' is taken as  (q (0, w) - (0, u) q)/2,  which does not have to wait for R.
+  static constexpr bool by_whole_rate = !on_resal_axes && !guide_changes;
+
   using Four = Eigen::Array<double, 4, 1>;
   using Fours = std::array<Four, most_order + 1>;
   using Numbers = std::array<double, most_order + 1>;
 
-  /// sum of term(i, k - i) over i. Those with the newest coefficients come last: they may still be
-  /// on their way to memory.
-  template <class Term>
-  static void convolve(int k, const Term& term) {
-    const auto last = static_cast<std::size_t>(k);
-    for (std::size_t i = 1; i < last; ++i) term(i, last - i);
-    term(0, last);
-    if (last > 0) term(last, 0);
-  }
+  /// The k-th coefficients of products.
+  struct Sums {
+    Four square = Four::Zero();  ///< of q: xx, yy, zz
+    Four next = Four::Zero();    ///< xy, yz, zx
+    Four by_w = Four::Zero();    ///< xw, yw, zw, ww
+    Four x = Four::Zero();       ///< q (0, u') or q (0, w), by the components of u' or w
+    Four y = Four::Zero();
+    Four z = Four::Zero();
+    Four mixed = Four::Zero();     ///< of w: yz, zx, xy; on Resal's axes (n A - C w_z)(w_y, -w_x)
+    Four w_square = Four::Zero();  ///< xx, yy, zz
+    Four guide = Four::Zero();     ///< R^t u
+    Four gravity = Four::Zero();   ///< R^t g'
+  };
 
   /// The coefficients so far, as the products take them.
   struct Table {
@@ -98,17 +123,17 @@ class AttitudeSeries {
     Fours aside;     ///< on Resal's axes: (-w_y, w_x)
     Numbers excess;  ///< there: C w_z - A n
 
-    void put_attitude(int k, double x, double y, double z, double r) {
+    void put_attitude(int k, const Four& a) {
       const auto at = static_cast<std::size_t>(k);
-      q[at] = Four(x, y, z, r);
-      q_next[at] = Four(y, z, x, 0);
-      q_i[at] = Four(r, z, -y, -x);
-      q_j[at] = Four(-z, r, x, -y);
-      if constexpr (!on_resal_axes) q_k[at] = Four(y, -x, r, -z);
-      q_w[at] = r;
+      q[at] = a;
+      q_next[at] = Four(a[1], a[2], a[0], 0);
+      q_i[at] = Four(a[3], a[2], -a[1], -a[0]);
+      q_j[at] = Four(-a[2], a[3], a[0], -a[1]);
+      if constexpr (!on_resal_axes) q_k[at] = Four(a[1], -a[0], a[3], -a[2]);
+      q_w[at] = a[3];
     }
 
-    void put_rate(int k, const Components<double>& a) {
+    void put_rates(int k, const Components<double>& a, const Components<double>& u) {
       const auto at = static_cast<std::size_t>(k);
       if constexpr (on_resal_axes) {
         aside[at] = Four(-a.y, a.x, 0, 0);
@@ -117,13 +142,18 @@ class AttitudeSeries {
         w_next[at] = Four(a.y, a.z, a.x, 0);
         w_after[at] = Four(a.z, a.x, a.y, 0);
       }
+      u_x[at] = u.x;
+      u_y[at] = u.y;
+      u_z[at] = u.z;
     }
 
-    void put_relative(int k, const Components<double>& a) {
-      const auto at = static_cast<std::size_t>(k);
-      u_x[at] = a.x;
-      u_y[at] = a.y;
-      u_z[at] = a.z;
+    /// (0, u) q
+    template <class U>
+    [[nodiscard]] Four turned_along(int k, const U& u) const {
+      const Four& a = q[std::size_t(k)];
+      const double x = a[0], y = a[1], z = a[2], r = a[3];
+      return {0.0 + (r * u.x + u.y * z - u.z * y), 0.0 + (r * u.y + u.z * x - u.x * z),
+              0.0 + (r * u.z + u.x * y - u.y * x), 0.0 - (u.x * x + u.y * y + u.z * z)};
     }
 
     void put_rows(int k, const Turn<double>& R) {
@@ -133,57 +163,58 @@ class AttitudeSeries {
       row_z[at] = Four(R.zx, R.zy, R.zz, 0);
     }
 
-    /// R, of a quaternion whose norm is 1/sqrt(scale).
-    [[nodiscard]] Turn<double> turn(int k, double scale) const {
-      Four square = Four::Zero();  // xx, yy, zz
-      Four next = Four::Zero();    // xy, yz, zx
-      Four by_w = Four::Zero();    // xw, yw, zw, ww
-      convolve(k, [&](std::size_t i, std::size_t j) {
-        square += q[i] * q[j];
-        next += q[i] * q_next[j];
-        by_w += q[i] * q_w[j];
-      });
-      const double xx = square[0], yy = square[1], zz = square[2], ww = by_w[3];
-      const double twice = 2 * scale;
-      return {
-          scale * (ww + xx - yy - zz), twice * (next[0] - by_w[2]), twice * (next[2] + by_w[1]),
-          twice * (next[0] + by_w[2]), scale * (ww - xx + yy - zz), twice * (next[1] - by_w[0]),
-          twice * (next[2] - by_w[1]), twice * (next[1] + by_w[0]), scale * (ww - xx - yy + zz)};
+    void add_attitudes(std::size_t i, std::size_t j, Sums& s) const {
+      s.square += q[i] * q[j];
+      s.next += q[i] * q_next[j];
+      s.by_w += q[i] * q_w[j];
     }
 
-    /// q (0, u'), on Resal's axes without u'_z.
-    [[nodiscard]] Four attitude_rate(int k) const {
-      Four x = Four::Zero();
-      Four y = Four::Zero();
-      Four z = Four::Zero();
-      convolve(k, [&](std::size_t i, std::size_t j) {
-        x += q_i[i] * u_x[j];
-        y += q_j[i] * u_y[j];
-        if constexpr (!on_resal_axes) z += q_k[i] * u_z[j];
-      });
-      return x + y + z;
+    void add_rates(std::size_t i, std::size_t j, Sums& s) const {
+      s.x += q_i[i] * u_x[j];
+      s.y += q_j[i] * u_y[j];
+      if constexpr (on_resal_axes) {
+        s.mixed += aside[i] * excess[j];
+      } else {
+        s.z += q_k[i] * u_z[j];
+        s.mixed += w_next[i] * w_after[j];
+        s.w_square += w[i] * w[j];
+      }
+    }
+
+    template <class Series>
+    void add_felt(std::size_t i, std::size_t j, const Series& felt, Sums& s) const {
+      const Components<double>& u = felt.u[j];
+      const Components<double>& g = felt.g[j];
+      s.guide += row_x[i] * u.x + row_y[i] * u.y + row_z[i] * u.z;
+      s.gravity += row_x[i] * g.x + row_y[i] * g.y + row_z[i] * g.z;
     }
   };
 
-  template <class U>
-  [[nodiscard]] Components<double> gyroscopic_torque(Table& s, int k, const U& guide) const {
+  /// The terms of a product that have the newest coefficients.
+  template <class Term>
+  static void at_the_ends(int k, const Term& term) {
+    term(0, std::size_t(k));
+    if (k > 0) term(std::size_t(k), 0);
+  }
+
+  /// R, of a quaternion whose norm is 1/sqrt(scale).
+  [[nodiscard]] static Turn<double> turn(const Sums& s, double scale) {
+    const double xx = s.square[0], yy = s.square[1], zz = s.square[2], ww = s.by_w[3];
+    const double xy = s.next[0], yz = s.next[1], zx = s.next[2];
+    const double xw = s.by_w[0], yw = s.by_w[1], zw = s.by_w[2];
+    const double twice = 2 * scale;
+    return {scale * (ww + xx - yy - zz), twice * (xy - zw),           twice * (zx + yw),
+            twice * (xy + zw),           scale * (ww - xx + yy - zz), twice * (yz - xw),
+            twice * (zx - yw),           twice * (yz + xw),           scale * (ww - xx - yy + zz)};
+  }
+
+  [[nodiscard]] Components<double> gyroscopic_torque(const Sums& s) const {
+    const Components<double> mixed{s.mixed[0], s.mixed[1], s.mixed[2]};
     if constexpr (on_resal_axes) {
-      // w_z is u'_z and the guide's part together.
-      const auto at = static_cast<std::size_t>(k);
-      const auto [A, C] = tensor_.across_and_along();
-      s.excess[at] = C * (s.u_z[at] + guide.z) - A * guide.z;
-      Four sum = Four::Zero();
-      convolve(k, [&](std::size_t i, std::size_t j) { sum += s.aside[i] * s.excess[j]; });
-      return {sum[0], sum[1], 0};
+      return mixed;
     } else {
-      Four mixed = Four::Zero();
-      Four square = Four::Zero();
-      convolve(k, [&](std::size_t i, std::size_t j) {
-        mixed += s.w_next[i] * s.w_after[j];
-        square += s.w[i] * s.w[j];
-      });
-      return tensor_.gyroscopic_torque(Components<double>{mixed[0], mixed[1], mixed[2]},
-                                       Components<double>{square[0], square[1], square[2]});
+      return tensor_.gyroscopic_torque(
+          mixed, Components<double>{s.w_square[0], s.w_square[1], s.w_square[2]});
     }
   }
 
@@ -195,14 +226,10 @@ class AttitudeSeries {
     }
   }
 
-  /// The k-th coefficient of R^t v, of a vector that rests in the guide or of a series.
+  /// R^t v, of a vector that rests in the guide; of a series it has been summed up.
   template <class V>
-  [[nodiscard]] static auto turned_back(const Table& s, int k, const Turn<double>& R, const V& v) {
+  [[nodiscard]] static auto turned_back(const Turn<double>& R, const V& v, const Four& sum) {
     if constexpr (guide_changes) {
-      Four sum = Four::Zero();
-      convolve(k, [&](std::size_t i, std::size_t j) {
-        sum += s.row_x[i] * v[j].x + s.row_y[i] * v[j].y + s.row_z[i] * v[j].z;
-      });
       return Components<double>{sum[0], sum[1], sum[2]};
     } else {
       return detail::turned_back(R, v);

@@ -154,7 +154,8 @@ class TaylorSteps {
       scale_ = next_scale_;
       series_(t(), scale_, order_, coefficient_);
       effort_.evaluations += order_;
-      if ((coefficient_ - coefficient_).leftCols(order_ + 1).isZero(0)) return;
+      const Vector last = coefficient_.col(order_);
+      if ((last - last).isZero(0)) return;
       next_scale_ *= 1e-8;
     }
     detail::stop_integration(t(), "the field is not finite");

@@ -1,0 +1,179 @@
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/body_system.hpp>
+#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/scene/held_body.hpp>
+#include <dynamics/scene/small_oscillations.hpp>
+#include <dynamics/scene/unsymmetric_rotor.hpp>
+#include <dynamics/solve/task.hpp>
+#include <dynamics/step/gauss.hpp>
+#include <dynamics/step/splitting.hpp>
+
+using namespace kreisel;
+
+/// What is no input, number by number, where other tests show one of its kind; and what depends on
+/// which of several numbers is 0.
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+BodyDescription rod(JointKind kind = JointKind::revolute) {
+  BodyDescription body;
+  body.name = "rod";
+  body.joint = {.kind = kind, .axis = {0, 0, 1}};
+  body.inertia = InertiaTensor<Body>::about_origin(1, {0, 0, 0.1}, Matrix3<double>::Identity());
+  return body;
+}
+
+BodySystem<RestingFrame<>> system_of(const BodyDescription& body) {
+  return {RestingFrame<>{}, {body}};
+}
+
+template <class Change>
+void refuses(const Change& change) {
+  BodyDescription body = rod();
+  change(body);
+  BOOST_CHECK_THROW(system_of(body), InvalidInput);
+}
+
+/// The names of what a scene keeps, in one word.
+template <class Scene>
+std::string kept(const Scene& scene, const typename Scene::State& state) {
+  std::string names;
+  for (const auto& [name, value] : scene.conserved(0, state)) names += std::string(name) + ",";
+  return names;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(inputs)
+
+BOOST_AUTO_TEST_CASE(of_bodies_in_a_tree) {
+  refuses([](BodyDescription& b) { b.name = ""; });
+  for (const double none : {not_a_number, infinite}) {
+    for (int i = 0; i < 3; ++i) {
+      refuses([&](BodyDescription& b) { b.joint.axis[i] = none; });
+      refuses([&](BodyDescription& b) { b.joint.position[i] = none; });
+    }
+    for (int i = 0; i < 4; ++i) {
+      refuses([&](BodyDescription& b) { b.joint.orientation.coeffs()[i] = none; });
+    }
+    BOOST_CHECK_THROW((BodySystem(RestingFrame<>{}, {rod()}, UniformGravity<Guide>{{0, none, 0}})),
+                      InvalidInput);
+  }
+  const auto refuses_rotor = [](const auto& change) {
+    refuses([&](BodyDescription& b) {
+      b.rotor.emplace();
+      change(b);
+    });
+  };
+  refuses_rotor([](BodyDescription& b) { *b.rotor = {RotorMode::torque, infinite}; });
+  refuses_rotor([](BodyDescription& b) { b.forces = {{.constant = 1}}; });
+}
+
+BOOST_AUTO_TEST_CASE(of_workspaces) {
+  const auto turns = system_of(rod());
+  const auto rests = system_of(rod(JointKind::fixed));
+  BodyWorkspace of_other = rests.workspace();
+  Eigen::VectorXd rates;
+  BOOST_CHECK_THROW(turns.rates(0, Eigen::VectorXd::Zero(2), rates, of_other), InvalidInput);
+}
+
+// Needles along each axis, in a ball joint: the message names the axis that nothing resists.
+BOOST_AUTO_TEST_CASE(of_needles) {
+  for (int axis = 0; axis < 3; ++axis) {
+    BodyDescription needle = rod(JointKind::spherical);
+    Vector3<double> moments(1, 1, 1);
+    moments[axis] = 0;
+    const Matrix3<double> Theta = moments.asDiagonal();
+    needle.inertia = InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta);
+    const auto system = system_of(needle);
+    const std::string name[] = {"(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)"};
+    BOOST_CHECK_EXCEPTION((void)system.rates(0, system.to_vector(system.rest())), ComputationFailed,
+                          [&](const ComputationFailed& e) {
+                            return std::string(e.what()).find(name[axis]) != std::string::npos;
+                          });
+    BOOST_CHECK_THROW(SmallOscillations(needle.inertia, RestingFrame<>{}, {}), InvalidInput);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_single_numbers) {
+  BOOST_CHECK_THROW((void)EqualSpringsRange::of({0, 1, 1}, 1), InvalidInput);
+  BOOST_CHECK_THROW((void)EqualSpringsRange::of({1, 1, 1}, 0), InvalidInput);
+  BOOST_CHECK_THROW(SymmetricFreeFlow(1, 0), InvalidInput);
+  BOOST_CHECK_THROW(exact::LagrangeTop(1, 1, infinite, {0, 0, 1}, Eigen::Quaterniond::Identity()),
+                    InvalidInput);
+  BOOST_CHECK_THROW(detail::require_step(infinite), InvalidInput);
+  BOOST_CHECK_THROW(detail::check(Task{.times = {1}, .tolerance = 0.1}), InvalidInput);
+}
+
+// Which invariants a top has depends on which of its numbers are 0.
+BOOST_AUTO_TEST_CASE(of_tops_that_keep_less) {
+  const EulerTop::State state{Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3), {1, 2, 3}};
+  const std::string always = "energy,vertical momentum,";
+  BOOST_TEST(kept(EulerTop({1, 1, 1.5}, {0, 0, 1}), state) == always + "axial momentum,");
+  BOOST_TEST(kept(EulerTop({1, 1, 1.5}, {0, 1, 1}), state) == always);
+  BOOST_TEST(kept(EulerTop({1, 1, 1.5}, {0, 0, 1}, {1, 0, 0}), state) == always);
+  BOOST_TEST(kept(EulerTop({1, 1, 1.5}, {0, 0, 1}, {0, 1, 0}), state) == always);
+  BOOST_TEST(kept(EulerTop({2, 2, 1}, {1, 0, 0}), state) == always + "kovalevskaya,");
+  BOOST_TEST(kept(EulerTop({2, 2, 1}, {1, 0, 0}, {0, 0, 1}), state) == always);
+}
+
+// Which invariants a tree has depends on its joints, forces and rotors.
+BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
+  const auto kept_by = [](const BodyDescription& body) {
+    const auto system = system_of(body);
+    return kept(system, system.rest());
+  };
+  const std::string momentum =
+      "momentum x,momentum y,momentum z,angular momentum x,angular momentum y,angular momentum z,";
+  BodyDescription free = rod(JointKind::free);
+  BOOST_TEST(kept_by(free) == "energy," + momentum);
+  free.forces.assign(6, {});
+  free.forces[0].constant = 1;
+  BOOST_TEST(kept_by(free).empty());
+  free.forces[0] = {.damping = 1};
+  BOOST_TEST(kept_by(free).empty());
+  BodyDescription held = rod(JointKind::free);
+  held.rule = JointRule::held;
+  BOOST_TEST(kept_by(held) == "energy,");
+  BodyDescription ball = rod(JointKind::spherical);
+  ball.forces.assign(3, {.constant = 1});
+  BOOST_TEST(kept_by(ball).empty());
+}
+
+// A tensor whose rounding makes much of the rates is said to be uncertain by its last digits.
+BOOST_AUTO_TEST_CASE(of_nearly_singular_bodies) {
+  const auto body = [](double least) {
+    Matrix3<double> Theta = Vector3<double>(1, 1, least).asDiagonal();
+    return HeldBody(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
+                    RestingFrame<>{});
+  };
+  BOOST_TEST(!body(1e-3).off_by_last_digits().has_value());
+  BOOST_TEST(body(1e-5).off_by_last_digits().has_value());
+}
+
+// A spring without length whose ends meet pulls at nothing; one with a length has no direction.
+BOOST_AUTO_TEST_CASE(of_springs_whose_ends_meet) {
+  const auto pulled_by = [](double rest_length) {
+    const HeldBody body(
+        InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},
+        RestingFrame<>{}, Spring{{0, 0, 0}, {0, 0, 0}, 1.0, rest_length});
+    return body.rates(0, body.to_vector({}));
+  };
+  BOOST_TEST(pulled_by(0).isZero(0));
+  BOOST_CHECK_THROW((void)pulled_by(1), ComputationFailed);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
