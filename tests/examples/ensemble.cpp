@@ -124,14 +124,21 @@ BOOST_AUTO_TEST_CASE(lists_members_that_fail) {
 
 BOOST_AUTO_TEST_CASE(keeps_what_was_computed_when_interrupted) {
   const test::Scratch folder;
-  const test::Outcome outcome = test::run(
-      "( " KREISEL_ENSEMBLE " " + scene("damped_slide") +
-      " --vary 'body.slide.mass*=normal(1,0.1)' --members 1000000 --csv " +
-      (folder.path() / "out.csv").string() + " & pid=$!; sleep 0.5; kill -INT $pid; wait $pid )");
-  BOOST_TEST(outcome.status == 130);
-  BOOST_TEST(outcome.err.find(" of 1000000 members were computed") != std::string::npos,
-             outcome.err);
-  BOOST_TEST(rows(folder.read("out.csv")).size() > 1U);
+  std::size_t computed = 0;
+  // A busy machine may not have come to the first member yet.
+  for (const char* const pause : {"0.5", "4", "32"}) {
+    const test::Outcome outcome =
+        test::run("( " KREISEL_ENSEMBLE " " + scene("damped_slide") +
+                  " --vary 'body.slide.mass*=normal(1,0.1)' --members 1000000 --csv " +
+                  (folder.path() / "out.csv").string() + " & pid=$!; sleep " + pause +
+                  "; kill -INT $pid; wait $pid )");
+    BOOST_TEST(outcome.status == 130);
+    BOOST_TEST(outcome.err.find(" of 1000000 members were computed") != std::string::npos,
+               outcome.err);
+    computed = rows(folder.read("out.csv")).size() - 1;
+    if (computed > 0) break;
+  }
+  BOOST_TEST(computed > 0U);
 }
 
 BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
