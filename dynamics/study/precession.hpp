@@ -130,9 +130,11 @@ struct TechnicalPoint {
       along.compute(d.N.transpose() * f.A * d.N);
       way -= d.N * along.solve(d.N.transpose() * f.A * d.P);
     }
-    across.compute(way.transpose() * W * d.P);
-    across.setThreshold(1e-12);
-    determined = d.P.cols() == 0 || across.isInvertible();
+    if (d.P.cols() > 0) {
+      across.compute(way.transpose() * W * d.P);
+      across.setThreshold(1e-12);
+      determined = across.isInvertible();
+    }
     u = velocity(d, f.Q, v);
     dv = acceleration(d, f.Q - W * u);
   }

@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(of_springs_whose_ends_meet) {
   const auto pulled_by = [](double rest_length) {
     const HeldBody body(
         InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},
-        RestingFrame<>{}, Spring{{0, 0, 0}, {0, 0, 0}, 1.0, rest_length});
+        RestingFrame<>{}, Spring<>{{0, 0, 0}, {0, 0, 0}, 1.0, rest_length});
     return body.rates(0, body.to_vector({}));
   };
   BOOST_TEST(pulled_by(0).isZero(0));
