@@ -52,24 +52,22 @@ struct HarmonicSeries {
   [[nodiscard]] Vector3<S> rate(const S& t) const { return with_rate(t).second; }
 
   /// The coefficients up to `order`, in powers of (time - t)/h.
-  template <class Coefficients>
-  void expand(const S& t, const S& h, int order, Coefficients& c) const {
+  [[nodiscard]] std::vector<Vector3<S>> coefficients(const S& t, const S& h, int order) const {
     using std::cos;
     using std::sin;
-    c[0] = detail::components(constant);
-    for (int n = 1; n <= order; ++n) c[std::size_t(n)] = {};
+    std::vector<Vector3<S>> result(static_cast<std::size_t>(order) + 1, Vector3<S>::Zero());
+    result[0] = constant;
     for (const Term& k : terms) {
-      const auto amplitude = detail::components(k.amplitude);
-      const S angle = k.frequency * t + k.phase;
-      const S s = sin(angle);
-      const S cs = cos(angle);
-      const S cycle[] = {s, cs, -s, -cs};
+      const S s = sin(k.frequency * t + k.phase);
+      const S c = cos(k.frequency * t + k.phase);
+      const S cycle[] = {s, c, -s, -c};
       S factor(1);  // (w h)^n / n!
-      for (int n = 0; n <= order; ++n) {
-        c[std::size_t(n)] = c[std::size_t(n)] + (factor * cycle[n % 4]) * amplitude;
-        factor *= k.frequency * h / S(n + 1);
+      for (std::size_t n = 0; n < result.size(); ++n) {
+        result[n] += k.amplitude * (factor * cycle[n % 4]);
+        factor *= k.frequency * h / S(static_cast<double>(n + 1));
       }
     }
+    return result;
   }
 
   /// The same in another scalar.
@@ -132,14 +130,15 @@ class HarmonicFrame {
   [[nodiscard]] GuideSeries series(
       double t, double h, int order,
       const detail::Components<double>& g) const requires std::is_same_v<S, double> {
+    const std::vector<Vector3<double>> u = u_.coefficients(t, h, order);
+    const std::vector<Vector3<double>> a = a_.coefficients(t, h, order);
     GuideSeries result;
-    u_.expand(t, h, order, result.u);
-    a_.expand(t, h, order, result.g);
     GuideSeries::Coefficients down;
     down[0] = turned_back(detail::Turn<double>::from(pose_(t).q), g);
-    for (std::size_t n = 0; n <= std::size_t(order); ++n) {
-      result.g[n] = down[n] - result.g[n];
-      if (n == std::size_t(order)) break;
+    for (std::size_t n = 0; n < u.size(); ++n) {
+      result.u[n] = detail::components(u[n]);
+      result.g[n] = down[n] - detail::components(a[n]);
+      if (n + 1 == u.size()) break;
       detail::Components<double> sum;
       for (std::size_t k = 0; k <= n; ++k) sum = sum + cross(down[n - k], result.u[k]);
       down[n + 1] = (h / double(n + 1)) * sum;
@@ -172,25 +171,6 @@ class HarmonicFrame {
     if (!good) throw InvalidInput(std::string("harmonic frame: ") + what + " is not finite");
   }
 
-  /// Coefficients of a series about t.
-  [[nodiscard]] static Taylor taylor(const HarmonicSeries<Wide>& series, const Wide& t) {
-    using std::cos;
-    using std::sin;
-    Taylor result(static_cast<std::size_t>(degree) + 1, Vector3<Wide>::Zero());
-    result[0] = series.constant;
-    for (const auto& k : series.terms) {
-      const Wide s = sin(k.frequency * t + k.phase);
-      const Wide c = cos(k.frequency * t + k.phase);
-      const Wide cycle[] = {s, c, -s, -c};
-      Wide factor(1);  // w^n / n!
-      for (std::size_t n = 0; n < result.size(); ++n) {
-        result[n] += k.amplitude * (factor * cycle[n % 4]);
-        factor *= k.frequency / Wide(static_cast<double>(n + 1));
-      }
-    }
-    return result;
-  }
-
   void integrate(const S& begin, const S& end, const Pose<S>& X, const Vector3<S>& velocity) {
     using std::abs;
     const HarmonicSeries<Wide> u = u_.template cast<Wide>();
@@ -221,7 +201,8 @@ class HarmonicFrame {
       const S t = at(piece);
       const Wide step = Wide(at(piece + 1)) - Wide(t);
       q.normalize();
-      const auto [attitudes, places] = series(taylor(u, Wide(t)), taylor(a, Wide(t)), q, x, v);
+      const auto [attitudes, places] = series(u.coefficients(Wide(t), Wide(1), degree),
+                                              a.coefficients(Wide(t), Wide(1), degree), q, x, v);
       std::vector<typename PiecewisePose<S>::Components> coefficients;
       for (std::size_t n = 0; n < attitudes.size(); ++n) {
         coefficients.push_back(PiecewisePose<S>::components(attitudes[n].template cast<S>(),

@@ -32,6 +32,9 @@ class PosedFrame {
  public:
   explicit PosedFrame(Function pose) : pose_(std::move(pose)) {}
 
+  /// The function as it was given.
+  [[nodiscard]] const Function& function() const { return pose_; }
+
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     First now;
     now.value() = t;

@@ -17,7 +17,7 @@ namespace kreisel {
 ///
 /// Source : the recurrences of each function: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 ///          Differential Equations I, I.8
-/// Error  : of each coefficient some 10u * sum of |terms|   (tests/dynamics/guide/analytic.cpp)
+/// Error  : of series summed up to values about 1 <= 100u   (tests/dynamics/guide/analytic.cpp)
 class PowerSeries {
  public:
   /// A guide's u takes one derivative more than it has coefficients.

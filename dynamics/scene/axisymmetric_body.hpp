@@ -70,7 +70,8 @@ class AxisymmetricBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps.
+  /// The Taylor series of the motion, for TaylorSteps: where nothing but uniform gravity acts and the
+  /// guide moves steadily or analytically. Formulas: scene/attitude_series.hpp.
   [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
     const auto body = body_.template series_on<detail::RateAxes::resal>();
     return Series<std::remove_const_t<decltype(body)>>{body};

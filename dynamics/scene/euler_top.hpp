@@ -121,7 +121,7 @@ class BasicEulerTop {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps.
+  /// The Taylor series of the motion, for TaylorSteps. Formulas: scene/attitude_series.hpp.
   [[nodiscard]] auto series() const requires std::is_same_v<P, double> {
     const detail::Components<S> k = detail::components(weight_moment_);
     const detail::Components<S> h = detail::components(rotor_momentum_);

@@ -138,7 +138,8 @@ class HeldBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps.
+  /// The Taylor series of the motion, for TaylorSteps: where nothing but uniform gravity acts and the
+  /// guide moves steadily or analytically. Formulas: scene/attitude_series.hpp.
   [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
     return series_on<detail::RateAxes::body>();
   }

@@ -133,6 +133,24 @@ class VernerRuns : public AdaptiveRuns {
   }
 };
 
+/// A run of adaptive steps.
+template <class Scene, class Steps>
+struct AdaptiveRun {
+  const Scene* scene;
+  Steps steps;
+
+  [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
+    while (!steps.covers(t)) steps.step_towards(end);
+    return scene->from_vector(steps.at(t));
+  }
+  [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(steps);
+  }
+};
+
 template <class Scene>
 inline constexpr bool knows_series = requires(const Scene& scene) {
   scene.series();
@@ -152,25 +170,12 @@ class TaylorRuns : public AdaptiveRuns {
   /// Finer than of the others: a tenth more of steps, where a second try would double them.
   [[nodiscard]] double first() const { return AdaptiveRuns::first() / 3; }
 
-  struct Run {
-    Steps steps;
-
-    [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
-      while (!steps.covers(t)) steps.step_towards(end);
-      return Scene::from_vector(steps.at(t));
-    }
-    [[nodiscard]] const Effort& effort() const { return steps.effort(); }
-
-    template <class Bookmark>
-    void pass(Bookmark& bookmark) {
-      bookmark(steps);
-    }
-  };
+  using Run = AdaptiveRun<Scene, Steps>;
 
   [[nodiscard]] Run run(double setting, const Scene& scene,
                         const typename Scene::State& start) const {
-    Run r{Steps(scene.series(), task().begin, scene.to_vector(start), accuracy(setting),
-                blocks_of(scene))};
+    Run r{&scene, Steps(scene.series(), task().begin, scene.to_vector(start), accuracy(setting),
+                        blocks_of(scene))};
     r.steps.stop_at(task().jumps);
     return r;
   }
@@ -188,21 +193,7 @@ class RadauRuns : public AdaptiveRuns {
   static constexpr Method method = Method::radau13;
   static constexpr double rounding = 24;  // where Newton's iterations stop, and of stiff springs
 
-  struct Run {
-    const Scene* scene;
-    Steps steps;
-
-    [[nodiscard]] typename Scene::State on_the_way(double t, double end) {
-      while (!steps.covers(t)) steps.step_towards(end);
-      return scene->from_vector(steps.at(t));
-    }
-    [[nodiscard]] const Effort& effort() const { return steps.effort(); }
-
-    template <class Bookmark>
-    void pass(Bookmark& bookmark) {
-      bookmark(steps);
-    }
-  };
+  using Run = AdaptiveRun<Scene, Steps>;
 
   [[nodiscard]] Run run(double setting, const Scene& scene,
                         const typename Scene::State& start) const {
