@@ -4,14 +4,19 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/body_system.hpp>
+#include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
+#include <dynamics/scene/foeppl.hpp>
 #include <dynamics/scene/held_body.hpp>
+#include <dynamics/scene/pendulum_departure.hpp>
 #include <dynamics/scene/small_oscillations.hpp>
 #include <dynamics/scene/unsymmetric_rotor.hpp>
 #include <dynamics/solve/task.hpp>
@@ -80,6 +85,11 @@ BOOST_AUTO_TEST_CASE(of_bodies_in_a_tree) {
   };
   refuses_rotor([](BodyDescription& b) { *b.rotor = {RotorMode::torque, infinite}; });
   refuses_rotor([](BodyDescription& b) { b.forces = {{.constant = 1}}; });
+  refuses_rotor([](BodyDescription& b) { b.forces = {{.damping = 1}}; });
+  BodyDescription pushed_by_nothing = rod();
+  pushed_by_nothing.rotor.emplace();
+  pushed_by_nothing.forces = {{}};
+  BOOST_TEST(system_of(pushed_by_nothing).tree().rotors().size() == 1U);
 }
 
 BOOST_AUTO_TEST_CASE(of_workspaces) {
@@ -115,6 +125,18 @@ BOOST_AUTO_TEST_CASE(of_single_numbers) {
   BOOST_CHECK_THROW(exact::LagrangeTop(1, 1, infinite, {0, 0, 1}, Eigen::Quaterniond::Identity()),
                     InvalidInput);
   BOOST_CHECK_THROW(detail::require_step(infinite), InvalidInput);
+  BOOST_CHECK_THROW(detail::require_positive("mass", infinite, "kg"), InvalidInput);
+  BOOST_CHECK_THROW(exact::LagrangeTop(1, infinite, 1, {0, 0, 1}, Eigen::Quaterniond::Identity()),
+                    InvalidInput);
+  const Eigen::Quaterniond no_attitude(infinite, 0, 0, 0);
+  BOOST_CHECK_THROW(exact::LagrangeTop(1, 1, 1, {0, 0, 1}, no_attitude), InvalidInput);
+  BOOST_CHECK_THROW(detail::require_start(no_attitude, {0, 0, 1}), InvalidInput);
+  BOOST_CHECK_THROW(PendulumDeparture(infinite, [](double, double, double) { return 0.0; }),
+                    InvalidInput);
+  BOOST_CHECK_THROW(CardanGyro({{infinite, 1, 1}}, {}, RestingFrame<>{}), InvalidInput);
+  const CardanBearings turned{{}, {.stiffness = 1, .reference = 0.1}};
+  BOOST_CHECK_THROW(FoepplGyro<>({{1, 1, 1}}, turned, 1), InvalidInput);
+  BOOST_TEST(std::isinf(detail::norm(Eigen::Vector2d(1, infinite), 0, 2)));
   BOOST_CHECK_THROW(detail::check(Task{.times = {1}, .tolerance = 0.1}), InvalidInput);
 }
 
@@ -130,6 +152,33 @@ BOOST_AUTO_TEST_CASE(of_tops_that_keep_less) {
   BOOST_TEST(kept(EulerTop({2, 2, 1}, {1, 0, 0}, {0, 0, 1}), state) == always);
 }
 
+// And a Cardan gyro, on its bearings and what turns its rotor.
+BOOST_AUTO_TEST_CASE(of_gimbals_that_keep_less) {
+  const CardanMoments moments{{2, 2, 3}, {1, 1, 1}, {1, 1, 1}};
+  const CardanState state{0.1, 0.2, 0.3, 1, 2, 30};
+  const auto kept_by = [&](const CardanBearings& bearings, const auto& rotor) {
+    return kept(CardanGyro(moments, bearings, RestingFrame<>{}, rotor), state);
+  };
+  const CardanBearing brake{.damping = 1}, spring{.stiffness = 1};
+  BOOST_TEST(kept_by({}, FreeRotor{}) == "energy,alpha momentum,rotor momentum,");
+  BOOST_TEST(kept_by({}, FreeRotor{0.1}) == "alpha momentum,");
+  BOOST_TEST(kept_by({brake, {}}, FreeRotor{}) == "rotor momentum,");
+  BOOST_TEST(kept_by({spring, brake}, FreeRotor{}) == "rotor momentum,");
+  BOOST_TEST(kept_by({spring, {}}, RegulatedRotor{}) == "energy of rings,");
+}
+
+// A brake takes from the energy that a steady guide leaves.
+BOOST_AUTO_TEST_CASE(of_loads_that_keep_less) {
+  const auto kept_by = [](double damping) {
+    const HeldBody body(
+        InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},
+        RotatingFrame<>{{0, 0, 1}}, Spring<>{{1, 0, 0}, {0, 1, 0}, 1.0, 0.5, damping});
+    return kept(body, {});
+  };
+  BOOST_TEST(kept_by(0) == "Jacobi integral,");
+  BOOST_TEST(kept_by(1).empty());
+}
+
 // Which invariants a tree has depends on its joints, forces and rotors.
 BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
   const auto kept_by = [](const BodyDescription& body) {
@@ -141,6 +190,7 @@ BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
   BodyDescription free = rod(JointKind::free);
   BOOST_TEST(kept_by(free) == "energy," + momentum);
   free.forces.assign(6, {});
+  BOOST_TEST(kept_by(free) == "energy," + momentum);
   free.forces[0].constant = 1;
   BOOST_TEST(kept_by(free).empty());
   free.forces[0] = {.damping = 1};
@@ -151,6 +201,15 @@ BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
   BodyDescription ball = rod(JointKind::spherical);
   ball.forces.assign(3, {.constant = 1});
   BOOST_TEST(kept_by(ball).empty());
+  BodyDescription regulated = rod();
+  regulated.rotor.emplace();
+  regulated.rotor->mode = RotorMode::regulated;
+  BOOST_TEST(kept_by(regulated) == "energy without spin,");
+  BodyDescription driven = regulated;
+  driven.name = "driven";
+  driven.rotor->mode = RotorMode::torque;
+  const BodySystem both(RestingFrame<>{}, {regulated, driven});
+  BOOST_TEST(kept(both, both.rest()).empty());
 }
 
 // A tensor whose rounding makes much of the rates is said to be uncertain by its last digits.
@@ -162,6 +221,20 @@ BOOST_AUTO_TEST_CASE(of_nearly_singular_bodies) {
   };
   BOOST_TEST(!body(1e-3).off_by_last_digits().has_value());
   BOOST_TEST(body(1e-5).off_by_last_digits().has_value());
+}
+
+// A tensor is symmetric in each of its three pairs, and a body without mass has none anywhere.
+BOOST_AUTO_TEST_CASE(of_tensors) {
+  for (const auto& [i, k] : {std::pair(0, 1), {0, 2}, {1, 2}}) {
+    Matrix3<double> Theta = Matrix3<double>::Identity();
+    Theta(i, k) = 1e-3;
+    BOOST_CHECK_THROW((void)InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), InvalidInput);
+  }
+  for (int i = 0; i < 3; ++i) {
+    Inertia<> light{0, {0, 0, 0}, {1, 1, 1}};
+    light.first_moment[i] = 1;
+    BOOST_CHECK_THROW(check(light, Mass::zero_allowed), InvalidInput);
+  }
 }
 
 // A spring without length whose ends meet pulls at nothing; one with a length has no direction.

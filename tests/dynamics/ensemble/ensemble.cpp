@@ -303,6 +303,8 @@ BOOST_AUTO_TEST_CASE(refuses_what_makes_no_sense) {
   BOOST_CHECK_THROW(run({.count = 2, .first = 1}, task), InvalidInput);
   BOOST_CHECK_THROW(run({.count = 2, .threads = -1}, task), InvalidInput);
   BOOST_CHECK_THROW(run({.count = 2}, {.times = {1}, .method = Method::radau13}), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2}, {.times = {1}, .progress = [](double) { return true; }}),
+                    InvalidInput);
   BOOST_TEST(ensemble(top, {.count = 0}, scattered, task).members.empty());
 }
 

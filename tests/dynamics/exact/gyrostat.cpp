@@ -214,6 +214,21 @@ BOOST_DATA_TEST_CASE(motion_near_a_saddle_keeps_its_digits,
   }
 }
 
+// Equal moments across a rotor that makes up for what the third lacks: any rotation is steady. One
+// about an axis across the rotor is not, where the rotor pushes it on.
+BOOST_AUTO_TEST_CASE(is_steady_only_where_nothing_turns_its_momentum) {
+  const Vector3<double> any(1, -2, 0.5);
+  BOOST_TEST(
+      test::same(Gyrostat({2, 2, 1}, {0, 0, 0.5}, any, anyhow).at(1e9).angular_velocity, any));
+  for (const Vector3<double>& w : {Vector3<double>(0, 1, 0), Vector3<double>(1, 0, 0)}) {
+    const Gyro pushed{{2, 3, 4}, {0, 0, 0.5}, w};
+    const Errors worst(pushed, 8);
+    BOOST_TEST(worst.attitude <= rounded);
+    BOOST_TEST(worst.rate <= rounded);
+    BOOST_TEST((pushed.exact().at(1).angular_velocity - w).norm() > 0.01);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(motion_on_the_separatrix_ends_at_the_saddle) {
   const Vector3<double> end =
       Gyrostat({2, 4, 4.5}, {0, 0, 0.125}, {3, 1, 3.75}, anyhow).at(1e6).angular_velocity;

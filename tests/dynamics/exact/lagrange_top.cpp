@@ -209,6 +209,25 @@ BOOST_AUTO_TEST_CASE(top_that_almost_ends_upright_comes_back_in_time) {
   BOOST_TEST(worst.attitude <= 32 * u);
 }
 
+// Vertical or nearly so, tilted about x or about y: seen from axes turned about the vertical, and with
+// the body's own turned along, it is one motion.
+BOOST_AUTO_TEST_CASE(motion_does_not_depend_on_the_horizontal_axes) {
+  const Eigen::Quaterniond quarter(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
+  const auto turned = [&](const Eigen::Quaterniond& q) {
+    return Eigen::Quaterniond(quarter * q * quarter.conjugate());
+  };
+  const Eigen::Quaterniond attitudes[] = {upright, hanging, {0, 0.6, 0, 0.8}, {0.8, 0.6, 0, 0}};
+  for (const Eigen::Quaterniond& q : attitudes) {
+    for (const Vector3<double>& w : {Vector3<double>(0.7, 0, 3), Vector3<double>(0, 0, 3)}) {
+      const auto one = LagrangeTop(2, 1, 3, w, q).at(1.5);
+      const auto other = LagrangeTop(2, 1, 3, quarter * w, turned(q)).at(1.5);
+      // The turn itself rounds, and what that is grows as the motion lets it.
+      BOOST_TEST(other.attitude.angularDistance(turned(one.attitude)) <= 128 * u);
+      BOOST_TEST((other.angular_velocity - quarter * one.angular_velocity).norm() <= 128 * u * 3);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(top_without_weight_is_free) {
   const exact::FreeTop free({2, 2, 1}, {1, 2, 5}, anyhow);
   const LagrangeTop top(2, 1, 0, {1, 2, 5}, anyhow);

@@ -327,6 +327,11 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_motion) {
   BOOST_CHECK_THROW((HarmonicFrame<>({{nan, 0, 0}, {}}, none, 0, 1)), InvalidInput);
   BOOST_CHECK_THROW((HarmonicFrame<>(none, {{0, 0, 0}, {{{1, 0, 0}, nan, 0}}}, 0, 1)),
                     InvalidInput);
+  BOOST_CHECK_THROW((HarmonicFrame<>({{0, 0, 0}, {{{1, 0, nan}, 1, 0}}}, none, 0, 1)),
+                    InvalidInput);
+  BOOST_CHECK_THROW((HarmonicFrame<>({{0, 0, 0}, {{{1, 0, 0}, 1, nan}}}, none, 0, 1)),
+                    InvalidInput);
+  BOOST_CHECK_THROW((HarmonicFrame<>(none, none, 0, HUGE_VAL)), InvalidInput);
   BOOST_CHECK_THROW((HarmonicFrame<>({{1e9, 0, 0}, {}}, none, 0, 1e9)), InvalidInput);
   const HarmonicFrame<> frame(none, none, 0, 1);
   BOOST_CHECK_THROW((void)frame(1.0001), InvalidInput);

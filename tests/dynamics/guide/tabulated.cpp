@@ -213,6 +213,7 @@ BOOST_AUTO_TEST_CASE(is_refused_if_it_is_none) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   refused("3 samples", [](MotionLog<>& log) { log.times.resize(3); });
   refused("41 times, 40 attitudes", [](MotionLog<>& log) { log.attitudes.pop_back(); });
+  refused("41 attitudes, 40 positions", [](MotionLog<>& log) { log.positions.pop_back(); });
   refused("sample 6, t = 2.5 s: not a finite",
           [&](MotionLog<>& log) { log.positions[5].y() = nan; });
   refused("not a finite", [&](MotionLog<>& log) { log.attitudes[5].w() = nan; });

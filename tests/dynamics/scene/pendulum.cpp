@@ -1091,6 +1091,23 @@ BOOST_AUTO_TEST_CASE(name_what_a_gradient_lacks) {
   }
 }
 
+// What two products make up for is told from what is not there.
+BOOST_AUTO_TEST_CASE(name_what_cancels) {
+  // H = -G_xy (Theta_B - Theta_A) - (G_yy - G_xx) Phi_C = -1/4 + 2/8
+  PendulumBody<double> body{1, 0.25, 0.5, 0.75, 0.75, 0, 0, 0.125};
+  PendulumGuide<double> guide = refused::hanging;
+  guide.gravity_gradient = Matrix3<double>::Zero();
+  (*guide.gravity_gradient) << 1, 1, 0, 1, -1, 0, 0, 0, 0;
+  const std::string dropped = listed(deviation(body, guide).terms_dropped);
+  BOOST_TEST(dropped.find("H: gravity gradient: Theta_B - Theta_A and Phi_C cancel\n") !=
+             std::string::npos);
+  body.theta_a = body.theta_b;
+  body.phi_c = 0;
+  const std::string round = listed(deviation(body, guide).terms_dropped);
+  BOOST_TEST(round.find("H: gravity gradient: Theta_A = Theta_B and Phi_C = 0\n") !=
+             std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(of_a_guide_at_rest) {
   const auto answer = deviation(PendulumBody<double>::thin_rod(0.75), refused::hanging);
   BOOST_TEST(answer.terms_kept.size() == 1u);

@@ -206,9 +206,21 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
                            .angular_acceleration = {0, 0, 0.3}};
   };
   const PhysicalPendulum carried(rod, turning);
+  BOOST_TEST(carried.conserved(0, {.angle = 0.2}).empty());
   const auto run = solve(carried, {.angle = 0.2, .rate = 1}, {.times = {5}, .tolerance = 1e-12});
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(std::abs(run.states[0].angle - (0.2 + 5 - 0.15 * 25)) <= 1e-11);
+
+  // Pulled nowhere it runs on, and pushed steadily as what falls does.
+  const auto angle_at_5 = [](double push) {
+    const PhysicalPendulum floating(rod, PendulumGuide<>{.angular_acceleration = {0, 0, push}});
+    BOOST_TEST(floating.conserved(0, {}).empty() == (push != 0));
+    const auto found = solve(floating, {.angle = 0.2, .rate = 1}, {.times = {5}});
+    BOOST_TEST(found.report.tolerance_kept);
+    return found.states[0].angle;
+  };
+  BOOST_TEST(std::abs(angle_at_5(0) - 5.2) <= 1e-11);
+  BOOST_TEST(std::abs(angle_at_5(0.3) - (5.2 - 0.15 * 25)) <= 1e-11);
 }
 
 BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
@@ -219,8 +231,11 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
   }
   BOOST_CHECK_THROW((void)SteadyPendulumMotion<double>(rod, {19.62}, 0.1, 0.0).at(NAN),
                     InvalidInput);
-  BOOST_CHECK_THROW((void)solve(PhysicalPendulum(rod, room), {.angle = NAN}, {.times = {1}}),
-                    InvalidInput);
+  for (const PendulumState<>& start : {PendulumState<>(NAN, 0), PendulumState<>(0, HUGE_VAL)}) {
+    BOOST_CHECK_THROW((void)solve(PhysicalPendulum(rod, room),
+                                  {.angle = start[0], .rate = start[1]}, {.times = {1}}),
+                      InvalidInput);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

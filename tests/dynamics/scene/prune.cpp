@@ -332,6 +332,9 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_cannot_do_without) {
   BOOST_TEST(pruned.terms[0].kept);
   BOOST_TEST(std::isinf(pruned.terms[0].bound));
   BOOST_TEST(pruned.terms[0].why.find("singular") != std::string::npos);
+  std::ostringstream table;
+  table << pruned.terms;
+  BOOST_TEST(table.str().find(pruned.terms[0].why) != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(is_refused_for_what_is_no_task) {
@@ -347,6 +350,7 @@ BOOST_AUTO_TEST_CASE(is_refused_for_what_is_no_task) {
   refused({.tolerance = nan, .horizon = 1});
   refused({.tolerance = 1e-6, .horizon = -1});
   refused({.tolerance = 1e-6, .horizon = nan});
+  refused({.tolerance = 1e-6, .horizon = HUGE_VAL});
   refused({.tolerance = 1e-6, .horizon = 1, .begin = nan});
   BOOST_CHECK_THROW(static_cast<void>(prune<GuideRate>(body, std::vector<HeldBodyState>{}, {})),
                     InvalidInput);

@@ -484,9 +484,19 @@ BOOST_AUTO_TEST_CASE(refuses_methods_that_do_not_fit) {
   BOOST_CHECK_THROW(
       (void)solve(free, start, {.times = {1}, .jumps = {0.5}, .method = Method::gauss16}),
       InvalidInput);
-  const EulerTop heavy({1, 2, 3}, {0, 1, 1});
-  BOOST_CHECK_THROW((void)solve(heavy, start, {.times = {1}, .method = Method::closed_form}),
-                    InvalidInput);
+  // No closed form: not symmetric, weight aside of the axis or below, a rotor aside or under weight.
+  for (const EulerTop& top :
+       {EulerTop({1, 2, 3}, {0, 1, 1}), EulerTop({1, 1, 1.5}, {0, 1, 1}),
+        EulerTop({1, 1, 1.5}, {0, 0, -1}), EulerTop({1, 2, 3}, {0, 0, 0}, {0, 1, 1}),
+        EulerTop({1, 1, 1.5}, {0, 0, 1}, {0, 0, 1})}) {
+    BOOST_CHECK_THROW((void)solve(top, start, {.times = {1}, .method = Method::closed_form}),
+                      InvalidInput);
+  }
+  // No splitting: without weight, or with a rotor.
+  for (const EulerTop& top : {EulerTop({1, 1, 1.5}), EulerTop({1, 1, 1.5}, {0, 0, 1}, {0, 0, 1})}) {
+    BOOST_CHECK_THROW((void)solve(top, start, {.times = {1}, .method = Method::splitting}),
+                      InvalidInput);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(refuses_a_task_that_is_none) {

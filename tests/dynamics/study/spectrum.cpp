@@ -309,8 +309,23 @@ BOOST_AUTO_TEST_CASE(of_damped_and_circulatory_systems) {
     BOOST_TEST(mode.error > 1e-9);
   }
   BOOST_CHECK_THROW((void)spectrum(Eigen::MatrixXd::Zero(2, 3)), InvalidInput);
+  BOOST_CHECK_THROW((void)spectrum(Eigen::Matrix2d::Constant(HUGE_VAL)), InvalidInput);
   c.mass.setZero();
   BOOST_CHECK_THROW((void)state_matrix(c), InvalidInput);
+}
+
+// Each of the three matrices has its symmetry, and the mass is positive.
+BOOST_AUTO_TEST_CASE(of_conservative_systems_only) {
+  const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d lame = one;
+  lame(0, 1) = 1e-3;
+  const auto refuses = [](const Coefficients& c) {
+    BOOST_CHECK_THROW((void)conservative_spectrum(c), InvalidInput);
+  };
+  refuses({lame, 0 * one, one});
+  refuses({one, 0 * one, lame});
+  refuses({one, one, one});
+  refuses({-one, 0 * one, one});
 }
 
 BOOST_AUTO_TEST_SUITE_END()
@@ -347,6 +362,17 @@ BOOST_AUTO_TEST_CASE(follow_nutation_and_precession) {
   }
   BOOST_TEST((was_slow && was_fast));
   BOOST_TEST(diagram.damping.norm() == 0);
+}
+
+// A spring that turns into its contrary makes two real roots of one oscillation.
+BOOST_AUTO_TEST_CASE(end_where_a_mode_is_lost) {
+  const auto at = [](double stiffness) {
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(1, 1);
+    return Coefficients{one, 0 * one, stiffness * one};
+  };
+  BOOST_TEST(campbell(at, {3, 2, 1}).frequency.cols() == 3);
+  BOOST_TEST(campbell(at, {}).frequency.size() == 0);
+  BOOST_CHECK_THROW((void)campbell(at, {1, -1}), InvalidInput);
 }
 
 // Two gyros that know nothing of each other: their curves cross and are not mistaken.
