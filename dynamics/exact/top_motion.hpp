@@ -57,7 +57,7 @@ inline void require_body(const Vector3<double>& moments) {
 
 /// The turn that a steady rotation makes in a time: exp(omega t).
 [[nodiscard]] inline RealQuaternion steady_turn(const RealVector& omega, Real time) {
-  const Real rate = omega.stableNorm();
+  const Real rate = std::hypot(omega.x(), omega.y(), omega.z());
   if (rate == 0) return RealQuaternion::Identity();
   const Real half = rate * time / 2;
   const RealVector v = std::sin(half) / rate * omega;

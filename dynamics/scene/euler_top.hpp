@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <optional>
 #include <type_traits>
@@ -139,15 +138,21 @@ class BasicEulerTop {
 
   [[nodiscard]] TopInvariants<S> invariants(const State& state) const {
     const auto& [q, w] = state;
-    const Vector3<S> gamma = detail::vector<S>(vertical(q));
-    const Vector3<S> L = moments_.cwiseProduct(w) + rotor_momentum_;
-    using Complex = std::complex<S>;
-    const Complex z(w.x(), w.y());
-    const Complex k(weight_moment_.x(), weight_moment_.y());
+    const detail::Components<S> gamma = vertical(q);
+    const Vector3<S>& k = weight_moment_;
+    const detail::Components<S> L{moments_.x() * w.x() + rotor_momentum_.x(),
+                                  moments_.y() * w.y() + rotor_momentum_.y(),
+                                  moments_.z() * w.z() + rotor_momentum_.z()};
+    const S twice_kinetic =
+        moments_.x() * w.x() * w.x() + moments_.y() * w.y() * w.y() + moments_.z() * w.z() * w.z();
+    const S potential = k.x() * gamma.x + k.y() * gamma.y + k.z() * gamma.z;
+    // (w_x + i w_y)^2 - (k_x + i k_y)(gamma_x + i gamma_y)/C
     const S C = moments_.z();
-    return {w.dot(moments_.cwiseProduct(w)) / 2 + weight_moment_.dot(gamma), gamma.dot(L), L.z(),
-            std::norm(z * z - k / C * Complex(gamma.x(), gamma.y())),
-            Pose<S>::from(q).rotation * L};
+    const S real = w.x() * w.x() - w.y() * w.y() - (k.x() * gamma.x - k.y() * gamma.y) / C;
+    const S imaginary = 2 * w.x() * w.y() - (k.x() * gamma.y + k.y() * gamma.x) / C;
+    return {twice_kinetic / 2 + potential, gamma.x * L.x + gamma.y * L.y + gamma.z * L.z, L.z,
+            real * real + imaginary * imaginary,
+            detail::vector<S>(turned(detail::Turn<S>::from(q), L))};
   }
 
   /// Those of the invariants that this top keeps, by name.
