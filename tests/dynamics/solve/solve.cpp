@@ -1,6 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -359,6 +360,53 @@ BOOST_AUTO_TEST_CASE(gives_way_where_a_field_proves_stiff) {
   }
 }
 
+/// Follows the cosine, ever closer: y' = -exp(3t) (y - cos t) - sin t.
+struct Follower {
+  template <class S>
+  using One = Eigen::Matrix<S, 1, 1>;
+  using Vector = One<double>;
+  struct State {
+    double y;
+  };
+  static constexpr std::array<int, 1> blocks = {1};
+
+  template <class S>
+  [[nodiscard]] One<S> rates(const std::type_identity_t<S>& t, const One<S>& y) const {
+    using std::cos, std::exp, std::sin;
+    return One<S>(S(-exp(S(3 * t)) * (y[0] - cos(t)) - sin(t)));
+  }
+  [[nodiscard]] static Vector to_vector(const State& s) { return Vector(s.y); }
+  [[nodiscard]] static State from_vector(const Vector& y) { return {y[0]}; }
+
+  [[nodiscard]] static double truth(double start, double t) {
+    return std::cos(t) + (start - 1) * std::exp((1 - std::exp(3 * t)) / 3);
+  }
+};
+
+BOOST_AUTO_TEST_CASE(gives_way_where_a_field_becomes_stiff_on_the_way) {
+  const auto found = solve(Follower{}, {1.5}, {.times = every(0.5, 5), .tolerance = 1e-9});
+  BOOST_TEST(found.report.method == "radau13");
+  BOOST_TEST(found.report.tolerance_kept);
+  for (std::size_t i = 0; i < found.times.size(); ++i) {
+    BOOST_TEST(std::abs(found.states[i].y - Follower::truth(1.5, found.times[i])) <= 1e-9);
+  }
+}
+
+// Moments of which one is 1e-5 of the others leave the rates fewer digits than the state has: the
+// run beside begins with a body that is last digits another.
+BOOST_AUTO_TEST_CASE(knows_what_last_digits_of_a_body_do) {
+  const Vector3<double> moments(1, 1, 1e-5), w(1, 2, 3);
+  const Matrix3<double> Theta = moments.asDiagonal();
+  const HeldBody body(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
+                      RestingFrame<>{});
+  const exact::FreeTop top(moments, w, tilted);
+  const auto found = solve(body, {tilted, w}, {.times = every(1, 5), .tolerance = 1e-9});
+  BOOST_TEST(found.report.tolerance_kept);
+  const auto motion = top.at(5);
+  BOOST_TEST(found.states[4].attitude.angularDistance(motion.attitude) <=
+             found.report.error_estimate);
+}
+
 // Undamped, the same bearing is an oscillation: it is resolved, not damped.
 BOOST_AUTO_TEST_CASE(resolves_what_is_fast_but_not_damped) {
   const CardanMoments moments{
@@ -519,7 +567,11 @@ BOOST_AUTO_TEST_CASE(refuses_a_task_that_is_none) {
   BOOST_CHECK_THROW((void)solve(top, {tilted, underflowing},
                                 {.times = {1}, .method = Method::verner98, .smallest = 0}),
                     InvalidInput);
+  const Task small{.times = {1}, .method = Method::verner98};
+  BOOST_TEST(solve(top, {tilted, underflowing}, small).report.tolerance_kept);
   const EulerTop::State turned_by_nothing{Eigen::Quaterniond(0, 0, 0, 0), {1, 2, 3}};
+  BOOST_CHECK_THROW((void)solve(top, {Eigen::Quaterniond(nan, 0, 0, 0), {1, 2, 3}}, small),
+                    InvalidInput);
   const Task by_steps{.times = {1}, .method = Method::verner98};
   BOOST_CHECK_THROW((void)solve(top, turned_by_nothing, by_steps), InvalidInput);
 }
