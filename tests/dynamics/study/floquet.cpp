@@ -212,6 +212,33 @@ BOOST_AUTO_TEST_CASE(say_nothing_on_the_boundary) {
   BOOST_TEST((verdict(begin * (1 + 1e-9)) == Stability::unstable));
 }
 
+/// Those whose sums  z = l + 1/l  are given.
+PairedMultipliers with_sums(double z_1, double z_2) {
+  return {z_1 + z_2, z_1 * z_2 + 2, 1e-14, 1e-14};
+}
+
+// A pair lies on the circle where its sum is real and within (-2, 2).
+BOOST_AUTO_TEST_CASE(are_stable_on_the_circle_only) {
+  struct {
+    double z_1, z_2;
+    Stability verdict;
+  } const cases[] = {{0.5, -0.5, Stability::stable}, {3, -0.5, Stability::unstable},
+                     {-3, 0.5, Stability::unstable}, {3, 4, Stability::unstable},
+                     {-3, -4, Stability::unstable},  {3, 3, Stability::unstable},
+                     {1, 1, Stability::undecided},   {2, 0, Stability::undecided},
+                     {0, 0, Stability::undecided},   {3, -3, Stability::unstable}};
+  for (const auto& [z_1, z_2, verdict] : cases) {
+    const PairedMultipliers m = with_sums(z_1, z_2);
+    BOOST_TEST((m.verdict() == verdict), z_1 << ", " << z_2);
+    const auto l = m.multipliers();
+    // Where both sums are one, they are what is left of the square root of rounding.
+    const double off = std::min(std::abs(l[0] + l[1] - z_1) + std::abs(l[2] + l[3] - z_2),
+                                std::abs(l[0] + l[1] - z_2) + std::abs(l[2] + l[3] - z_1));
+    BOOST_TEST(off <= (z_1 == z_2 ? 1e-7 : 1e-14));
+    for (const auto& one : {l[0], l[2]}) BOOST_TEST(std::abs(one) >= 1 - 1e-15);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(come_in_no_pairs_with_damping) {
   const UnsymmetricRotor<> rotor({{1.1, 0.9, 0.5}}, {{1, 0.1}, {1, 0.1}}, 1);
   BOOST_CHECK_THROW((void)paired_multipliers(rotor), InvalidInput);
@@ -290,6 +317,21 @@ BOOST_AUTO_TEST_CASE(are_three_between_unequal_springs) {
   BOOST_TEST((ranges[1].begin.kind == BoundaryKind::krein));
   BOOST_TEST((ranges[2].begin.kind == BoundaryKind::minus_one));
   BOOST_TEST(std::abs(ranges[0].end.parameter - ranges[0].begin.parameter - 0.00245664601) < 1e-9);
+}
+
+// One pair leaves the circle at 1, the other at 2: that is no end of the range.
+BOOST_AUTO_TEST_CASE(do_not_end_where_the_other_pair_leaves) {
+  const auto at = [](double p) {
+    return PairedMultipliers{2 * p + 1, p * (p + 1) + 2, 1e-14, 1e-14};
+  };
+  BOOST_TEST(stability_boundaries(at, 0, 3, 7).size() == 2U);
+  const auto ranges = unstable_intervals(at, 0, 3, 7);
+  BOOST_REQUIRE(ranges.size() == 1U);
+  BOOST_TEST(std::abs(ranges[0].begin.parameter - 1) <= 1e-15);
+  BOOST_TEST(ranges[0].end.parameter == 3);
+  // l + 1/l = 3.5 in the middle of its later part
+  BOOST_TEST(std::abs(ranges[0].growth - (1.75 + std::sqrt(1.75 * 1.75 - 1))) <= 1e-14);
+  BOOST_CHECK_THROW((void)stability_boundaries(at, 0, 3, 1), InvalidInput);
 }
 
 // Higher orders lie at lower speeds, 1e-4 of the speed wide: found between samples that are two
