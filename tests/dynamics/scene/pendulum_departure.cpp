@@ -87,6 +87,18 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
   }
 }
 
+// Both parts together are the disturbed pendulum, which a brake holds by its whole rate.
+BOOST_AUTO_TEST_CASE(is_what_the_disturbed_pendulum_has_more) {
+  const PendulumDeparture pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
+    return S(t - S(0.3) * angle - S(0.2) * rate);
+  });
+  const double a = 0.7, da = -1.1, d = 0.2, dd = 0.4;
+  const auto rates = pendulum.rates(2.0, pendulum.to_vector({a, da, d, dd}));
+  const double whole = -k * std::sin(a + d) + 2 - 0.3 * (a + d) - 0.2 * (da + dd);
+  BOOST_TEST(std::abs(rates[1] + rates[3] - whole) <= 8 * 0x1p-53 * k);
+  BOOST_TEST(rates[1] == -k * std::sin(a));
+}
+
 BOOST_AUTO_TEST_CASE(does_not_depart_undisturbed) {
   const PendulumDeparture pendulum(
       k, []<class S>(const S& /*t*/, const S& /*angle*/, const S& /*rate*/) -> S { return S(0); });

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/rotor_matrices.hpp>
 #include <dynamics/scene/rotors_reference.hpp>
 #include <dynamics/step/explicit.hpp>
@@ -106,6 +107,25 @@ BOOST_AUTO_TEST_CASE(are_those_of_the_reference) {
         BOOST_TEST_CONTEXT(what) { BOOST_TEST(error <= 1e-13); }
       }
     }
+  }
+}
+
+// On a table that turns, under weight: what the matrices say of the accelerations is what the bodies
+// do, which are computed without them.
+BOOST_AUTO_TEST_CASE(move_the_bodies_on_a_turning_guide) {
+  const RotatingFrame<> table{{0.3, -0.2, 0.5}};
+  for (const RotorMode mode : {RotorMode::regulated, RotorMode::free}) {
+    const BodySystem system(table, test::model_bodies("platform", Root::ball, Json::object(), mode),
+                            UniformGravity<Guide>{{1, -2, -9}});
+    BodyWorkspace w = system.workspace();
+    const Eigen::VectorXd y =
+        state(system, test::rotors_reference()["snapshots"]["platform_regulated"]);
+    const RotorMatrices m = rotor_matrices(system, 0, y, w);
+    const Eigen::VectorXd u = y.tail(system.tree().rates())(m.rates);
+    Eigen::VectorXd dv;
+    system.accelerations(0, y, {}, dv, w);
+    const Eigen::VectorXd force = m.Q - m.c - m.G_R * u;
+    BOOST_TEST(off(m.A_eff.ldlt().solve(force), dv(m.rates)) <= 1e-12);
   }
 }
 
