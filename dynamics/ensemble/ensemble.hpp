@@ -125,8 +125,8 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
         if (!members[k]) continue;
         double& estimate = members[k]->report.error_estimate;
         const double off = distance[k](scene.to_vector(states[k]), scene.to_vector(better[k]));
-        estimate = std::max(
-            estimate, error_of_pair(off, runs.finer_by(setting), rounding, coarse.effort().steps));
+        estimate = std::max(estimate, error_of_pair(off, runs.finer_by(setting), rounding,
+                                                    coarse.effort().steps, coarse.noise()));
         worst = std::max(worst, estimate);
       }
       if (worst > task.tolerance && !last_try) break;

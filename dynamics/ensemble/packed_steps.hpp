@@ -77,6 +77,7 @@ class PackedAdvance {
 
   /// Of all together, who take the same steps.
   [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] double noise() const { return steps_.noise(); }
 
  private:
   [[nodiscard]] static Vector side_by_side(const Scene& scene, const States& states) {
@@ -117,6 +118,7 @@ class PackedAdvance<Scene, double> {
   [[nodiscard]] States at(double time) { return {steps_.at(time)}; }
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
   [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] double noise() const { return steps_.noise(); }
 
  private:
   Advance<Scene> steps_;

@@ -18,12 +18,13 @@ inline constexpr double times_finer = 30;
 /// The global error of a run after so many steps, `off` from one beside it whose error is so many
 /// times finer: what the coarser errs by, less that part of it, and half as much again for what is
 /// not so much finer, as where stability keeps explicit steps short; and a random walk of rounding,
-/// in units of 2^-53 a step, where nothing grows.
+/// in units of 2^-53 a step, where nothing grows, or what `noise` the steps know of: two runs in which
+/// it outweighs all else agree by chance.
 [[nodiscard]] inline double error_of_pair(double off, double finer_by, double rounding,
-                                          double steps) {
+                                          double steps, double noise = 0) {
   const double caution = 1.5 / (1 - 1 / finer_by);
   constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-  return caution * off + rounding * unit_roundoff * std::sqrt(steps);
+  return caution * off + std::max(rounding * unit_roundoff * std::sqrt(steps), noise);
 }
 
 /// The state with its components moved by so much in the last digit.

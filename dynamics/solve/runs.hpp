@@ -99,6 +99,7 @@ class VernerRuns : public AdaptiveRuns {
 
     [[nodiscard]] bool stiff() const { return stiff_; }
     [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+    [[nodiscard]] double noise() const { return steps_.noise(); }
 
     template <class Bookmark>
     void pass(Bookmark& bookmark) {
@@ -144,6 +145,8 @@ struct AdaptiveRun {
     return scene->from_vector(steps.at(t));
   }
   [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+  [[nodiscard]] double noise() const requires requires { steps.noise(); }
+  { return steps.noise(); }
 
   template <class Bookmark>
   void pass(Bookmark& bookmark) {

@@ -139,6 +139,15 @@ class RunSoFar {
   }
   [[nodiscard]] const Effort& effort() const { return run_.effort(); }
 
+  /// What rounding in the field has made by now, where the run knows that; else 0.
+  [[nodiscard]] double noise() const {
+    if constexpr (requires { run_.noise(); }) {
+      return run_.noise();
+    } else {
+      return 0;
+    }
+  }
+
   /// What it goes on from behind the first `done` outputs.
   template <class Bookmark>
   requires requires(Run& run, Bookmark& bookmark) { run.pass(bookmark); }
@@ -272,8 +281,8 @@ template <class Scene, class Runs>
           const typename Scene::State& other = better_at_output(*third, done);
           off = std::max(off, distance(scene.to_vector(state), scene.to_vector(other)));
         }
-        const double error =
-            error_of_pair(off, runs.finer_by(setting), Runs::rounding, coarse->effort().steps);
+        const double error = error_of_pair(off, runs.finer_by(setting), Runs::rounding,
+                                           coarse->effort().steps, coarse->noise());
         report.error_estimate = std::max(report.error_estimate, error);
         expected = forecast(task, t, report.error_estimate);
         too_coarse =

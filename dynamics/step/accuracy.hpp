@@ -98,7 +98,7 @@ class BlockSizes {
     require_blocks(blocks, all);
     int begin = 0;
     for (const int size : blocks) {
-      blocks_.push_back({begin, size, Number(0), Number(0)});
+      blocks_.push_back({begin, size, Number(0), Number(0), Number(0)});
       begin += size;
     }
     note(y);
@@ -111,12 +111,28 @@ class BlockSizes {
 
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
-    for (Block& block : blocks_) bookmark(block.size, block.noise);
+    for (Block& block : blocks_) bookmark(block.size, block.noise, block.wander);
   }
 
-  /// What rounding of the state leaves uncertain of its rate.
-  void note_noise(const Vector& rate) {
-    for (Block& block : blocks_) block.noise = norm(rate, block);
+  /// What rounding of the state leaves uncertain of its rate. Each step makes an error of that times
+  /// its length; `squares` is the sum of those lengths squared since this was noted last.
+  void note_noise(const Vector& rate, const Scalar& squares) {
+    for (Block& block : blocks_) {
+      block.wander += squares * block.noise * block.noise;
+      block.noise = norm(rate, block);
+    }
+  }
+
+  /// How far noise has led a block off by now, a random walk in proportion to its size.
+  [[nodiscard]] Scalar wander(const Scalar& squares) const {
+    using std::sqrt;
+    Number worst(0);
+    for (const Block& block : blocks_) {
+      const Number way = sqrt(block.wander + squares * block.noise * block.noise);
+      const Number ratio = way / scale(block);
+      worst = select(way > Number(0) && ratio > worst, ratio, worst);
+    }
+    return greatest_lane(worst);
   }
 
   /// The largest of the blocks' |error|, each in proportion to its size, which is |change| where
@@ -167,6 +183,7 @@ class BlockSizes {
     int components;
     Number size;
     Number noise;
+    Number wander;  ///< squared
   };
 
   [[nodiscard]] static Number norm(const Vector& v, const Block& block) {

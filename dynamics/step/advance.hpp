@@ -92,6 +92,7 @@ class Advance {
   [[nodiscard]] double t() const { return steps_.t(); }
   [[nodiscard]] State state() const { return scene_->from_vector(steps_.y()); }
   [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] double noise() const { return steps_.noise(); }
 
  private:
   const Scene* scene_;

@@ -160,12 +160,16 @@ class ExplicitSteps {
     before_.rate.setZero();
   }
 
+  /// What rounding of the state has made of it, by way of its rates: in proportion to size, as
+  /// sampled now and then.
+  [[nodiscard]] Scalar noise() const { return Scalar(0.5) * sizes_.wander(squares_); }
+
   /// What the steps go on from, outputs within the last step included.
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
-    bookmark(time_, state_, step_, steps_taken_, log_worst_before_, rejected_.step, rejected_.worst,
-             rejected_.in_vain, allowed_, sizes_, last_stage_time_, before_.time, before_.state,
-             before_.rate, before_.length, polynomial_known_, short_steps_, effort_);
+    bookmark(time_, state_, step_, steps_taken_, squares_, log_worst_before_, rejected_.step,
+             rejected_.worst, rejected_.in_vain, allowed_, sizes_, last_stage_time_, before_.time,
+             before_.state, before_.rate, before_.length, polynomial_known_, short_steps_, effort_);
     for (Vector& coefficient : coefficient_) bookmark(coefficient);
   }
 
@@ -332,6 +336,7 @@ class ExplicitSteps {
     log_worst_before_ = max(log_worst, Scalar(-9.21));
     effort_.steps += 1;
     steps_taken_ += 1;
+    squares_ += h * h;
     if (steps_taken_ % 8 == 0) look_for_stiffness();
     if (steps_taken_ % 64 == 16) note_noise();
     state_.set_sum(before_.state, change);
@@ -376,7 +381,9 @@ class ExplicitSteps {
     detail::move_last_digits<Number>(moved, 1);
     evaluate(before_.time.value, moved, rate);
     rate -= before_.rate;
-    if ((rate - rate).isZero(Scalar(0))) sizes_.note_noise(rate);
+    if (!(rate - rate).isZero(Scalar(0))) return;
+    sizes_.note_noise(rate, squares_);
+    squares_ = 0;
   }
 
   void fill_later_stages() {
@@ -459,6 +466,7 @@ class ExplicitSteps {
   Compensated<Vector> state_;
   Scalar step_ = Scalar(0);
   unsigned steps_taken_ = 0;  ///< or what is left of their number
+  Scalar squares_{0};         ///< of steps, summed since noise was looked at
   Scalar log_worst_before_ = Scalar(0);
   Rejected rejected_;
   Scalar allowed_;  ///< accuracy_.relative, or what rounding leaves of it

@@ -287,12 +287,17 @@ class RadauSteps {
     h_before_ = 0;
   }
 
+  /// What rounding of the state has made of it, by way of its rates: in proportion to size.
+  [[nodiscard]] double noise() const {
+    return sizes_.relative(noise_.cwiseSqrt(), Vector::Zero(noise_.size()));
+  }
+
   /// What the steps go on from, outputs within the last step included.
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
     bookmark(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
              step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst, rate_,
-             stages_.value, tangent_, effort_);
+             stages_.value, tangent_, noise_, effort_);
   }
 
  private:
@@ -433,10 +438,27 @@ class RadauSteps {
     worst_before_ = std::max(worst, 1e-2);
     h_before_ = h;
     effort_.steps += 1;
+    note_noise();
     state_.add(change);
     time_.add(h);
     sizes_.note(y());
     return true;
+  }
+
+  /// A random walk: each stage is off by half a last digit, of which the mean over the stages stays.
+  /// What is damped within a step forgets what was.
+  void note_noise() {
+    constexpr double half_digit = std::numeric_limits<double>::epsilon() / 2;
+    const double eigenvalue = radau().real.eigenvalue;
+    const double part = half_digit * eigenvalue / std::sqrt(double(stages));
+    const auto n = static_cast<Eigen::Index>(y().size());
+    Vector added = Vector::Zero(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      added += stages_.solve(part * std::abs(y()[j]) * tangent_.col(j)).cwiseAbs2();
+      const double stays = stages_.solve(Vector::Unit(n, j))[j] * eigenvalue / h_before_;
+      noise_[j] *= std::min(1.0, stays * stays);
+    }
+    noise_ += added;
   }
 
   Field field_;
@@ -456,7 +478,8 @@ class RadauSteps {
   Rejected rejected_;
   Vector rate_;
   detail::RadauStages stages_;
-  Eigen::MatrixXd rates_ = stages_.value;  ///< at the stages
+  Vector noise_ = Vector::Zero(y().size());  ///< of the state, squared
+  Eigen::MatrixXd rates_ = stages_.value;    ///< at the stages
   Eigen::MatrixXd tangent_;
   Effort effort_;
 };
