@@ -136,6 +136,8 @@ BOOST_AUTO_TEST_CASE(of_single_numbers) {
   BOOST_CHECK_THROW(CardanGyro({{infinite, 1, 1}}, {}, RestingFrame<>{}), InvalidInput);
   const CardanBearings turned{{}, {.stiffness = 1, .reference = 0.1}};
   BOOST_CHECK_THROW(FoepplGyro<>({{1, 1, 1}}, turned, 1), InvalidInput);
+  const CardanBearings rigid{{}, {.stiffness = infinite}};
+  BOOST_CHECK_THROW(CardanGyro({{1, 1, 1}}, rigid, RestingFrame<>{}), InvalidInput);
   BOOST_TEST(std::isinf(detail::norm(Eigen::Vector2d(1, infinite), 0, 2)));
   BOOST_CHECK_THROW(detail::check(Task{.times = {1}, .tolerance = 0.1}), InvalidInput);
 }
@@ -165,6 +167,12 @@ BOOST_AUTO_TEST_CASE(of_gimbals_that_keep_less) {
   BOOST_TEST(kept_by({brake, {}}, FreeRotor{}) == "rotor momentum,");
   BOOST_TEST(kept_by({spring, brake}, FreeRotor{}) == "rotor momentum,");
   BOOST_TEST(kept_by({spring, {}}, RegulatedRotor{}) == "energy of rings,");
+  const auto kept_on_a_table = [&](const auto& rotor) {
+    return kept(CardanGyro(moments, {}, RotatingFrame<>{{0, 0, 1}}, rotor), state);
+  };
+  BOOST_TEST(kept_on_a_table(FreeRotor{}) == "Jacobi integral,rotor momentum,");
+  BOOST_TEST(kept_on_a_table(FreeRotor{0.1}).empty());
+  BOOST_TEST(kept_on_a_table(RegulatedRotor{}) == "Jacobi integral,");
 }
 
 // A brake takes from the energy that a steady guide leaves.

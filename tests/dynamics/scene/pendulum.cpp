@@ -1018,6 +1018,25 @@ BOOST_AUTO_TEST_CASE(guides_without_a_rest) {
   guide = hanging;
   guide.angular_velocity.x() = std::numeric_limits<double>::quiet_NaN();
   BOOST_TEST(refusal(good, guide).find("must be finite") != std::string::npos);
+  guide = hanging;
+  guide.effective_gravity.y() = std::numeric_limits<double>::infinity();
+  BOOST_TEST(refusal(good, guide).find("must be finite") != std::string::npos);
+  guide = hanging;
+  guide.gravity_gradient = Matrix3<double>::Constant(std::numeric_limits<double>::quiet_NaN());
+  BOOST_TEST(refusal(good, guide).find("must be finite") != std::string::npos);
+}
+
+// Upside down nothing is stable, and without weight there is nothing to compare with.
+BOOST_AUTO_TEST_CASE(periods_that_are_none) {
+  const auto rod = PendulumBody<double>::thin_rod(0.75);
+  const PendulumCoefficients<double> c{.weight = 3};
+  const double up = std::acos(-1.0);
+  BOOST_CHECK_THROW((void)stiffness_excess(PendulumCoefficients<double>{}, 0.1), InvalidInput);
+  BOOST_CHECK_THROW((void)small_period_change(c, up), ComputationFailed);
+  BOOST_CHECK_THROW((void)small_period(rod, c, up), ComputationFailed);
+  const double infinite = std::numeric_limits<double>::infinity();
+  BOOST_CHECK_THROW((void)equilibria(PendulumCoefficients<double>{.weight = infinite}),
+                    InvalidInput);
 }
 
 BOOST_AUTO_TEST_CASE(amplitudes_beyond_the_top) {

@@ -211,6 +211,15 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(std::abs(run.states[0].angle - (0.2 + 5 - 0.15 * 25)) <= 1e-11);
 
+  // Gravity across: the same swing, a quarter of a turn further on.
+  const PhysicalPendulum across(rod, PendulumGuide<>{.effective_gravity = {0, 39.24, 0}});
+  const double quarter = std::acos(-1.0) / 2;
+  const auto turned = solve(across, {.angle = 0.4 + quarter}, {.times = {5}, .tolerance = 1e-12});
+  const auto straight =
+      solve(PhysicalPendulum(rod, room), {.angle = 0.4}, {.times = {5}, .tolerance = 1e-12});
+  BOOST_TEST(turned.report.method == straight.report.method);
+  BOOST_TEST(std::abs(turned.states[0].angle - quarter - straight.states[0].angle) <= 1e-14);
+
   // Pulled nowhere it runs on, and pushed steadily as what falls does.
   const auto angle_at_5 = [](double push) {
     const PhysicalPendulum floating(rod, PendulumGuide<>{.angular_acceleration = {0, 0, push}});

@@ -98,6 +98,12 @@ BOOST_AUTO_TEST_CASE(gives_output_on_the_way) {
   BOOST_TEST(steps.y() == undisturbed.y());
   BOOST_TEST(steps.effort().evaluations == undisturbed.effort().evaluations);
   BOOST_CHECK_THROW((void)steps.at(11), InvalidInput);
+  BOOST_CHECK_THROW((void)steps.at(0), InvalidInput);
+  TaylorSteps first(Circle{}, 0, Vector(1, 0));
+  first.step_towards(0);
+  BOOST_TEST(first.effort().steps == 0);
+  first.step_towards(10);
+  BOOST_TEST(first.at(0) == Vector(1, 0));
 }
 
 BOOST_AUTO_TEST_CASE(finds_events) {

@@ -280,6 +280,14 @@ BOOST_AUTO_TEST_CASE(are_refused_where_they_do_not_apply) {
       (void)technical_motion(model, 0, place, u, 0.1, {.kept = KeptAccelerations::none}),
       ComputationFailed);
   BOOST_TEST(technical_motion(model, 0, place, u, 0.1).kept == 1);
+  // A rotor that slows down, and one that is not round, has no momentum that stays.
+  const CardanMoments round{{1, 1, 1.5}}, flat{{1, 1.2, 1.5}};
+  const CardanState turns{.phi_rate = 100};
+  BOOST_CHECK_THROW(
+      TechnicalGimbals(CardanGyro(round, {}, RestingFrame<>{}, FreeRotor{0.1}), 0, turns),
+      InvalidInput);
+  BOOST_CHECK_THROW(TechnicalGimbals(CardanGyro(flat, {}, RestingFrame<>{}, FreeRotor{}), 0, turns),
+                    InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
