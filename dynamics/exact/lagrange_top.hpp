@@ -89,6 +89,12 @@ class LagrangeTop {
     return nutation_ ? static_cast<double>(nutation_->period()) : 0.0;
   }
 
+  /// The angle which is taken off again at every time, for the motion begins within a nutation:
+  /// rounding makes 2^-60 of it. Above 1e4 rad for tops that hardly nutate at all.
+  [[nodiscard]] double starting_angle() const {
+    return nutation_ ? static_cast<double>(nutation_->starting_angle()) : 0.0;
+  }
+
  private:
   using Complex = std::complex<Real>;
 
@@ -267,6 +273,15 @@ class LagrangeTop {
       of_alpha_ = {functions_, 1 + t.p2 / t.r2_r3};
       jumps_ = t.r1 <= t.minus_r3;
       ratio_ = t.r1 == 0 ? 0 : t.r1 / t.minus_r3;
+      alpha_slope_ = plus_ * std::sqrt(t.p1 * t.p3 / t.r2_r3) * std::sqrt(t.p2) / t.r2_r3;
+      if (jumps_) {
+        const Real W = -minus_ * std::sqrt(ratio_ * t.r2_r3 / t.r2);
+        beta_slope_ = -W * t.r2 / t.r2_r3;
+        beta_swing_ = W * (1 + ratio_) * t.r2 / t.r2_r3;
+      } else {
+        beta_slope_ = -minus_ * std::sqrt(t.r1 * t.minus_r3 / (t.r2 * t.r2_r3));
+        beta_swing_ = beta_slope_ * t.r2_r1 / t.r2;
+      }
       of_beta_ = {functions_, jumps_ ? 1 + (t.r1 + ratio_ * t.r2) / t.r2_r3 : t.r1 / t.r2};
 
       const Phase phase = functions_.phase(u0_);
@@ -296,6 +311,12 @@ class LagrangeTop {
 
     [[nodiscard]] Real period() const { return 2 * functions_.quarter() / lambda_; }
 
+    [[nodiscard]] Real starting_angle() const {
+      const Phase start = functions_.phase(u0_);
+      return 2 *
+             (std::abs(alpha_angle(start, 0)) + std::sqrt(t_.r2) * std::abs(beta_angle(start, 0)));
+    }
+
    private:
     /// The constant phase between a parameter as it is and its shape, from value and rate: one of
     /// them may be 0.
@@ -305,18 +326,25 @@ class LagrangeTop {
       return c / std::abs(c);
     }
 
+    [[nodiscard]] Real alpha_angle(const Phase& phase, Real time) const {
+      return half_excess_ * time + alpha_slope_ * of_alpha_(phase);
+    }
+
+    [[nodiscard]] Real beta_angle(const Phase& phase, Real time) const {
+      return -half_excess_ * time + beta_slope_ * phase.u + beta_swing_ * of_beta_(phase);
+    }
+
     [[nodiscard]] Parameter alpha_shape(const Phase& phase, Real time) const {
       const auto [s, c, d] = phase.at;
       const Real m = functions_.m();
       const Real root = std::sqrt(t_.p2);
       const Real g = plus_ * std::sqrt(t_.p1 * t_.p3 / t_.r2_r3);
       const Real eps = t_.p2 / t_.r2_r3;
-      const Real G = g * root / t_.r2_r3;
       const Real Q = 1 + eps * s * s;
       return assembled({root * c * d, g * s},
                        lambda_ * Complex(-root * s * (d * d + m * c * c), g * c * d), Q,
-                       2 * lambda_ * eps * s * c * d, half_excess_ * time + G * of_alpha_(phase),
-                       half_excess_ + lambda_ * G * s * s / Q);
+                       2 * lambda_ * eps * s * c * d, alpha_angle(phase, time),
+                       half_excess_ + lambda_ * alpha_slope_ * s * s / Q);
     }
 
     /// Its zero, at the upper vertical, is split off where r1 <= -r3; else none is within reach.
@@ -328,21 +356,16 @@ class LagrangeTop {
         const Real nu = -t_.r2_r1 / t_.r2;
         const Real Q = c * c + t_.r1 / t_.r2 * s * s;
         const Real dQ = 2 * lambda_ * nu * s * c * d;
-        const Real k = -minus_ * std::sqrt(t_.r1 * t_.minus_r3 / (t_.r2 * t_.r2_r3));
-        return assembled(root * Q, root * dQ, Q, dQ,
-                         -half_excess_ * time + k * (phase.u - nu * of_beta_(phase)),
-                         -half_excess_ + lambda_ * k / Q);
+        return assembled(root * Q, root * dQ, Q, dQ, beta_angle(phase, time),
+                         -half_excess_ + lambda_ * beta_slope_ / Q);
       }
       const Real W = -minus_ * std::sqrt(ratio_ * t_.r2_r3 / t_.r2);
-      const Real k = (1 + ratio_) * t_.r2 / t_.r2_r3;
       const Real eps = (t_.r1 + ratio_ * t_.r2) / t_.r2_r3;
       const Real Q = 1 + eps * s * s;
-      const Real slow = t_.r2 / t_.r2_r3;
       return assembled({root * c, root * W * s * d},
                        lambda_ * root * Complex(-s * d, W * c * (d * d - m * s * s)), Q,
-                       2 * lambda_ * eps * s * c * d,
-                       -half_excess_ * time + W * (k * of_beta_(phase) - slow * phase.u),
-                       -half_excess_ + lambda_ * W * (k * s * s / Q - slow));
+                       2 * lambda_ * eps * s * c * d, beta_angle(phase, time),
+                       -half_excess_ + lambda_ * (beta_slope_ + beta_swing_ * s * s / Q));
     }
 
     Real spin_;  ///< omega3
@@ -351,10 +374,13 @@ class LagrangeTop {
     Real lambda_;
     Real half_excess_;  ///< (1 - C/A) omega3 / 2
     Real u0_ = 0;
-    int plus_;    ///< the sign of L3 + L_vertical
-    int minus_;   ///< the sign of L3 - L_vertical
-    bool jumps_;  ///< r1 <= -r3
-    Real ratio_;  ///< r1/(-r3)
+    int plus_;          ///< the sign of L3 + L_vertical
+    int minus_;         ///< the sign of L3 - L_vertical
+    bool jumps_;        ///< r1 <= -r3
+    Real ratio_;        ///< r1/(-r3)
+    Real alpha_slope_;  ///< by which the integral goes into the angle of alpha
+    Real beta_slope_;   ///< by which u goes into that of beta
+    Real beta_swing_;   ///< and the integral
     ThirdKind of_alpha_{functions_, 1};
     ThirdKind of_beta_{functions_, 1};
     Complex alpha_turn_;
