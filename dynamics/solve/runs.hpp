@@ -25,6 +25,7 @@
 /// A kind is made from (task), one of fixed steps from (scene, task, start), and has
 ///   first()               the setting to begin with
 ///   finer(x)              of the run beside
+///   between(x)            of the third, where rounding is all that is left: other steps than of both
 ///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
 ///   last(x)               whether rounding leaves nothing to gain beyond
 ///   rounding              of one step where nothing grows, in units of 2^-53
@@ -234,6 +235,9 @@ class FixedRuns {
   [[nodiscard]] EqualLength first() const { return first_; }
   [[nodiscard]] EqualLength finer(const EqualLength& step) const {
     return {step.longest * std::pow(times_finer, -root_), step.longest};
+  }
+  [[nodiscard]] EqualLength between(const EqualLength& step) const {
+    return {step.longest * std::pow(times_finer, -root_ / 2), step.longest};
   }
 
   /// Where the shortest steps still err, it is by rounding or by a jump that nobody declared: neither
