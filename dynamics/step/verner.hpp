@@ -32,7 +32,7 @@ constexpr std::array<long double, 26> row_of_later_stage(
 ///
 /// Source : J. H. Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical
 ///          Algorithms 53 (2010) 383; the coefficients of his web page, 40 digits. Checked by their
-///          order conditions and by convergence (tests/dynamics/step/verner.cpp)
+///          order conditions and by convergence (tests/dynamics/step/explicit.cpp)
 struct Verner98 {
   static constexpr int order = 9;
   static constexpr std::size_t stages = 16;
