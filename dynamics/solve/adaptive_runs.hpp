@@ -22,8 +22,8 @@ class AdaptiveRuns {
   [[nodiscard]] double finer(double accuracy) const {
     return std::max(accuracy / finer_by_, least);
   }
-  [[nodiscard]] double between(double accuracy) const {
-    return std::sqrt(accuracy * finer(accuracy));
+  [[nodiscard]] double between(double accuracy, double part) const {
+    return accuracy * std::pow(finer(accuracy) / accuracy, part);
   }
   [[nodiscard]] double finer_by(double accuracy) const { return accuracy / finer(accuracy); }
   [[nodiscard]] bool goes_on(double accuracy) const { return finer(accuracy) > 4 * least; }

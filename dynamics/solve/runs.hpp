@@ -25,7 +25,7 @@
 /// A kind is made from (task), one of fixed steps from (scene, task, start), and has
 ///   first()               the setting to begin with
 ///   finer(x)              of the run beside
-///   between(x)            of the third, where rounding is all that is left: other steps than of both
+///   between(x, part)      of more runs, where rounding is all that is left: other steps than of both
 ///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
 ///   last(x)               whether rounding leaves nothing to gain beyond
 ///   rounding              of one step where nothing grows, in units of 2^-53
@@ -236,8 +236,8 @@ class FixedRuns {
   [[nodiscard]] EqualLength finer(const EqualLength& step) const {
     return {step.longest * std::pow(times_finer, -root_), step.longest};
   }
-  [[nodiscard]] EqualLength between(const EqualLength& step) const {
-    return {step.longest * std::pow(times_finer, -root_ / 2), step.longest};
+  [[nodiscard]] EqualLength between(const EqualLength& step, double part) const {
+    return {step.longest * std::pow(times_finer, -root_ * part), step.longest};
   }
 
   /// Where the shortest steps still err, it is by rounding or by a jump that nobody declared: neither
@@ -313,6 +313,7 @@ class GaussRuns : public FixedRuns {
       return scene->from_vector(steps.y());
     }
     [[nodiscard]] const Effort& effort() const { return steps.effort(); }
+    [[nodiscard]] double noise() const { return steps.noise(); }
 
     template <class Bookmark>
     void pass(Bookmark& bookmark) {
@@ -324,7 +325,8 @@ class GaussRuns : public FixedRuns {
                         const typename Scene::State& start) const {
     Run r{&scene,
           length,
-          {Field{&scene}, task_.begin, scene.to_vector(start), length.longest, blocks_of(scene)}};
+          {Field{&scene}, task_.begin, scene.to_vector(start), length.longest, blocks_of(scene),
+           task_.smallest}};
     r.steps.give_up_after(task_.most_evaluations);
     return r;
   }

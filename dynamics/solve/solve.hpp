@@ -238,12 +238,12 @@ template <class Scene, class Runs>
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
     if (last_try) digits = std::max(digits, 3 * digits_off(task));
     std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
-    // Where rounding is all that is left, two runs may agree by chance: three do so less, each with
-    // steps of its own. Of 1300 tops near the separatrix 9 err by more than so much of what they are
-    // apart, where it was 110 with two runs.
-    constexpr double caution = 1.5;
-    std::optional<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> third;
-    if (last_try) third.emplace(run_with(runs.between(setting), -digits));
+    // Where rounding is all that is left, two runs may agree by chance: four do so less, each with
+    // steps of its own.
+    std::vector<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> others;
+    for (const double part : {1.0 / 3, 2.0 / 3}) {
+      if (last_try) others.push_back(run_with(runs.between(setting, part), -digits));
+    }
     watch.note(task.begin, start);
     std::size_t done = 0;
     const auto pass_run = [&](Bookmark& numbers) {
@@ -251,7 +251,7 @@ template <class Scene, class Runs>
         numbers(done, report.error_estimate, distance, watch);
         coarse->pass(scene, done, numbers);
         fine->pass(scene, done, numbers);
-        if (third) third->pass(scene, done, numbers);
+        for (auto& other : others) other.pass(scene, done, numbers);
       }
     };
     const auto bookmark_here = [&] {
@@ -275,14 +275,14 @@ template <class Scene, class Runs>
         const typename Scene::State& state = t == task.begin ? start : reached;
         if (coarse->stiff()) {
           spent += coarse->effort().evaluations + fine->effort().evaluations;
-          if (third) spent += third->effort().evaluations;
+          for (const auto& other : others) spent += other.effort().evaluations;
           return std::nullopt;
         }
         const typename Scene::State& better = better_at_output(*fine, done);
         double off = distance(scene.to_vector(state), scene.to_vector(better));
-        if (third) {
-          const typename Scene::State& other = better_at_output(*third, done);
-          off = caution * std::max(off, distance(scene.to_vector(state), scene.to_vector(other)));
+        for (auto& other : others) {
+          const typename Scene::State& beside = better_at_output(other, done);
+          off = std::max(off, distance(scene.to_vector(state), scene.to_vector(beside)));
         }
         const double error = error_of_pair(off, runs.finer_by(setting), Runs::rounding,
                                            coarse->effort().steps, coarse->noise());
@@ -308,7 +308,7 @@ template <class Scene, class Runs>
       report.message = text.str();
     }
     spent += coarse->effort().evaluations;
-    if (third) spent += third->effort().evaluations;
+    for (const auto& other : others) spent += other.effort().evaluations;
     // Rounding on a long way does more than to move the start by a digit.
     const double lost = runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);

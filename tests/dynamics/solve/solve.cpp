@@ -508,8 +508,7 @@ BOOST_AUTO_TEST_CASE(takes_no_chance_agreement_of_noise_for_accuracy) {
 }
 
 // Tops that turn about their middle axis but for 1e-1 to 1e-6: rounding has grown to some 1e-10, and a
-// tolerance of 1e-14 is out of reach. Two runs agree by chance in one of eight cases; three in one
-// of a hundred.
+// tolerance of 1e-14 is out of reach. Two runs agree by chance in 20 of 159 cases.
 BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
   test::Sample sample(7);
   int runs = 0;
