@@ -87,21 +87,32 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
   constexpr double rounding = 2.5;
   const AdaptiveRuns runs(task);
   const double end = task.times.back();
-  const double middle = (task.begin + end) / 2;
-  auto beside = starts;
-  for (auto& start : beside) start = off_by_last_digits(scene, start, digits_off(task));
+  struct Beside {
+    double end_of_a_step;  ///< lest a short run be one and the same step in all
+    PackedAdvance<Scene, N> steps;
+  };
   double setting = runs.first();
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
-    const auto run = [&](double relative, const auto& from) {
+    const auto run = [&](double relative, double digits) {
+      auto from = starts;
+      for (auto& start : from) start = off_by_last_digits(scene, start, digits);
       PackedAdvance<Scene, N> made(scene, task.begin, from, runs.accuracy(relative));
       made.stop_at(task.jumps);
       return made;
     };
-    auto coarse = run(setting, starts);
-    std::optional<PackedAdvance<Scene, N>> fine;
-    if (estimates_errors) fine = run(runs.finer(setting), beside);
+    auto coarse = run(setting, 0);
+    std::vector<Beside> others;
+    const auto put_beside = [&](double part, double relative, double digits) {
+      others.push_back({task.begin + part * (end - task.begin), run(relative, digits)});
+    };
+    if (estimates_errors) put_beside(1.0 / 2, runs.finer(setting), digits_off(task));
+    if (estimates_errors && last_try) {
+      // Where rounding is all that is left, two runs may agree by chance.
+      put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(task));
+      put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(task));
+    }
     std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, task.smallest});
     for (auto* member : members) {
       if (!member) continue;
@@ -109,23 +120,29 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       member->report.method = name(Method::verner98);
       member->report.tolerance = task.tolerance;
       member->report.status = RunStatus::cancelled;
-      if (!fine) member->report.error_estimate = std::numeric_limits<double>::quiet_NaN();
+      if (!estimates_errors) {
+        member->report.error_estimate = std::numeric_limits<double>::quiet_NaN();
+      }
     }
     double worst = 0;
     for (const double t : task.times) {
       if (!go_on(coarse, t, end, stop)) return;
       const auto states = coarse.at(t);
-      auto better = states;
-      if (fine) {
-        const bool first_half = (t < middle) == (end > task.begin);
-        if (!go_on(*fine, t, first_half ? middle : end, stop)) return;
-        better = fine->at(t);
+      std::array<double, std::size_t(lanes_of<N>)> off{};
+      for (auto& [end_of_a_step, steps] : others) {
+        const bool before = (t < end_of_a_step) == (end > task.begin);
+        if (!go_on(steps, t, before ? end_of_a_step : end, stop)) return;
+        const auto beside = steps.at(t);
+        for (std::size_t k = 0; k < members.size(); ++k) {
+          if (!members[k]) continue;
+          const auto y = scene.to_vector(states[k]);
+          off[k] = std::max(off[k], distance[k](y, scene.to_vector(beside[k])));
+        }
       }
-      for (std::size_t k = 0; fine && k < members.size(); ++k) {
+      for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
         if (!members[k]) continue;
         double& estimate = members[k]->report.error_estimate;
-        const double off = distance[k](scene.to_vector(states[k]), scene.to_vector(better[k]));
-        estimate = std::max(estimate, error_of_pair(off, runs.finer_by(setting), rounding,
+        estimate = std::max(estimate, error_of_pair(off[k], runs.finer_by(setting), rounding,
                                                     coarse.effort().steps, coarse.noise()));
         worst = std::max(worst, estimate);
       }
@@ -136,7 +153,8 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
         members[k]->states.push_back(states[k]);
       }
     }
-    spent += coarse.effort().evaluations + (fine ? fine->effort().evaluations : 0);
+    spent += coarse.effort().evaluations;
+    for (const Beside& other : others) spent += other.steps.effort().evaluations;
     if (worst > task.tolerance && !last_try) {
       setting = runs.tightened(setting, task.tolerance / (3 * worst));
       continue;
