@@ -89,8 +89,9 @@ class LagrangeTop {
     return nutation_ ? static_cast<double>(nutation_->period()) : 0.0;
   }
 
-  /// The angle which is taken off again at every time, for the motion begins within a nutation:
-  /// rounding makes 2^-60 of it. Above 1e4 rad for tops that hardly nutate at all.
+  /// 2 (|psi_alpha(0)| + sqrt(r2) |psi_beta(0)|), in rad, the psi counted from the greatest tilt:
+  /// taken off again at every time, for the motion begins within a nutation. Rounding makes 2^-60 of
+  /// it (tests/dynamics/exact/lagrange_top). Above 1e4 rad for tops that hardly nutate at all.
   [[nodiscard]] double starting_angle() const {
     return nutation_ ? static_cast<double>(nutation_->starting_angle()) : 0.0;
   }

@@ -15,8 +15,8 @@ namespace kreisel {
 /// The closed form of a top, where it has one: free of torque, Lagrange's, or a
 /// gyrostat whose rotor lies on a principal axis.
 ///
-/// Error  : the estimate is the rounding of a quaternion, 2^-63 of each radian turned through, and
-///          2^-60 of those that Lagrange's top takes off
+/// Error  : the estimate is the rounding of two quaternions, the answer and what it is compared with,
+///          2^-63 of each radian turned through, and 2^-60 of those that Lagrange's top takes off
 ///                               (tests/dynamics/solve/solve, tests/dynamics/exact/lagrange_top)
 [[nodiscard]] inline std::optional<ClosedForm<EulerTop::State>> closed_form(
     const EulerTop& top, double begin, const EulerTop::State& start) {
@@ -43,7 +43,7 @@ namespace kreisel {
         [rate, begin, taken_off](double t, double /*smallest*/) {
           constexpr double u = std::numeric_limits<double>::epsilon() / 2;
           const double angle = rate * std::abs(t - begin) + taken_off;
-          return 1.5 * u + double(std::numeric_limits<exact::Real>::epsilon()) * angle;
+          return 3 * u + double(std::numeric_limits<exact::Real>::epsilon()) * angle;
         }};
   };
   if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));
@@ -53,7 +53,8 @@ namespace kreisel {
   }
   if (!rotor && symmetric && along_z(k) && k.z() > 0) {
     const exact::LagrangeTop motion(I.x(), I.z(), k.z(), w, q);
-    return made("Lagrange's top, elliptic functions", motion, 8 * motion.starting_angle());
+    const double taken_off = 0x1p-60 / 0x1p-63 * motion.starting_angle();
+    return made("Lagrange's top, elliptic functions", motion, taken_off);
   }
   return std::nullopt;
 }
