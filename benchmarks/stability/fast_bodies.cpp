@@ -40,7 +40,8 @@ void spins(const Recorder& out) {
           const double angle = spin * t;
           const Eigen::Quaterniond back(std::cos(angle / 2), 0, 0, -std::sin(angle / 2));
           return State{m.attitude * back, back.conjugate() * m.angular_velocity, angle};
-        }};
+        },
+        2e-16 * spin * end};  // that angle, rounded
     attempt_all(out, trial,
                 {Method::automatic, Method::verner98, Method::gauss16, Method::radau13});
   }

@@ -68,7 +68,8 @@ void thrown(const Recorder& out) {
                             body,
                             truth.at(0),
                             {.times = every(end / 5, end), .tolerance = 1e-9},
-                            [&](double t) { return truth.at(t); }};
+                            [&](double t) { return truth.at(t); },
+                            2e-16 * rate * end};  // the guide's angle, rounded
     attempt_all(out, trial, by_steps);
   }
 }

@@ -48,6 +48,9 @@ State seen(const exact::TopMotion& m, const Eigen::Quaterniond& turn, const Vect
   return {q, m.angular_velocity - q.conjugate() * u};
 }
 
+/// What rounding leaves uncertain of an angle that was turned through, relative.
+constexpr double rounding_of_angle = 2e-16;
+
 /// Free of torque it does not matter how the guide moves.
 void turning_guides(const Recorder& out) {
   for (const double rate : {0.0, 1e-320, 1e-300, 1e-170, 1e-12, 7.292115e-5, 1.0, 1e3}) {
@@ -63,7 +66,8 @@ void turning_guides(const Recorder& out) {
                             body,
                             seen(motion.at(0), Eigen::Quaterniond::Identity(), u),
                             {.times = every(end / 10, end), .tolerance = 1e-9},
-                            [&](double t) { return seen(motion.at(t), about(u, t), u); }};
+                            [&](double t) { return seen(motion.at(t), about(u, t), u); },
+                            rounding_of_angle * rate * end};
     attempt_all(out, trial, by_steps);
   }
 }
@@ -81,7 +85,8 @@ void turntables(const Recorder& out) {
                             body,
                             seen(motion.at(0), Eigen::Quaterniond::Identity(), u),
                             {.times = every(end / 10, end), .tolerance = 1e-9},
-                            [&](double t) { return seen(motion.at(t), about(u, t), u); }};
+                            [&](double t) { return seen(motion.at(t), about(u, t), u); },
+                            rounding_of_angle * rate * end};
     attempt_all(out, trial, by_steps);
   }
 }
