@@ -21,6 +21,7 @@
 #include <dynamics/ensemble/workers.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
 #include <dynamics/solve/error_measure.hpp>
+#include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/task.hpp>
 #include <motor/error.hpp>
@@ -92,6 +93,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     PackedAdvance<Scene, N> steps;
   };
   double setting = runs.first();
+  Missed<double> missed{setting};
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
@@ -125,6 +127,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       }
     }
     double worst = 0;
+    std::size_t output = 0;
     for (const double t : task.times) {
       if (!go_on(coarse, t, end, stop)) return;
       const auto states = coarse.at(t);
@@ -146,7 +149,9 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
                                                     coarse.effort().steps, coarse.noise()));
         worst = std::max(worst, estimate);
       }
+      missed.note(output, worst);
       if (worst > task.tolerance && !last_try) break;
+      ++output;
       for (std::size_t k = 0; k < members.size(); ++k) {
         if (!members[k]) continue;
         members[k]->times.push_back(t);
@@ -156,7 +161,9 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     spent += coarse.effort().evaluations;
     for (const Beside& other : others) spent += other.steps.effort().evaluations;
     if (worst > task.tolerance && !last_try) {
-      setting = runs.tightened(setting, task.tolerance / (3 * worst));
+      const bool stays = missed.stays(runs, setting);
+      if (missed.error == 0) missed = {setting, output, worst};
+      setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (3 * worst));
       continue;
     }
     for (auto* member : members) {

@@ -27,7 +27,9 @@
 ///   finer(x)              of the run beside
 ///   between(x, part)      of more runs, where rounding is all that is left: other steps than of both
 ///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
-///   last(x)               whether rounding leaves nothing to gain beyond
+///   finest(), last(x)     the setting beyond which rounding leaves nothing to gain; whether x is it
+///   falls(x, y)           what the error of steps at y is of that at x
+///   begins_near_rounding  whether the first setting errs by little more than rounding
 ///   rounding              of one step where nothing grows, in units of 2^-53
 ///   finer_by(x)           how many times finer that is
 ///   goes_on(x)            whether the finer run may become the coarser one of the next pair
@@ -229,6 +231,8 @@ struct EqualLength {
 /// The settings of fixed steps of a method of the order given: their length.
 class FixedRuns {
  public:
+  static constexpr bool begins_near_rounding = false;
+
   FixedRuns(int order, double first, double shortest)
       : root_(1.0 / order), first_{first}, shortest_(shortest) {}
 
@@ -250,7 +254,11 @@ class FixedRuns {
   [[nodiscard]] static double digits_lost(const EqualLength& /*step*/, double steps) {
     return 0.02 * std::sqrt(steps);
   }
+  [[nodiscard]] EqualLength finest() const { return {shortest_}; }
   [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
+  [[nodiscard]] double falls(const EqualLength& from, const EqualLength& to) const {
+    return std::pow(to.longest / from.longest, 1 / root_);
+  }
   [[nodiscard]] EqualLength tightened(const EqualLength& step, double ratio) const {
     return {std::max(step.longest * std::clamp(std::pow(ratio, root_), 0.2, 0.9), shortest_)};
   }
@@ -302,6 +310,7 @@ class GaussRuns : public FixedRuns {
 
   static constexpr Method method = Method::gauss16;
   static constexpr double rounding = 2.5;
+  static constexpr bool begins_near_rounding = true;
 
   struct Run {
     const Scene* scene;

@@ -14,6 +14,7 @@
 
 #include <dynamics/solve/closed_form.hpp>
 #include <dynamics/solve/error_measure.hpp>
+#include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/runs.hpp>
 #include <dynamics/solve/task.hpp>
@@ -184,7 +185,9 @@ class RunSoFar {
 /// digit away, or as many as rounding has taken by the end, so that the pair also tells what that
 /// grows to: near a separatrix steps of any length round the same digits away. Where the error
 /// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
-/// finer still; or both begin again, where that would not do; until rounding stops it.
+/// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
+/// are tried until two agree by chance would tell nothing: where the error does not fall as the steps
+/// do, the finest are taken at once, and four of them.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///
@@ -201,6 +204,7 @@ template <class Scene, class Runs>
   double digits = digits_off(task);
   double known = 0;  // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
+  Missed<decltype(setting)> missed{setting};
   const auto run_with = [&](const auto& s, double moved) {
     using Run = decltype(runs.run(s, scene, start));
     if (moved == 0) return RunSoFar<Scene, Run>(runs.run(s, scene, start), 0);
@@ -221,7 +225,7 @@ template <class Scene, class Runs>
   const auto kind = static_cast<double>(Runs::method);
   const auto pass_setting = [&](Bookmark& numbers) {
     double own = kind;
-    numbers(own, setting, digits, spent, coarse_starts_off);
+    numbers(own, setting, missed, digits, spent, coarse_starts_off);
     if (own != kind) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
@@ -240,9 +244,10 @@ template <class Scene, class Runs>
     std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
     // Where rounding is all that is left, two runs may agree by chance: four do so less, each with
     // steps of its own.
+    const bool doubtful = last_try || (Runs::begins_near_rounding && missed.error > 0);
     std::vector<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> others;
     for (const double part : {1.0 / 3, 2.0 / 3}) {
-      if (last_try) others.push_back(run_with(runs.between(setting, part), -digits));
+      if (doubtful) others.push_back(run_with(runs.between(setting, part), -digits));
     }
     watch.note(task.begin, start);
     std::size_t done = 0;
@@ -287,6 +292,7 @@ template <class Scene, class Runs>
         const double error = error_of_pair(off, runs.finer_by(setting), Runs::rounding,
                                            coarse->effort().steps, coarse->noise());
         report.error_estimate = std::max(report.error_estimate, error);
+        missed.note(done, report.error_estimate);
         expected = forecast(task, t, report.error_estimate);
         too_coarse =
             !last_try && (report.error_estimate > task.tolerance || expected > 4 * task.tolerance);
@@ -313,8 +319,10 @@ template <class Scene, class Runs>
     const double lost = runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
     if (too_close) digits = lost;
+    const bool stays = too_coarse && missed.stays(runs, setting);
+    if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
     const bool finer_will_do =
-        expected < runs.finer_by(setting) * task.tolerance && digits <= 1 && !changed;
+        !stays && expected < runs.finer_by(setting) * task.tolerance && digits <= 1 && !changed;
     if (too_coarse && finer_will_do && runs.goes_on(setting)) {
       setting = runs.finer(setting);
       coarse_starts_off = !coarse_starts_off;
@@ -330,7 +338,9 @@ template <class Scene, class Runs>
     // What the digits grow to may hide what the steps err by.
     if (too_coarse || (too_close && report.status == RunStatus::complete)) {
       known = too_coarse ? 0 : report.error_estimate;
-      if (too_coarse) setting = runs.tightened(setting, task.tolerance / (2 * expected));
+      if (too_coarse) {
+        setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (2 * expected));
+      }
       coarse_starts_off = false;
       coarse.emplace(run_with(setting, 0));
       continue;
