@@ -41,7 +41,7 @@ void spins(const Recorder& out) {
           const Eigen::Quaterniond back(std::cos(angle / 2), 0, 0, -std::sin(angle / 2));
           return State{m.attitude * back, back.conjugate() * m.angular_velocity, angle};
         },
-        2e-16 * spin * end};  // that angle, rounded
+        rounding_of_angle * spin * end};
     attempt_all(out, trial,
                 {Method::automatic, Method::verner98, Method::gauss16, Method::radau13});
   }

@@ -69,7 +69,7 @@ void thrown(const Recorder& out) {
                             truth.at(0),
                             {.times = every(end / 5, end), .tolerance = 1e-9},
                             [&](double t) { return truth.at(t); },
-                            2e-16 * rate * end};  // the guide's angle, rounded
+                            rounding_of_angle * rate * end};
     attempt_all(out, trial, by_steps);
   }
 }

@@ -48,9 +48,6 @@ State seen(const exact::TopMotion& m, const Eigen::Quaterniond& turn, const Vect
   return {q, m.angular_velocity - q.conjugate() * u};
 }
 
-/// What rounding leaves uncertain of an angle that was turned through, relative.
-constexpr double rounding_of_angle = 2e-16;
-
 /// Free of torque it does not matter how the guide moves.
 void turning_guides(const Recorder& out) {
   for (const double rate : {0.0, 1e-320, 1e-300, 1e-170, 1e-12, 7.292115e-5, 1.0, 1e3}) {

@@ -105,7 +105,7 @@ void undamped_spring(const Recorder& out) {
                        [=](double t) {
                          return State{0.1 * std::cos(w * t), -0.1 * w * std::sin(w * t)};
                        }};
-    trial.truth_error = 2e-16 * w * end;
+    trial.truth_error = rounding_of_angle * w * end;
     trial.picture = fmt::format("{:g} N m/rad", stiffness);
     attempt_all(out, trial, by_steps);
   }

@@ -30,6 +30,9 @@ struct Trial {
   std::string picture = "";  ///< the series of the picture of drift, if there is one
 };
 
+/// What rounding leaves uncertain of an angle that the truth has turned through, relative.
+inline constexpr double rounding_of_angle = 2e-16;
+
 [[nodiscard]] inline std::vector<double> every(double step, double end, double begin = 0) {
   const auto n = static_cast<int>(std::lround((end - begin) / step));
   std::vector<double> times;

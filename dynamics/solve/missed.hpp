@@ -4,7 +4,9 @@
 
 namespace kreisel::detail {
 
-/// The first try that erred by too much, and what has become of its error at the same output since.
+/// The first try that erred by too much, and what has become of its error at that output since.
+///
+/// Setting : of the steps, as the kinds of runs have it (runs.hpp)
 template <class Setting>
 struct Missed {
   Setting setting;

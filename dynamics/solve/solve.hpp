@@ -186,8 +186,8 @@ class RunSoFar {
 /// grows to: near a separatrix steps of any length round the same digits away. Where the error
 /// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
 /// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
-/// are tried until two agree by chance would tell nothing: where the error does not fall as the steps
-/// do, the finest are taken at once, and four of them.
+/// are tried until two agree by chance would tell nothing: where the error does not fall as the
+/// steps do, the finest are taken at once, and four of them.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///
@@ -243,7 +243,7 @@ template <class Scene, class Runs>
     if (last_try) digits = std::max(digits, 3 * digits_off(task));
     std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
     // Where rounding is all that is left, two runs may agree by chance: four do so less, each with
-    // steps of its own.
+    // steps of its own. Steps that begin near rounding and miss are near it in every later try.
     const bool doubtful = last_try || (Runs::begins_near_rounding && missed.error > 0);
     std::vector<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> others;
     for (const double part : {1.0 / 3, 2.0 / 3}) {

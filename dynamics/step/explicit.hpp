@@ -22,8 +22,9 @@ namespace kreisel {
 /// Explicit Runge-Kutta integration of  y' = field(t, y)  with adaptive steps.
 ///
 /// State and time are added up with compensation, and weights make up for the rounding of the
-/// others, so that rounding does not grow with the number of steps, nor to one side. A step whose result is not finite is rejected and shortened like one that errs too much,
-/// so a field that only exists in a region is not left; the last good time and state stay readable.
+/// others, so that rounding does not grow with the number of steps, nor to one side. A step whose
+/// result is not finite is rejected and shortened like one that errs too much, so a field that only
+/// exists in a region is not left; the last good time and state stay readable.
 ///
 /// Output between the ends of a step is of the method's full order and does not disturb the steps:
 /// at() reads a polynomial, which takes ten evaluations for the first output in a step and none for
@@ -244,9 +245,9 @@ class ExplicitSteps {
   template <std::size_t i>
   static constexpr auto row = Tableau::a[i];
 
-  /// Weights of the first and the last stage that make up for what rounding of the coefficients takes
-  /// from the conditions  sum_i b_i = 1  and  sum_ij b_i a_ij = 1/2.  It would be 1e-16 to the same
-  /// side in each step, with which energies drift in proportion to time and phases to its square.
+  /// Weights of the first and the last stage that make up for what rounding of the coefficients
+  /// takes from the conditions  sum_i b_i = 1  and  sum_ij b_i a_ij = 1/2.  It would be 1e-16 to the
+  /// same side in each step, with which energies drift as time and phases as its square.
   struct Rest {
     Scalar first;
     Scalar last;
