@@ -4,6 +4,9 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include <cmath>
+#include <complex>
+
 #include <dynamics/decompositions.hpp>
 
 // What <dynamics/decompositions.hpp> declares: included by it, or compiled once.
@@ -27,10 +30,32 @@ KREISEL_IF_CALLED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+// As Eigen::EigenSolver has it, which takes the compiler twice as long: it also compiles what makes
+// vectors.
 KREISEL_IF_CALLED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, false);
-  check_convergence(solver.info());
-  return solver.eigenvalues();
+  if (!A.allFinite()) check_convergence(Eigen::NoConvergence);
+  const Eigen::Index n = A.rows();
+  const double scale = A.isZero(0) ? 1 : A.cwiseAbs().maxCoeff();  // lest anything overflow
+  const Eigen::MatrixXd hessenberg =
+      Eigen::HessenbergDecomposition<Eigen::MatrixXd>(A / scale).matrixH();
+  Eigen::RealSchur<Eigen::MatrixXd> schur(n);
+  schur.computeFromHessenberg(hessenberg, Eigen::MatrixXd(), false);
+  check_convergence(schur.info());
+  const Eigen::MatrixXd& T = schur.matrixT();  // triangular but for a block of each complex pair
+  Eigen::VectorXcd values(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i + 1 == n || T(i + 1, i) == 0) {
+      values[i] = scale * T(i, i);
+      continue;
+    }
+    const double mean = (T(i, i) + T(i + 1, i + 1)) / 2;
+    const double apart = (T(i, i) - T(i + 1, i + 1)) / 2;
+    const double turn = std::sqrt(std::abs(apart * apart + T(i, i + 1) * T(i + 1, i)));
+    values[i] = scale * std::complex<double>(mean, turn);
+    values[i + 1] = std::conj(values[i]);
+    ++i;
+  }
+  return values;
 }
 
 KREISEL_IF_CALLED RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {

@@ -1,0 +1,56 @@
+#include <Eigen/SVD>
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <random>
+
+#include <dynamics/decompositions.hpp>
+
+#include <support/near.hpp>
+
+using namespace kreisel;
+
+BOOST_AUTO_TEST_SUITE(decompositions)
+
+// Each eigenvalue makes A - value 1 singular, to what a change of A by rounding makes of that; and
+// together they have the traces of A and of A A.
+BOOST_AUTO_TEST_CASE(eigenvalues_make_singular) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  const auto entry = [&] { return normal(random); };
+  for (int i = 0; i < 300; ++i) {
+    const int n = 1 + i % 12;
+    Eigen::MatrixXd A = Eigen::MatrixXd::NullaryExpr(n, n, entry);
+    if (i % 3 == 1) A -= A.transpose().eval();  // all on the imaginary axis
+    if (i % 3 == 2) A.row(n - 1) = A.row(0);    // singular
+    if (i % 5 == 1) A.leftCols(n / 2) *= 1e-6;  // unbalanced
+    const double size = A.norm();
+    const double bound = 20 * n * test::u<> * size;
+    for (const double unit : {1.0, 0x1p-700, 0x1p700}) {
+      const Eigen::VectorXcd values = detail::eigenvalues(unit * A) / unit;
+      BOOST_REQUIRE_EQUAL(values.size(), n);
+      for (const std::complex<double> value : values) {
+        const Eigen::MatrixXcd shifted = A - value * Eigen::MatrixXcd::Identity(n, n);
+        const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(shifted);
+        BOOST_TEST(svd.singularValues()[n - 1] <= bound, "eigenvalue " << value << " of\n" << A);
+      }
+      BOOST_TEST(std::abs(values.sum() - A.trace()) <= bound);
+      BOOST_TEST(values.squaredNorm() <= (1 + bound) * A.squaredNorm());  // Schur
+      BOOST_TEST(std::abs(values.array().square().sum() - (A * A).trace()) <= bound * size);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(eigenvalues_of_nothing) {
+  BOOST_TEST(detail::eigenvalues(Eigen::MatrixXd(0, 0)).size() == 0);
+  BOOST_TEST(detail::eigenvalues(Eigen::MatrixXd::Zero(3, 3)).isZero(0));
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
+    Eigen::MatrixXd A = Eigen::MatrixXd::Identity(3, 3);
+    A(1, 2) = wrong;
+    BOOST_CHECK_THROW((void)detail::eigenvalues(A), ComputationFailed);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
