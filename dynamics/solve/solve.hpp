@@ -242,12 +242,13 @@ template <class Scene, class Runs>
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
     if (last_try) digits = std::max(digits, 3 * digits_off(task));
     std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
-    // Where rounding is all that is left, two runs may agree by chance: four do so less, each with
+    // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
     // steps of its own. Steps that begin near rounding and miss are near it in every later try.
-    const bool doubtful = last_try || (Runs::begins_near_rounding && missed.error > 0);
+    const bool near_rounding = last_try || (Runs::begins_near_rounding && missed.error > 0);
+    const int more = near_rounding ? 2 : Runs::begins_near_rounding ? 1 : 0;
     std::vector<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> others;
-    for (const double part : {1.0 / 3, 2.0 / 3}) {
-      if (doubtful) others.push_back(run_with(runs.between(setting, part), -digits));
+    for (int i = 1; i <= more; ++i) {
+      others.push_back(run_with(runs.between(setting, double(i) / (more + 1)), -digits));
     }
     watch.note(task.begin, start);
     std::size_t done = 0;
