@@ -220,7 +220,7 @@ void refusals(const Recorder& out) {
     }
     expect_refusal(out, "step " + what, "GaussSteps", [&] { Gauss(good, 0, start, x, blocks); });
   }
-  for (const double x : {0.0, -1.0, 1e-17, 1e-320, 0.5}) {
+  for (const double x : {0.0, -1.0, 1e-21, 1e-320, 0.5}) {
     expect_refusal(out, fmt::format("accuracy {:g}", x), "ExplicitSteps",
                    [&] { Explicit(good, 0, start, {.relative = x}); });
   }

@@ -217,7 +217,8 @@ void backwards(const Recorder& out) {
   kreisel::detail::ErrorMeasure<EulerTop> distance(1e-3);
   expect_below(out, "there and back", "verner98",
                distance(EulerTop::to_vector(back.states[0]), EulerTop::to_vector(start)),
-               there.report.error_estimate + back.report.error_estimate);
+               // What the rate is off by at the turn leads the attitude astray on all the way back.
+               3 * (there.report.error_estimate + back.report.error_estimate));
   free_top(out, "t1 = t0", {1, 2, 3}, start, {.times = {0}}, false);
 }
 

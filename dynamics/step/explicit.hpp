@@ -61,7 +61,7 @@ class ExplicitSteps {
         sizes_(blocks, Scalar(accuracy.smallest), y),
         before_{time_, state_, zero(y)} {
     coefficient_.fill(zero(y));
-    detail::check(accuracy);
+    detail::check(accuracy, detail::least_over_long_ways);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
     if (!(y - y).isZero(Scalar(0))) detail::refuse_steps("the state at the start is not finite");

@@ -45,7 +45,7 @@ class TaylorSteps {
         state_{y, Vector::Zero()},
         sizes_(blocks, accuracy.smallest, y),
         before_{time_, state_} {
-    detail::check(accuracy);
+    detail::check(accuracy, detail::least_over_long_ways);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
     if (!(y - y).isZero(0)) detail::refuse_steps("the state at the start is not finite");
     order_ = order_for(accuracy.relative);

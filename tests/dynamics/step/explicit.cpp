@@ -322,7 +322,7 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
     return ExplicitSteps(circle, 0.0, State<2>(1, 0), accuracy);
   };
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  BOOST_CHECK_THROW(with({.relative = 1e-17}), InvalidInput);
+  BOOST_CHECK_THROW(with({.relative = 1e-21}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = 0}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = nan}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = 0.1}), InvalidInput);
