@@ -470,10 +470,11 @@ void check_method(const Scene& scene, const Task& task) {
 /// Error  : by steps true error / estimate lies in [0.1, 1] in 98 % of 400 runs and never above 1.1
 ///          (tests/dynamics/solve/solve.cpp); docs/promises.md tells where that ends. Where the
 ///          tolerance cannot be reached the best is returned and RunReport::tolerance_kept is false
-/// Cost   : by steps 2.3 times the integration alone, reported as all_evaluations; 2.8 to 3.1 times
-///          where the first pair of runs errs too much, more than 5 in 1 % of 1620 runs at 1e-12 and
-///          above; twice that where so many steps near the last digits are taken that rounding
-///          outgrows them. Outputs take ten evaluations in each step that has some, by series none
+/// Cost   : by steps 2.3 times the integration alone, 3.4 times by gauss16, reported as
+///          all_evaluations; 2.8 to 3.1 times where the first pair of runs errs too much, more than
+///          5 in 1 % of 1620 runs at 1e-12 and above; twice that where so many steps near the last
+///          digits are taken that rounding outgrows them. Outputs take ten evaluations in each step
+///          that has some, by series none
 /// Throws : InvalidInput for a task that is none or a method that does not fit the scene. What
 ///          fails on the way is told by the report, with the trajectory up to there
 template <class Scene>
