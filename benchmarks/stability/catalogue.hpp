@@ -66,7 +66,7 @@ struct Case {
   std::string name;
   std::string extreme;  ///< what about it is
   std::function<void(const Recorder&)> run;
-  double time_limit = 10;  ///< s of computing when quick; twenty times that when not
+  double time_limit = 10;  ///< s one run may compute when quick; twenty times that when not
 };
 
 [[nodiscard]] inline double seconds_since(const std::chrono::steady_clock::time_point& begin) {

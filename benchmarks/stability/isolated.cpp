@@ -52,9 +52,11 @@ struct Watch {
   std::string variant;  ///< of the run that was begun last
   std::string method;
   bool running = false;
+  double heard_at = 0;  ///< s the case had computed when it was last heard of
 
-  void read(const std::string& line) {
+  void read(const std::string& line, double computed) {
     const std::vector<std::string> f = fields(line);
+    heard_at = computed;
     // Not stod, which throws on denormal numbers.
     const auto number = [&f](std::size_t i) { return std::strtod(f.at(i).c_str(), nullptr); };
     if (f.at(0) == "begin") {
@@ -126,8 +128,10 @@ Finding run_watched(const Case& c, bool quick) {
   std::string text;
   bool open = true;
   bool late = false;
+  Clock::time_point heard = begin;
   while (open && !stopped) {
-    late = cpu_seconds(child) > limit || seconds_since(begin) > patience * limit;
+    const double computed = cpu_seconds(child);
+    late = computed - watch.heard_at > limit || seconds_since(heard) > patience * limit;
     if (late) break;
     pollfd wait{ends[0], POLLIN, 0};
     if (poll(&wait, 1, 200) <= 0) continue;
@@ -136,7 +140,8 @@ Finding run_watched(const Case& c, bool quick) {
     open = got > 0;
     if (open) text.append(buffer, std::size_t(got));
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n')) {
-      watch.read(text.substr(0, at));
+      watch.read(text.substr(0, at), computed);
+      heard = Clock::now();
       text.erase(0, at + 1);
     }
   }
