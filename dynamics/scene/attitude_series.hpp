@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstddef>
 
 #include <dynamics/guide/series.hpp>
+#include <dynamics/scene/four.hpp>
+#include <dynamics/scene/tensor_of_four.hpp>
 #include <motor/absent.hpp>
 
 namespace kreisel::detail {
@@ -36,7 +36,10 @@ class AttitudeSeries {
 
   AttitudeSeries(const Tensor& tensor, const FirstMoment& first_moment, const Felt& felt,
                  const Momentum& momentum = {})
-      : tensor_(tensor), first_moment_(first_moment), felt_(felt), momentum_(momentum) {}
+      : tensor_(tensor),
+        first_moment_(four(first_moment)),
+        felt_(felt),
+        momentum_(four(momentum)) {}
 
   /// Fills the columns 1 to `order` of c with the coefficients of (quaternion x, y, z, w; u') in
   /// powers of (time - t)/h, for the motion that has column 0 at t.
@@ -45,9 +48,9 @@ class AttitudeSeries {
     const auto felt = felt_now(t, h, order);
     Table s;
     const double norm2 = c.col(0).template head<4>().squaredNorm();
-    s.put_attitude(0, c.col(0).template head<4>());
+    s.put_attitude(0, {c(0, 0), c(1, 0), c(2, 0), c(3, 0)});
     // At the beginning it is u' that is known, not w.
-    Components<double> w{c(4, 0), c(5, 0), c(6, 0)};
+    Four w(c(4, 0), c(5, 0), c(6, 0), 0);
     for (int k = 0;; ++k) {
       Sums sums;
       // What is known already comes first, and the newest coefficients last: they may still be on
@@ -58,33 +61,30 @@ class AttitudeSeries {
         if constexpr (guide_changes) s.add_felt(i, j, felt, sums);
       }
       at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_attitudes(i, j, sums); });
-      const Turn<double> R = turn(sums, 1 / norm2);
+      const TurnBack R = sums.turn_back(1 / norm2);
       if constexpr (guide_changes) {
-        s.put_rows(k, R);
+        s.turn_back[std::size_t(k)] = R;
         at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_felt(i, j, felt, sums); });
+      } else {
+        if constexpr (guide_turns) sums.guide = R * felt.u;
+        if constexpr (pulled) sums.gravity = R * felt.g;
       }
-      const auto guide = turned_back(R, felt.u, sums.guide);
-      if (k == 0) w = w + guide;
-      const Components<double> u = w - guide;
-      c(4, k) = u.x;
-      c(5, k) = u.y;
-      c(6, k) = u.z;
+      if (k == 0) w += sums.guide;
+      const Four u = w - sums.guide;
+      for (int i = 0; i < 3; ++i) c(4 + i, k) = u[i];
       if (k == order) return;
       s.put_rates(k, w, by_whole_rate ? w : u);
       if constexpr (on_resal_axes) {
-        const auto [A, C] = tensor_.across_and_along();
-        s.excess[std::size_t(k)] = C * w.z - A * (0.0 + guide.z);
+        s.excess[std::size_t(k)] = tensor_.along() * w[2] - tensor_.across() * sums.guide[2];
       }
       at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_rates(i, j, sums); });
       const double weight = h / (k + 1);
-      const Components<double> moment = gyroscopic_torque(sums) + cross(momentum_, w) +
-                                        cross(first_moment_, turned_back(R, felt.g, sums.gravity));
-      w = weight * tensor_.solve(moment);
+      w = weight * tensor_.solve(moment(w, sums));
       Four dq = sums.x + sums.y + sums.z;
-      if constexpr (by_whole_rate) dq -= s.turned_along(k, felt.u);
-      dq *= weight / 2;
+      if constexpr (by_whole_rate && guide_turns) dq = dq - s.turned_along(k, felt.u.as_is);
+      dq = weight / 2 * dq;
       s.put_attitude(k + 1, dq);
-      c.col(k + 1).template head<4>() = dq;
+      for (int i = 0; i < 4; ++i) c(i, k + 1) = dq[i];
     }
   }
 
@@ -92,101 +92,136 @@ class AttitudeSeries {
   static constexpr bool on_resal_axes = axes == RateAxes::resal;
   static constexpr bool guide_changes = requires(Felt & felt) { felt.at(0.0, 0.0, 0); };
 
+  [[nodiscard]] static constexpr bool feels_a_turning() {
+    if constexpr (guide_changes) {
+      return true;
+    } else {
+      return !decltype(Felt::u)::absent;
+    }
+  }
+  [[nodiscard]] static constexpr bool feels_gravity() {
+    if constexpr (guide_changes) {
+      return true;
+    } else {
+      return !decltype(Felt::g)::absent;
+    }
+  }
+  static constexpr bool guide_turns = feels_a_turning();
+  static constexpr bool pulled = !FirstMoment::absent && feels_gravity();
+
   /// q' is taken as  (q (0, w) - (0, u) q)/2,  which does not have to wait for R.
   static constexpr bool by_whole_rate = !on_resal_axes && !guide_changes;
 
-  using Four = Eigen::Array<double, 4, 1>;
-  using Fours = std::array<Four, most_order + 1>;
-  using Numbers = std::array<double, most_order + 1>;
+  template <class T>
+  using Of = std::array<T, most_order + 1>;
+
+  /// A vector and both its cyclic exchanges.
+  struct Cycles {
+    Four as_is, next, after;
+
+    Cycles() = default;
+    explicit Cycles(const Four& v) : as_is(v), next(v.next()), after(v.after()) {}
+  };
+
+  /// R^t by its three diagonals, which what it turns goes round.
+  struct TurnBack {
+    Four main, upper, lower;
+
+    [[nodiscard]] friend Four operator*(const TurnBack& R, const Cycles& v) {
+      return R.main * v.as_is + R.upper * v.next + R.lower * v.after;
+    }
+  };
+
+  struct SteadyFelt {
+    Cycles u, g;
+  };
+  struct ChangingFelt {
+    Of<Cycles> u, g;
+  };
 
   /// The k-th coefficients of products.
   struct Sums {
-    Four square = Four::Zero();  ///< of q: xx, yy, zz
-    Four next = Four::Zero();    ///< xy, yz, zx
-    Four by_w = Four::Zero();    ///< xw, yw, zw, ww
-    Four x = Four::Zero();       ///< q (0, u') or q (0, w), by the components of u' or w
-    Four y = Four::Zero();
-    Four z = Four::Zero();
-    Four mixed = Four::Zero();     ///< of w: yz, zx, xy; on Resal's axes (n A - C w_z)(w_y, -w_x)
-    Four w_square = Four::Zero();  ///< xx, yy, zz
-    Four guide = Four::Zero();     ///< R^t u
-    Four gravity = Four::Zero();   ///< R^t g'
+    Four square = {0, 0, 0, 0};  ///< of q: xx, yy, zz, ww
+    Four next = {0, 0, 0, 0};    ///< xy, yz, zx
+    Four by_w = {0, 0, 0, 0};    ///< xw, yw, zw
+    Four x = {0, 0, 0, 0};       ///< q (0, u') or q (0, w), by the components of u' or w
+    Four y = {0, 0, 0, 0};
+    Four z = {0, 0, 0, 0};
+    Four mixed = {0, 0, 0, 0};     ///< of w: yz, zx, xy; Resal's: (n A - C w_z)(w_y, -w_x)
+    Four w_square = {0, 0, 0, 0};  ///< xx, yy, zz
+    Four guide = {0, 0, 0, 0};     ///< R^t u
+    Four gravity = {0, 0, 0, 0};   ///< R^t g'
+
+    /// Of a quaternion whose norm is 1/sqrt(scale).
+    [[nodiscard]] TurnBack turn_back(double scale) const {
+      const double ww = square[3];
+      const Four zw = by_w.after();
+      return {scale * ((square + Four(ww, ww, ww, ww)) - (square.next() + square.after())),
+              2 * scale * (next + zw), (2 * scale * (next - zw)).after()};
+    }
   };
 
-  /// The coefficients so far, as the products take them.
+  /// The coefficients so far, as the products take them. Of the functions that add up the compiler
+  /// would not put all in their places by itself, and what they add up is in no register then.
   struct Table {
-    Fours q, q_next;      ///< (x, y, z, w), (y, z, x, 0)
-    Fours q_i, q_j, q_k;  ///< the products with the quaternion units
-    Fours w, w_next, w_after;
-    Fours row_x, row_y, row_z;  ///< of R
-    Numbers q_w, u_x, u_y, u_z;
-    Fours aside;     ///< on Resal's axes: (-w_y, w_x)
-    Numbers excess;  ///< there: C w_z - A n
+    Of<Four> q, q_next;      ///< (x, y, z, w), (y, z, x, w)
+    Of<Four> q_i, q_j, q_k;  ///< the products with the quaternion units
+    Of<Four> w, w_next, w_after;
+    Of<Four> u;  ///< u', or w where that is taken for it
+    Of<TurnBack> turn_back;
+    Of<Four> aside;     ///< on Resal's axes: (-w_y, w_x)
+    Of<double> excess;  ///< there: C w_z - A n
 
     void put_attitude(int k, const Four& a) {
       const auto at = static_cast<std::size_t>(k);
       q[at] = a;
-      q_next[at] = Four(a[1], a[2], a[0], 0);
+      q_next[at] = a.next();
       q_i[at] = Four(a[3], a[2], -a[1], -a[0]);
       q_j[at] = Four(-a[2], a[3], a[0], -a[1]);
       if constexpr (!on_resal_axes) q_k[at] = Four(a[1], -a[0], a[3], -a[2]);
-      q_w[at] = a[3];
     }
 
-    void put_rates(int k, const Components<double>& a, const Components<double>& u) {
+    void put_rates(int k, const Four& a, const Four& rate) {
       const auto at = static_cast<std::size_t>(k);
       if constexpr (on_resal_axes) {
-        aside[at] = Four(-a.y, a.x, 0, 0);
+        aside[at] = Four(-a[1], a[0], 0, 0);
       } else {
-        w[at] = Four(a.x, a.y, a.z, 0);
-        w_next[at] = Four(a.y, a.z, a.x, 0);
-        w_after[at] = Four(a.z, a.x, a.y, 0);
+        w[at] = a;
+        w_next[at] = a.next();
+        w_after[at] = a.after();
       }
-      u_x[at] = u.x;
-      u_y[at] = u.y;
-      u_z[at] = u.z;
+      u[at] = rate;
     }
 
-    /// (0, u) q
-    template <class U>
-    [[nodiscard]] Four turned_along(int k, const U& u) const {
-      const Four& a = q[std::size_t(k)];
-      const double x = a[0], y = a[1], z = a[2], r = a[3];
-      return {0.0 + (r * u.x + u.y * z - u.z * y), 0.0 + (r * u.y + u.z * x - u.x * z),
-              0.0 + (r * u.z + u.x * y - u.y * x), 0.0 - (u.x * x + u.y * y + u.z * z)};
-    }
-
-    void put_rows(int k, const Turn<double>& R) {
+    /// (0, v) q
+    [[nodiscard]] Four turned_along(int k, const Four& v) const {
       const auto at = static_cast<std::size_t>(k);
-      row_x[at] = Four(R.xx, R.xy, R.xz, 0);
-      row_y[at] = Four(R.yx, R.yy, R.yz, 0);
-      row_z[at] = Four(R.zx, R.zy, R.zz, 0);
+      return Four(v[0], -v[0], -v[0], v[0]) * q_i[at] + Four(-v[1], v[1], -v[1], v[1]) * q_j[at] +
+             Four(-v[2], -v[2], v[2], v[2]) * q_k[at];
     }
 
-    void add_attitudes(std::size_t i, std::size_t j, Sums& s) const {
+    [[gnu::always_inline]] void add_attitudes(std::size_t i, std::size_t j, Sums& s) const {
       s.square += q[i] * q[j];
       s.next += q[i] * q_next[j];
-      s.by_w += q[i] * q_w[j];
+      s.by_w += q[j][3] * q[i];
     }
 
-    void add_rates(std::size_t i, std::size_t j, Sums& s) const {
-      s.x += q_i[i] * u_x[j];
-      s.y += q_j[i] * u_y[j];
+    [[gnu::always_inline]] void add_rates(std::size_t i, std::size_t j, Sums& s) const {
+      s.x += u[j][0] * q_i[i];
+      s.y += u[j][1] * q_j[i];
       if constexpr (on_resal_axes) {
-        s.mixed += aside[i] * excess[j];
+        s.mixed += excess[j] * aside[i];
       } else {
-        s.z += q_k[i] * u_z[j];
+        s.z += u[j][2] * q_k[i];
         s.mixed += w_next[i] * w_after[j];
         s.w_square += w[i] * w[j];
       }
     }
 
-    template <class Series>
-    void add_felt(std::size_t i, std::size_t j, const Series& felt, Sums& s) const {
-      const Components<double>& u = felt.u[j];
-      const Components<double>& g = felt.g[j];
-      s.guide += row_x[i] * u.x + row_y[i] * u.y + row_z[i] * u.z;
-      s.gravity += row_x[i] * g.x + row_y[i] * g.y + row_z[i] * g.z;
+    [[gnu::always_inline]] void add_felt(std::size_t i, std::size_t j, const ChangingFelt& felt,
+                                         Sums& s) const {
+      s.guide += turn_back[i] * felt.u[j];
+      if constexpr (pulled) s.gravity += turn_back[i] * felt.g[j];
     }
   };
 
@@ -197,49 +232,32 @@ class AttitudeSeries {
     if (k > 0) term(std::size_t(k), 0);
   }
 
-  /// R, of a quaternion whose norm is 1/sqrt(scale).
-  [[nodiscard]] static Turn<double> turn(const Sums& s, double scale) {
-    const double xx = s.square[0], yy = s.square[1], zz = s.square[2], ww = s.by_w[3];
-    const double xy = s.next[0], yz = s.next[1], zx = s.next[2];
-    const double xw = s.by_w[0], yw = s.by_w[1], zw = s.by_w[2];
-    const double twice = 2 * scale;
-    return {scale * (ww + xx - yy - zz), twice * (xy - zw),           twice * (zx + yw),
-            twice * (xy + zw),           scale * (ww - xx + yy - zz), twice * (yz - xw),
-            twice * (zx - yw),           twice * (yz + xw),           scale * (ww - xx - yy + zz)};
-  }
-
-  [[nodiscard]] Components<double> gyroscopic_torque(const Sums& s) const {
-    const Components<double> mixed{s.mixed[0], s.mixed[1], s.mixed[2]};
-    if constexpr (on_resal_axes) {
-      return mixed;
-    } else {
-      return tensor_.gyroscopic_torque(
-          mixed, Components<double>{s.w_square[0], s.w_square[1], s.w_square[2]});
-    }
+  [[nodiscard]] Four moment(const Four& w, const Sums& sums) const {
+    Four sum = sums.mixed;
+    if constexpr (!on_resal_axes) sum = tensor_.gyroscopic_torque(sums.mixed, sums.w_square);
+    if constexpr (!Momentum::absent) sum += cross(momentum_, w);
+    if constexpr (pulled) sum += cross(first_moment_, sums.gravity);
+    return sum;
   }
 
   [[nodiscard]] auto felt_now(double t, double h, int order) {
     if constexpr (guide_changes) {
-      return felt_.at(t, h, order);
+      const GuideSeries series = felt_.at(t, h, order);
+      ChangingFelt felt;
+      for (std::size_t k = 0; k <= std::size_t(order); ++k) {
+        felt.u[k] = Cycles(four(series.u[k]));
+        felt.g[k] = Cycles(four(series.g[k]));
+      }
+      return felt;
     } else {
-      return felt_;
+      return SteadyFelt{Cycles(four(felt_.u)), Cycles(four(felt_.g))};
     }
   }
 
-  /// R^t v, of a vector that rests in the guide; of a series it has been summed up.
-  template <class V>
-  [[nodiscard]] static auto turned_back(const Turn<double>& R, const V& v, const Four& sum) {
-    if constexpr (guide_changes) {
-      return Components<double>{sum[0], sum[1], sum[2]};
-    } else {
-      return detail::turned_back(R, v);
-    }
-  }
-
-  Tensor tensor_;
-  FirstMoment first_moment_;
+  TensorOfFour<Tensor> tensor_;
+  Four first_moment_;
   Felt felt_;
-  Momentum momentum_;
+  Four momentum_;
 };
 
 }  // namespace kreisel::detail

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -158,18 +157,11 @@ class PrincipalTensor {
   /// body keeps its spin to the last bit.
   template <class N>
   [[nodiscard]] Components<N> gyroscopic_torque(const Components<N>& w) const {
-    return gyroscopic_torque(Components<N>{w.y * w.z, w.z * w.x, w.x * w.y}, NoVector{});
+    return {N(differences_.x * (w.y * w.z)), N(differences_.y * (w.z * w.x)),
+            N(differences_.z * (w.x * w.y))};
   }
 
-  /// The same from the products (w_y w_z, w_z w_x, w_x w_y) and the squares of w.
-  template <class N, class Squares>
-  [[nodiscard]] Components<N> gyroscopic_torque(const Components<N>& mixed,
-                                                const Squares& /*squares*/) const {
-    return {N(differences_.x * mixed.x), N(differences_.y * mixed.y), N(differences_.z * mixed.z)};
-  }
-
-  /// Of a body of revolution about z.
-  [[nodiscard]] std::array<P, 2> across_and_along() const { return {moments_.x, moments_.z}; }
+  [[nodiscard]] Symmetric3<P> tensor() const { return {moments_.x, moments_.y, moments_.z}; }
 
   /// Theta^-1 M. By division: a rounded inverse would err always to the same side.
   template <class N>
@@ -194,6 +186,8 @@ class GeneralTensor {
         l_yz_((T.yz - l_xy_ * T.xz) / d_y_),
         d_z_(T.zz - l_xz_ * T.xz - l_yz_ * l_yz_ * d_y_) {}
 
+  [[nodiscard]] Symmetric3<double> tensor() const { return tensor_; }
+
   /// -w x (Theta w)
   template <class N>
   [[nodiscard]] Components<N> gyroscopic_torque(const Components<N>& w) const {
@@ -201,16 +195,6 @@ class GeneralTensor {
                           N(tensor_.xy * w.x + tensor_.yy * w.y + tensor_.yz * w.z),
                           N(tensor_.xz * w.x + tensor_.yz * w.y + tensor_.zz * w.z)};
     return cross(L, w);
-  }
-
-  /// The same from the products (w_y w_z, w_z w_x, w_x w_y) and the squares of w.
-  [[nodiscard]] Components<double> gyroscopic_torque(const Components<double>& mixed,
-                                                     const Components<double>& squares) const {
-    const Symmetric3<double>& T = tensor_;
-    return {
-        (T.yy - T.zz) * mixed.x + T.yz * (squares.z - squares.y) + T.xy * mixed.y - T.xz * mixed.z,
-        (T.zz - T.xx) * mixed.y + T.xz * (squares.x - squares.z) + T.yz * mixed.z - T.xy * mixed.x,
-        (T.xx - T.yy) * mixed.z + T.xy * (squares.y - squares.x) + T.xz * mixed.x - T.yz * mixed.y};
   }
 
   /// Theta^-1 M. A positive definite matrix needs no pivoting.
