@@ -7,6 +7,10 @@
 /// Zeros that are known when the program is compiled. Formulas are written once, for all that may
 /// be there; what a scene does not have is Absent by its type, and takes with it all that it
 /// multiplies.
+///
+/// Products of vectors and rotations are always put where they are called. As functions of their own,
+/// which g++ -O2 makes of them, they would read packed what the caller has just stored one by one,
+/// and the processor would wait: fields took twice as long.
 
 namespace kreisel::detail {
 
@@ -99,7 +103,8 @@ template <class X, class Y, class Z, class S>
 }
 
 template <class X, class Y, class Z, class P, class Q, class R>
-[[nodiscard]] auto cross(const Components<X, Y, Z>& a, const Components<P, Q, R>& b) {
+[[nodiscard, gnu::always_inline]] inline auto cross(const Components<X, Y, Z>& a,
+                                                    const Components<P, Q, R>& b) {
   using First = Total<Product<Y, R>, Product<Z, Q>>;
   using Second = Total<Product<Z, P>, Product<X, R>>;
   using Third = Total<Product<X, Q>, Product<Y, P>>;
@@ -133,7 +138,8 @@ struct Turn {
 
 /// R v
 template <class S, class X, class Y, class Z>
-[[nodiscard]] auto turned(const Turn<S>& R, const Components<X, Y, Z>& v) {
+[[nodiscard, gnu::always_inline]] inline auto turned(const Turn<S>& R,
+                                                     const Components<X, Y, Z>& v) {
   using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
   return Components<N>{N(R.xx * v.x + R.xy * v.y + R.xz * v.z),
                        N(R.yx * v.x + R.yy * v.y + R.yz * v.z),
@@ -142,7 +148,8 @@ template <class S, class X, class Y, class Z>
 
 /// R^t v
 template <class S, class X, class Y, class Z>
-[[nodiscard]] auto turned_back(const Turn<S>& R, const Components<X, Y, Z>& v) {
+[[nodiscard, gnu::always_inline]] inline auto turned_back(const Turn<S>& R,
+                                                          const Components<X, Y, Z>& v) {
   using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
   return Components<N>{N(R.xx * v.x + R.yx * v.y + R.zx * v.z),
                        N(R.xy * v.x + R.yy * v.y + R.zy * v.z),

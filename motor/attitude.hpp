@@ -59,8 +59,8 @@ struct YawPitchRoll {
 ///
 /// Units  : rad/s
 template <class S>
-[[nodiscard]] Eigen::Matrix<S, 4, 1> attitude_rate(const Eigen::Quaternion<S>& q,
-                                                   const Vector3<S>& w) {
+[[nodiscard, gnu::always_inline]] inline Eigen::Matrix<S, 4, 1> attitude_rate(
+    const Eigen::Quaternion<S>& q, const Vector3<S>& w) {
   const S x = w.x() / S(2);
   const S y = w.y() / S(2);
   const S z = w.z() / S(2);
