@@ -4,9 +4,9 @@
 #include <cstddef>
 
 #include <dynamics/guide/series.hpp>
-#include <dynamics/scene/four.hpp>
 #include <dynamics/scene/tensor_of_four.hpp>
 #include <motor/absent.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel::detail {
 

@@ -12,6 +12,7 @@
 #include <dynamics/scene/structure.hpp>
 #include <dynamics/scene/terms.hpp>
 #include <motor/attitude.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel {
 
@@ -65,8 +66,8 @@ class AxisymmetricBody {
         body_.template rates<N>(t, Eigen::Matrix<N, 7, 1>(y.template head<7>()));
     const Eigen::Matrix<N, 4, 1> dq =
         attitude_rate(Eigen::Quaternion<N>(y[3], y[0], y[1], y[2]), Vector3<N>(x, y[5], N(0)));
-    return Eigen::Matrix<N, 8, 1>(dq[0], dq[1], dq[2], dq[3], N(as_body[4] - z * y[5]),
-                                  N(as_body[5] + z * x), as_body[6], z);
+    return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], as_body[4] - z * y[5],
+                               as_body[5] + z * x, as_body[6], z);
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 

@@ -24,6 +24,7 @@
 #include <dynamics/step/lanes.hpp>
 #include <motor/absent.hpp>
 #include <motor/error.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel {
 
@@ -790,14 +791,7 @@ class CardanGyro {
     }
     S ddf(0);
     if constexpr (!regulated) ddf = (on_rotor - k.twist) / C_1 - S(k.dz_2 + sb * dda);
-    Eigen::Matrix<S, 6, 1> dy;
-    dy[0] = y[3];
-    dy[1] = y[4];
-    dy[2] = y[5];
-    dy[3] = dda;
-    dy[4] = ddb;
-    dy[5] = ddf;
-    return dy;
+    return detail::gathered<S>(y[3], y[4], y[5], dda, ddb, ddf);
   }
 
   /// Out of line, so that the plain ones are not.

@@ -19,6 +19,7 @@
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel {
 
@@ -116,7 +117,7 @@ class BasicEulerTop {
     }
     const detail::Components<N> dw = tensor_.solve(torque);
     const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, w);
-    return Eigen::Matrix<N, 7, 1>(dq[0], dq[1], dq[2], dq[3], dw.x, dw.y, dw.z);
+    return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], dw.x, dw.y, dw.z);
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 

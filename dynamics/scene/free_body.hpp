@@ -21,6 +21,7 @@
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel {
 
@@ -121,22 +122,8 @@ class FreeBody {
         loads_);
     const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
     const auto dr = turned(turn, detail::components(v));
-    // One by one: Eigen's list of many would fill blocks.
-    Eigen::Matrix<N, 13, 1> dy;
-    dy[0] = dq[0];
-    dy[1] = dq[1];
-    dy[2] = dq[2];
-    dy[3] = dq[3];
-    dy[4] = dr.x;
-    dy[5] = dr.y;
-    dy[6] = dr.z;
-    dy[7] = dV.angular.x;
-    dy[8] = dV.angular.y;
-    dy[9] = dV.angular.z;
-    dy[10] = dV.linear.x;
-    dy[11] = dV.linear.y;
-    dy[12] = dV.linear.z;
-    return dy;
+    return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], dr.x, dr.y, dr.z, dV.angular.x,
+                               dV.angular.y, dV.angular.z, dV.linear.x, dV.linear.y, dV.linear.z);
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 

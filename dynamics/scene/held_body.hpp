@@ -23,6 +23,7 @@
 #include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel {
 
@@ -134,7 +135,7 @@ class HeldBody {
         },
         loads_);
     const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
-    return Eigen::Matrix<N, 7, 1>(dq[0], dq[1], dq[2], dq[3], du.x, du.y, du.z);
+    return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], du.x, du.y, du.z);
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <dynamics/scene/four.hpp>
 #include <dynamics/scene/structure.hpp>
 #include <motor/absent.hpp>
+#include <motor/four.hpp>
 
 namespace kreisel::detail {
 

@@ -209,9 +209,13 @@ class ExplicitSteps {
   }
 
   void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
-    typename Memory::Passing rate = stage_.rate(k);
-    evaluate(t, y, rate);
-    stage_.keep(k, rate);
+    if constexpr (Memory::fixed) {
+      effort_.evaluations += 1;
+      alignas(detail::Four) const Vector rate = detail::rate_of(field_, t, y);
+      stage_.keep(k, rate);
+    } else {
+      evaluate(t, y, stage_.rate(k));
+    }
   }
 
   /// Where a row of coefficients is not 0.
@@ -236,7 +240,9 @@ class ExplicitSteps {
       return stage_.nothing();
     } else {
       return [this]<std::size_t... k>(std::index_sequence<k...>) {
-        return Memory::sum((... + (static_cast<Scalar>(row[places[k]]) * stage_[places[k]])));
+        return Memory::sum([this](const auto& part) {
+          return (... + (static_cast<Scalar>(row[places[k]]) * part(stage_[places[k]])));
+        });
       }
       (std::make_index_sequence<places.size() - without_last>());
     }
@@ -271,9 +277,11 @@ class ExplicitSteps {
   [[nodiscard]] auto mean_rate() const {
     constexpr auto& places = occupied<Tableau::b>;
     return [this]<std::size_t... k>(std::index_sequence<k...>) {
-      return Memory::sum((
-          (rest_of_weights.first * stage_[0] + rest_of_weights.last * stage_[Tableau::stages - 1]) +
-          ... + (static_cast<Scalar>(Tableau::b[places[k]]) * stage_[places[k]])));
+      return Memory::sum([this](const auto& part) {
+        return ((rest_of_weights.first * part(stage_[0]) +
+                 rest_of_weights.last * part(stage_[Tableau::stages - 1])) +
+                ... + (static_cast<Scalar>(Tableau::b[places[k]]) * part(stage_[places[k]])));
+      });
     }
     (std::make_index_sequence<places.size()>());
   }
@@ -293,7 +301,7 @@ class ExplicitSteps {
       // Only the last stage is waited for.
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
-      typename Memory::Passing point = stage_.point();
+      alignas(detail::Four) typename Memory::Passing point = stage_.point();
       point = state_.value + (h * Memory::own(combined<row<k>, 1>()) + state_.rest);
       point += weight * Memory::own(stage_[last]);
       fill_stage(k, stage_time(time_, h, Tableau::node[k]), point);

@@ -217,9 +217,7 @@ class GaussSteps {
 
   [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
     effort_.evaluations += 1;
-    Vector rate(y.size());
-    detail::call(field_, t, y, rate);
-    return rate;
+    return detail::rate_of(field_, t, y);
   }
 
   void take_length(long double length) {
@@ -244,7 +242,8 @@ class GaussSteps {
       for (int i = 0; i < stages; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Vector sum = stage_.lazyProduct(ratio_.col(i));
-        const Vector f = evaluate(t() + (node_[at] + time_.rest), y() + (sum + state_.rest));
+        alignas(detail::Four) const Vector point = y() + (sum + state_.rest);
+        alignas(detail::Four) const Vector f = evaluate(t() + (node_[at] + time_.rest), point);
         const Vector z = weight_[at] * f + weight_rest_[at] * f;
         change = change.cwiseMax((z - stage_.col(i)).cwiseAbs());
         stage_.col(i) = z;  // the stages after this one take the new value already

@@ -57,15 +57,12 @@ template <int n, class Field>
     Field own = field;  // which may write into a workspace
     const double little = std::sqrt(std::numeric_limits<double>::epsilon());
     const double size = std::max(y.cwiseAbs().maxCoeff(), 1e-3);
-    Vector f(y.size());
-    detail::call(own, t, y, f);
-    Vector f_moved(y.size());
+    const Vector f = detail::rate_of(own, t, y);
     Jacobian<n> jacobian{{y.size(), y.size()}, Vector::Zero(y.size())};
     for (int j = 0; j < int(y.size()); ++j) {
       Vector moved = y;
       moved[j] += little * std::max(std::abs(y[j]), 1e-3 * size);
-      detail::call(own, t, moved, f_moved);
-      jacobian.of_state.col(j) = (f_moved - f) / (moved[j] - y[j]);
+      jacobian.of_state.col(j) = (detail::rate_of(own, t, moved) - f) / (moved[j] - y[j]);
     }
     return jacobian;
   };

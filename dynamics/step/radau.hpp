@@ -327,9 +327,7 @@ class RadauSteps {
 
   [[nodiscard]] Vector evaluate(double t, const Vector& y) {
     effort_.evaluations += 1;
-    Vector rate(y.size());
-    detail::call(field_, t, y, rate);
-    return rate;
+    return detail::rate_of(field_, t, y);
   }
 
   void note_jacobian() {

@@ -72,6 +72,18 @@ void call(Field& field, const S& t, const Vector& y, Vector& rate) {
   }
 }
 
+/// The same as a new vector. What a field returns is that vector, wherever the caller puts it.
+template <class Field, class S, class Vector>
+[[nodiscard]] Vector rate_of(Field& field, const S& t, const Vector& y) {
+  if constexpr (writes_in_place<Field, S, Vector>) {
+    Vector rate(y.size());
+    field(t, y, rate);
+    return rate;
+  } else {
+    return field(t, y);
+  }
+}
+
 /// A time just on this side of t where the field jumps at t, as seen from `side`; else t.
 template <class S>
 [[nodiscard]] S on_this_side(const S& t, const S& side, const std::vector<S>& jumps) {

@@ -4,29 +4,45 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
+#include <utility>
+
+#include <motor/four.hpp>
 
 namespace kreisel::detail {
 
 /// The stages of an explicit method, and the vectors that it needs only in passing.
 ///
-/// Of a size known to the compiler: stages are filled up with zeros to whole packets of 4, for 7
-/// numbers would be added one by one; what passes stays in registers and on the stack.
+/// Of a size known to the compiler: stages are filled up with zeros to whole fours, which are stored,
+/// read and summed up as such (Eigen would take eight at once where it can, read from two stores, and
+/// wait for them); what passes stays in registers and on the stack.
 template <class Vector, std::size_t stages, int components = int(Vector::RowsAtCompileTime)>
 class StageMemory {
+  using Scalar = typename Vector::Scalar;
+  static constexpr bool by_fours = std::is_same_v<Scalar, double>;
+
  public:
   static constexpr bool fixed = true;
-  static constexpr int padded = components < 3 ? components : (components + 3) / 4 * 4;
-  using Stage = Eigen::Matrix<typename Vector::Scalar, padded, 1>;
+  static constexpr int padded = components < 3 && !by_fours ? components : (components + 3) / 4 * 4;
+  using Stage = Eigen::Matrix<Scalar, padded, 1>;
   using Passing = Vector;
 
   explicit StageMemory(const Vector& /*y*/) { stage_.fill(Stage::Zero()); }
 
   [[nodiscard]] const Stage& operator[](std::size_t k) const { return stage_[k]; }
 
-  /// Where the field writes stage k, which then is to be kept.
-  [[nodiscard]] static Vector rate(std::size_t /*k*/) { return {}; }
   void keep(std::size_t k, const Vector& rate) {
-    for (int i = 0; i < components; ++i) stage_[k][i] = rate[i];
+    if constexpr (by_fours) {
+      const auto number = [&rate](int i) { return i < components ? rate[i] : 0.0; };
+      [&]<int... i>(std::integer_sequence<int, i...>) {
+        (Four(number(4 * i), number(4 * i + 1), number(4 * i + 2), number(4 * i + 3))
+             .to(stage_[k].data() + 4 * i),
+         ...);
+      }
+      (std::make_integer_sequence<int, padded / 4>());
+    } else {
+      for (int i = 0; i < components; ++i) stage_[k][i] = rate[i];
+    }
   }
 
   [[nodiscard]] static Vector point() { return {}; }
@@ -35,10 +51,20 @@ class StageMemory {
 
   [[nodiscard]] static Stage nothing() { return Stage::Zero(); }
 
-  /// A sum of multiples of stages, computed at once.
+  /// A sum of multiples of stages: terms(part) sums up what part(stage) takes of each.
   template <class Terms>
   [[nodiscard]] static Stage sum(const Terms& terms) {
-    return terms;
+    if constexpr (by_fours) {
+      Stage total;
+      for (int i = 0; i < padded; i += 4) {
+        terms([i](const Stage& stage) {
+          return Four::from(stage.data() + i);
+        }).to(total.data() + i);
+      }
+      return total;
+    } else {
+      return terms([](const Stage& stage) -> const Stage& { return stage; });
+    }
   }
 
   /// The part of a stage that is the state's own.
@@ -61,7 +87,6 @@ class StageMemory<Vector, stages, Eigen::Dynamic> {
   [[nodiscard]] const Vector& operator[](std::size_t k) const { return stage_[k]; }
 
   [[nodiscard]] Vector& rate(std::size_t k) { return stage_[k]; }
-  void keep(std::size_t k, const Vector& rate) { stage_[k] = rate; }
 
   [[nodiscard]] Vector& point() { return point_; }
   [[nodiscard]] Vector& change() { return change_; }
@@ -70,8 +95,8 @@ class StageMemory<Vector, stages, Eigen::Dynamic> {
   [[nodiscard]] auto nothing() const { return Vector::Zero(point_.size()); }
 
   template <class Terms>
-  [[nodiscard]] static Terms sum(const Terms& terms) {
-    return terms;
+  [[nodiscard]] static auto sum(const Terms& terms) {
+    return terms([](const Vector& stage) -> const Vector& { return stage; });
   }
 
   template <class Terms>

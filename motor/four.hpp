@@ -1,13 +1,21 @@
 #pragma once
 
+#include <Eigen/Core>
+
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
 #include <motor/absent.hpp>
 
 namespace kreisel::detail {
 
 /// A vector (x, y, z) and a fourth number w, which the processor takes all at once, or two at a time.
 ///
-/// Not Eigen's: the compiler puts such an array together in memory, number by number, and the
-/// processor has to wait where it is read at once as four.
+/// What has just been stored number by number cannot be read as four without a wait of some ten
+/// operations. That is what becomes of arrays of Eigen's that are put together from numbers; these
+/// are put together in registers. For the same reason what is to be read at once should not lie
+/// across two lines of the cache: alignas(Four).
 class Four {
  public:
   Four() = default;  // any numbers
@@ -16,6 +24,13 @@ class Four {
 #else
   Four(double x, double y, double z, double w) : part_{{x, y}, {z, w}} {}
 #endif
+
+  [[nodiscard]] static Four from(const double* numbers) {
+    Four result;
+    std::memcpy(&result.part_, numbers, sizeof result.part_);
+    return result;
+  }
+  void to(double* numbers) const { std::memcpy(numbers, &part_, sizeof part_); }
 
   [[nodiscard]] double operator[](int i) const { return part_[i / width][i % width]; }
 
@@ -67,6 +82,32 @@ class Four {
 
   Part part_[parts];
 };
+
+/// Numbers that were computed one by one, stored as they will be read: four at once, or two.
+template <class N, class... X>
+[[nodiscard, gnu::always_inline]] inline auto gathered(const X&... numbers) {
+  constexpr int count = int(sizeof...(X));
+  const N all[] = {N(numbers)...};
+  Eigen::Matrix<N, count, 1> result;
+  if constexpr (std::is_same_v<N, double>) {
+    // Not loops, which the compiler would unroll only after it has stored all[].
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      (Four(all[4 * i], all[4 * i + 1], all[4 * i + 2], all[4 * i + 3]).to(result.data() + 4 * i),
+       ...);
+    }
+    (std::make_integer_sequence<int, count / 4>());
+    constexpr int left = count % 4;
+    if constexpr (left >= 2) {
+      using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+      const Pair pair{all[count - left], all[count - left + 1]};
+      std::memcpy(result.data() + count - left, &pair, sizeof pair);
+    }
+    if constexpr (left % 2 == 1) result[count - 1] = all[count - 1];
+  } else {
+    for (int i = 0; i < count; ++i) result[i] = all[i];
+  }
+  return result;
+}
 
 /// Absent components come out as 0, and so does w.
 template <class X, class Y, class Z>

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include <dynamics/scene/four.hpp>
 #include <dynamics/scene/structure.hpp>
 #include <dynamics/scene/tensor_of_four.hpp>
+#include <motor/four.hpp>
 
 #include <support/sample.hpp>
 
@@ -35,54 +35,6 @@ Symmetric3<double> random_tensor(test::Sample& sample) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(four_numbers)
-
-BOOST_AUTO_TEST_CASE(calculate_each_by_itself) {
-  const Four a(1, -2, 3, 5);
-  const Four b(0.5, 4, -8, 2);
-  Four c = a;
-  c += b;
-  const Four sum = a + b;
-  const Four difference = a - b;
-  const Four product = a * b;
-  const Four quotient = a / b;
-  const Four twice = 2 * a;
-  for (int i = 0; i < 4; ++i) {
-    BOOST_TEST(sum[i] == a[i] + b[i]);
-    BOOST_TEST(c[i] == sum[i]);
-    BOOST_TEST(difference[i] == a[i] - b[i]);
-    BOOST_TEST(product[i] == a[i] * b[i]);
-    BOOST_TEST(quotient[i] == a[i] / b[i]);
-    BOOST_TEST(twice[i] == 2 * a[i]);
-  }
-}
-
-BOOST_AUTO_TEST_CASE(go_round) {
-  const Four a(1, 2, 3, 4);
-  const Four next = a.next();
-  const Four after = a.after();
-  BOOST_TEST((next[0] == 2 && next[1] == 3 && next[2] == 1 && next[3] == 4));
-  BOOST_TEST((after[0] == 3 && after[1] == 1 && after[2] == 2 && after[3] == 4));
-}
-
-BOOST_AUTO_TEST_CASE(take_absent_components_for_0) {
-  const Four a = detail::four(detail::Components<double, detail::Absent, double>{2, {}, -1});
-  BOOST_TEST((a[0] == 2 && a[1] == 0 && a[2] == -1 && a[3] == 0));
-}
-
-BOOST_AUTO_TEST_CASE(have_the_product_of_vectors) {
-  test::Sample sample(1);
-  for (int i = 0; i < 100; ++i) {
-    const Vector3<double> a = random_vector(sample);
-    const Vector3<double> b = random_vector(sample);
-    const Four product = cross(four(a), four(b));
-    BOOST_TEST((vector(product) - a.cross(b)).norm() <= 4 * u * a.norm() * b.norm());
-    BOOST_TEST(product[3] == 0);
-  }
-}
-
-BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(tensors_of_four)
 

@@ -1,0 +1,92 @@
+#include <boost/test/unit_test.hpp>
+
+#include <limits>
+
+#include <motor/four.hpp>
+
+#include <support/sample.hpp>
+
+using namespace kreisel;
+using detail::Four;
+
+namespace {
+
+constexpr double u = std::numeric_limits<double>::epsilon() / 2;
+
+Four four(const Vector3<double>& v) { return {v.x(), v.y(), v.z(), 0}; }
+
+Vector3<double> vector(const Four& a) { return {a[0], a[1], a[2]}; }
+
+Vector3<double> random_vector(test::Sample& sample) {
+  return {sample.uniform(-1, 1), sample.uniform(-1, 1), sample.uniform(-1, 1)};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(four_numbers)
+
+BOOST_AUTO_TEST_CASE(calculate_each_by_itself) {
+  const Four a(1, -2, 3, 5);
+  const Four b(0.5, 4, -8, 2);
+  Four c = a;
+  c += b;
+  const Four sum = a + b;
+  const Four difference = a - b;
+  const Four product = a * b;
+  const Four quotient = a / b;
+  const Four twice = 2 * a;
+  for (int i = 0; i < 4; ++i) {
+    BOOST_TEST(sum[i] == a[i] + b[i]);
+    BOOST_TEST(c[i] == sum[i]);
+    BOOST_TEST(difference[i] == a[i] - b[i]);
+    BOOST_TEST(product[i] == a[i] * b[i]);
+    BOOST_TEST(quotient[i] == a[i] / b[i]);
+    BOOST_TEST(twice[i] == 2 * a[i]);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(go_round) {
+  const Four a(1, 2, 3, 4);
+  const Four next = a.next();
+  const Four after = a.after();
+  BOOST_TEST((next[0] == 2 && next[1] == 3 && next[2] == 1 && next[3] == 4));
+  BOOST_TEST((after[0] == 3 && after[1] == 1 && after[2] == 2 && after[3] == 4));
+}
+
+BOOST_AUTO_TEST_CASE(take_absent_components_for_0) {
+  const Four a = detail::four(detail::Components<double, detail::Absent, double>{2, {}, -1});
+  BOOST_TEST((a[0] == 2 && a[1] == 0 && a[2] == -1 && a[3] == 0));
+}
+
+BOOST_AUTO_TEST_CASE(have_the_product_of_vectors) {
+  test::Sample sample(1);
+  for (int i = 0; i < 100; ++i) {
+    const Vector3<double> a = random_vector(sample);
+    const Vector3<double> b = random_vector(sample);
+    const Four product = cross(four(a), four(b));
+    BOOST_TEST((vector(product) - a.cross(b)).norm() <= 4 * u * a.norm() * b.norm());
+    BOOST_TEST(product[3] == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(come_from_memory_and_go_there) {
+  alignas(Four) const double numbers[] = {1, -2, 3, -4};
+  alignas(Four) double copy[4];
+  Four::from(numbers).to(copy);
+  for (int i = 0; i < 4; ++i) BOOST_TEST(copy[i] == numbers[i]);
+}
+
+BOOST_AUTO_TEST_CASE(are_gathered_in_their_order) {
+  const auto hold = []<class N>(const auto& vector, const N&) {
+    for (int i = 0; i < vector.size(); ++i) BOOST_TEST(vector[i] == N(i + 1));
+  };
+  hold(detail::gathered<double>(1), 0.0);
+  hold(detail::gathered<double>(1, 2.0), 0.0);
+  hold(detail::gathered<double>(1, 2, 3), 0.0);
+  hold(detail::gathered<double>(1, 2, 3, 4), 0.0);
+  hold(detail::gathered<double>(1, 2, 3, 4, 5, 6, 7), 0.0);
+  hold(detail::gathered<double>(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13), 0.0);
+  hold(detail::gathered<long double>(1, 2.0F, 3.0L, 4, 5), 0.0L);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
