@@ -57,11 +57,16 @@ class PowerSeries {
     if (b.order_ == 0) return {b[0] * a.coefficient_, a.order_};
     PowerSeries c;
     c.order_ = std::max(a.order_, b.order_);
-    // Four coefficients at a time; what is read before the first of b is 0.
+    // Four coefficients at a time; what is read before the first of b is 0. By two sums each, for what
+    // is added to one waits for what was added before.
     for (int k = 0; k <= c.order_; k += 4) {
-      Eigen::Array4d sum = Eigen::Array4d::Zero();
-      for (int i = 0; i <= k + 3; ++i) sum += a[i] * b.coefficient_.segment<4>(zeros + k - i);
-      c.coefficient_.segment<4>(zeros + k) = sum;
+      Eigen::Array4d even = Eigen::Array4d::Zero();
+      Eigen::Array4d odd = Eigen::Array4d::Zero();
+      for (int i = 0; i <= k + 3; i += 2) {
+        even += a[i] * b.coefficient_.segment<4>(zeros + k - i);
+        odd += a[i + 1] * b.coefficient_.segment<4>(zeros + k - i - 1);
+      }
+      c.coefficient_.segment<4>(zeros + k) = even + odd;
     }
     for (int k = c.order_ + 1; k < places - zeros; ++k) c[k] = 0;
     return c;
@@ -143,15 +148,19 @@ class PowerSeries {
     s.order_ = c.order_ = a.order_;
     int bends = a.order_;  // the last coefficient of a that is not 0
     while (bends > 1 && a[bends] == 0) --bends;
+    PowerSeries slope;  // h da/dt, a place higher
+    for (int i = 1; i <= bends; ++i) slope[i] = i * a[i];
     for (int k = 1; k <= a.order_; ++k) {
-      double ds = 0;
-      double dc = 0;
-      for (int i = 1; i <= std::min(k, bends); ++i) {
-        ds += i * a[i] * c[k - i];
-        dc -= i * a[i] * s[k - i];
+      double s_odd = 0, s_even = 0, c_odd = 0, c_even = 0;
+      // The last terms may be one too many: there the slope is 0, or the coefficient before the first.
+      for (int i = 1; i <= std::min(k, bends); i += 2) {
+        s_odd += slope[i] * c[k - i];
+        c_odd -= slope[i] * s[k - i];
+        s_even += slope[i + 1] * c[k - i - 1];
+        c_even -= slope[i + 1] * s[k - i - 1];
       }
-      s[k] = ds / k;
-      c[k] = dc / k;
+      s[k] = (s_odd + s_even) / k;
+      c[k] = (c_odd + c_even) / k;
     }
     return {s, c};
   }
