@@ -87,9 +87,9 @@ class Four {
 template <class N, class... X>
 [[nodiscard, gnu::always_inline]] inline auto gathered(const X&... numbers) {
   constexpr int count = int(sizeof...(X));
-  const N all[] = {N(numbers)...};
   Eigen::Matrix<N, count, 1> result;
   if constexpr (std::is_same_v<N, double>) {
+    const double all[] = {double(numbers)...};
     // Not loops, which the compiler would unroll only after it has stored all[].
     [&]<int... i>(std::integer_sequence<int, i...>) {
       (Four(all[4 * i], all[4 * i + 1], all[4 * i + 2], all[4 * i + 3]).to(result.data() + 4 * i),
@@ -104,7 +104,8 @@ template <class N, class... X>
     }
     if constexpr (left % 2 == 1) result[count - 1] = all[count - 1];
   } else {
-    for (int i = 0; i < count; ++i) result[i] = all[i];
+    int i = 0;
+    ((result[i++] = N(numbers)), ...);
   }
   return result;
 }

@@ -211,7 +211,7 @@ class ExplicitSteps {
   void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
     if constexpr (Memory::fixed) {
       effort_.evaluations += 1;
-      alignas(detail::Four) const Vector rate = detail::rate_of(field_, t, y);
+      alignas(detail::Four) alignas(Vector) const Vector rate = detail::rate_of(field_, t, y);
       stage_.keep(k, rate);
     } else {
       evaluate(t, y, stage_.rate(k));
@@ -301,7 +301,7 @@ class ExplicitSteps {
       // Only the last stage is waited for.
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
-      alignas(detail::Four) typename Memory::Passing point = stage_.point();
+      alignas(detail::Four) alignas(Vector) typename Memory::Passing point = stage_.point();
       point = state_.value + (h * Memory::own(combined<row<k>, 1>()) + state_.rest);
       point += weight * Memory::own(stage_[last]);
       fill_stage(k, stage_time(time_, h, Tableau::node[k]), point);

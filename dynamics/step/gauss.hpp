@@ -242,8 +242,9 @@ class GaussSteps {
       for (int i = 0; i < stages; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Vector sum = stage_.lazyProduct(ratio_.col(i));
-        alignas(detail::Four) const Vector point = y() + (sum + state_.rest);
-        alignas(detail::Four) const Vector f = evaluate(t() + (node_[at] + time_.rest), point);
+        alignas(detail::Four) alignas(Vector) const Vector point = y() + (sum + state_.rest);
+        alignas(detail::Four) alignas(Vector) const Vector f =
+            evaluate(t() + (node_[at] + time_.rest), point);
         const Vector z = weight_[at] * f + weight_rest_[at] * f;
         change = change.cwiseMax((z - stage_.col(i)).cwiseAbs());
         stage_.col(i) = z;  // the stages after this one take the new value already

@@ -19,7 +19,8 @@ namespace kreisel::detail {
 template <class Vector, std::size_t stages, int components = int(Vector::RowsAtCompileTime)>
 class StageMemory {
   using Scalar = typename Vector::Scalar;
-  static constexpr bool by_fours = std::is_same_v<Scalar, double>;
+  // Longer ones are mostly packs of gyros side by side, stored as long as they are read.
+  static constexpr bool by_fours = std::is_same_v<Scalar, double> && components <= 16;
 
  public:
   static constexpr bool fixed = true;
