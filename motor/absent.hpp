@@ -10,7 +10,7 @@
 ///
 /// Products of vectors and rotations are always put where they are called. As functions of their own,
 /// which g++ -O2 makes of them, they would read packed what the caller has just stored one by one,
-/// and the processor would wait: fields took twice as long.
+/// and the processor would wait.
 
 namespace kreisel::detail {
 

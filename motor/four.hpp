@@ -12,10 +12,10 @@ namespace kreisel::detail {
 
 /// A vector (x, y, z) and a fourth number w, which the processor takes all at once, or two at a time.
 ///
-/// What has just been stored number by number cannot be read as four without a wait of some ten
-/// operations. That is what becomes of arrays of Eigen's that are put together from numbers; these
-/// are put together in registers. For the same reason what is to be read at once should not lie
-/// across two lines of the cache: alignas(Four).
+/// What has just been stored number by number cannot be read as four without a wait. That is what
+/// becomes of arrays of Eigen's that are put together from numbers; these are put together in
+/// registers. For the same reason what is to be read at once should not lie across two lines of the
+/// cache: alignas(Four).
 class Four {
  public:
   Four() = default;  // any numbers
@@ -116,7 +116,7 @@ template <class X, class Y, class Z>
   return {0.0 + a.x, 0.0 + a.y, 0.0 + a.z, 0};
 }
 
-/// Of the vectors in a and b; w comes out as 0.
+/// Of the vectors in a and b, with w = 0.
 [[nodiscard]] inline Four cross(const Four& a, const Four& b) {
   return a.next() * b.after() - a.after() * b.next();
 }

@@ -15,20 +15,11 @@ namespace {
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
-Four four(const Vector3<double>& v) { return {v.x(), v.y(), v.z(), 0}; }
-
 Vector3<double> vector(const Four& a) { return {a[0], a[1], a[2]}; }
-
-Vector3<double> random_vector(test::Sample& sample) {
-  return {sample.uniform(-1, 1), sample.uniform(-1, 1), sample.uniform(-1, 1)};
-}
 
 /// Of a body with moments from 0.2 to 1 on any axes.
 Symmetric3<double> random_tensor(test::Sample& sample) {
-  const Matrix3<double> R = Eigen::Quaterniond(sample.uniform(-1, 1), sample.uniform(-1, 1),
-                                               sample.uniform(-1, 1), sample.uniform(0.1, 1))
-                                .normalized()
-                                .toRotationMatrix();
+  const Matrix3<double> R = sample.rotation();
   const Vector3<double> moments(sample.uniform(0.2, 1), sample.uniform(0.2, 1),
                                 sample.uniform(0.2, 1));
   return Symmetric3<double>::from(R * moments.asDiagonal() * R.transpose());
@@ -53,7 +44,7 @@ BOOST_AUTO_TEST_CASE(have_the_same_gyroscopic_torque) {
   test::Sample sample(2);
   for (int i = 0; i < 100; ++i) {
     const Symmetric3<double> T = random_tensor(sample);
-    const Vector3<double> w = random_vector(sample);
+    const Vector3<double> w = sample.vector();
     hold_gyroscopic_torque(detail::GeneralTensor(T), w);
     hold_gyroscopic_torque(detail::PrincipalTensor<>({T.xx, T.yy, T.zz}), w);
   }
@@ -69,13 +60,13 @@ BOOST_AUTO_TEST_CASE(solve) {
   test::Sample sample(3);
   for (int i = 0; i < 100; ++i) {
     const Symmetric3<double> T = random_tensor(sample);
-    const Vector3<double> M = random_vector(sample);
+    const Vector3<double> M = sample.vector();
     const detail::TensorOfFour<detail::PrincipalTensor<>> principal(
         detail::PrincipalTensor<>({T.xx, T.yy, T.zz}));
-    BOOST_TEST(vector(principal.solve(four(M))) ==
+    BOOST_TEST(vector(principal.solve(four(detail::components(M)))) ==
                M.cwiseQuotient(Vector3<double>(T.xx, T.yy, T.zz)));
     const detail::TensorOfFour<detail::GeneralTensor> general{detail::GeneralTensor(T)};
-    const Four w = general.solve(four(M));
+    const Four w = general.solve(four(detail::components(M)));
     // Moments of 0.2 to 1 make at most 5 times as much of what is rounded.
     BOOST_TEST((T.matrix() * vector(w) - M).norm() <= 5 * 8 * u * M.norm());
     BOOST_TEST(w[3] == 0);
