@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_was_computed_when_interrupted) {
         test::run("( " KREISEL_ENSEMBLE " " + scene("damped_slide") +
                   " --vary 'body.slide.mass*=normal(1,0.1)' --members 1000000 --csv " +
                   (folder.path() / "out.csv").string() + " & pid=$!; sleep " + pause +
-                  "; kill -INT $pid; wait $pid )");
+                  "; while kill -INT $pid; do sleep 0.1; done; wait $pid )");
     BOOST_TEST(outcome.status == 130);
     BOOST_TEST(outcome.err.find(" of 1000000 members were computed") != std::string::npos,
                outcome.err);
