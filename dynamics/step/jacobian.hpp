@@ -56,7 +56,7 @@ template <int n, class Field>
   return [field = std::move(field)](double t, const Vector& y) {
     Field own = field;  // which may write into a workspace
     const double little = std::sqrt(std::numeric_limits<double>::epsilon());
-    const double size = std::max(y.cwiseAbs().maxCoeff(), 1e-3);
+    const double size = std::max(y.template lpNorm<Eigen::Infinity>(), 1e-3);
     const Vector f = detail::rate_of(own, t, y);
     Jacobian<n> jacobian{{y.size(), y.size()}, Vector::Zero(y.size())};
     for (int j = 0; j < int(y.size()); ++j) {

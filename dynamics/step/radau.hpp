@@ -135,7 +135,7 @@ class RadauStages {
     const Eigen::MatrixXd& inverse = coefficients_->inverse;
     const Eigen::Index n = value.rows();
     for (Eigen::Index j = 0; j < value.cols(); ++j) {
-      double* const column = &residual_(0, j);
+      double* const column = residual_.col(j).data();
       for (Eigen::Index i = 0; i < n; ++i) column[i] = inverse(j, 0) * value(i, 0);
       for (Eigen::Index k = 1; k < value.cols(); ++k) {
         for (Eigen::Index i = 0; i < n; ++i) column[i] += inverse(j, k) * value(i, k);

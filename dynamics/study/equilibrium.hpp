@@ -2,7 +2,7 @@
 
 #include <Eigen/QR>
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -62,6 +62,32 @@ namespace detail {
   return result;
 }
 
+/// Newton's step for  f + A step = 0:  the shortest of those that come nearest to it.
+struct NewtonStep {
+  Eigen::VectorXd step;
+  int rank = 0;  ///< of A
+
+  /// threshold : a pivot is 0 below so much of the greatest, times their number
+  NewtonStep(const Eigen::MatrixXd& A, const Eigen::VectorXd& f,
+             double threshold = std::numeric_limits<double>::epsilon())
+      : step(Eigen::VectorXd::Zero(A.cols())) {
+    if (A.size() == 0) return;  // which Eigen's factors do not take
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+    factors.setThreshold(threshold * static_cast<double>(std::min(A.rows(), A.cols())));
+    factors.compute(A);
+    rank = static_cast<int>(factors.rank());
+    step = -factors.solve(f);
+  }
+
+  /// Whether it leaves no rate that rounding does not explain: a body that falls has no equilibrium
+  /// though none of its coordinates makes it fall.
+  [[nodiscard]] bool suffices(const Eigen::MatrixXd& A, const Eigen::VectorXd& f,
+                              double size) const {
+    const Eigen::ArrayXd rounding = 1e-12 * (1 + size * A.cwiseAbs().rowwise().sum().array());
+    return ((f + A * step).array().abs() <= rounding).all();
+  }
+};
+
 }  // namespace detail
 
 /// Newton's method with the exact Jacobian, halving steps that lead uphill. Where equations or
@@ -71,7 +97,7 @@ namespace detail {
 /// Error  : quadratic convergence down to rounding, `step`; linear where the Jacobian is singular
 ///          at the equilibrium only
 /// Throws : InvalidInput for places that are none; ComputationFailed with residual and state where
-///          there is no equilibrium near, or none that the steps reach
+///          there is no equilibrium near, as where a body falls freely, or none that the steps reach
 template <class Scene>
 [[nodiscard]] FoundEquilibrium<typename Scene::Vector> find_equilibrium(
     const Scene& scene, double t, const typename Scene::Vector& guess,
@@ -83,9 +109,7 @@ template <class Scene>
     const Eigen::VectorXd f = scene.rates(t, y);
     return Eigen::VectorXd((tangent.inverse(y) * f)(wanted));
   };
-  const auto greatest = [](const Eigen::VectorXd& v) {
-    return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0.0;
-  };
+  const auto greatest = [](const Eigen::VectorXd& v) { return v.lpNorm<Eigen::Infinity>(); };
 
   FoundEquilibrium<typename Scene::Vector> result;
   result.state = guess;
@@ -94,10 +118,10 @@ template <class Scene>
     const typename Scene::Vector& y = result.state;
     const auto d = detail::derivatives(scene, t, y, tangent.basis(y), detail::InTime::no);
     const Eigen::MatrixXd A = detail::reduced(tangent, y, d).A(wanted, unknown);
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors(A);
-    result.neutral = static_cast<int>(A.cols() - factors.rank());
-    const Eigen::VectorXd newton = -factors.solve(f);
-    const Eigen::VectorXd eta = detail::scattered(tangent.dimension(), unknown, newton);
+    const detail::NewtonStep newton(A, f);
+    const bool suffices = newton.suffices(A, f, 1 + greatest(y));
+    result.neutral = static_cast<int>(A.cols()) - newton.rank;
+    const Eigen::VectorXd eta = detail::scattered(tangent.dimension(), unknown, newton.step);
     double share = 1;
     bool falls = false;
     for (; share > 1e-4 && !falls; share /= 2) {
@@ -109,14 +133,13 @@ template <class Scene>
       f = f_next;
     }
     result.residual = greatest(f);
-    result.step = greatest(newton);
+    result.step = greatest(newton.step);
     const double size = 1 + greatest(result.state);
-    if (result.residual == 0 || result.step <= 4 * std::numeric_limits<double>::epsilon() * size) {
-      return result;
-    }
+    const bool is_small = result.step <= 4 * std::numeric_limits<double>::epsilon() * size;
+    if (result.residual == 0 || (suffices && is_small)) return result;
     if (!falls) {
       // Rounding has the last word, if what is left of the step is nothing else.
-      if (result.step <= 1e-9 * size) return result;
+      if (suffices && result.step <= 1e-9 * size) return result;
       break;
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <sstream>
@@ -109,17 +109,15 @@ template <class Scene>
     const Eigen::VectorXd away =
         tangent.inverse(motion.start) * (motion.period.state - motion.start);
     const Eigen::VectorXd off = away(wanted);
-    motion.residual = off.size() > 0 ? off.cwiseAbs().maxCoeff() : 0;
-    const double size = 1 + motion.start.cwiseAbs().maxCoeff();
+    motion.residual = off.lpNorm<Eigen::Infinity>();
+    const double size = 1 + motion.start.lpNorm<Eigen::Infinity>();
     if (motion.residual <= 1e3 * accuracy.relative * size) return motion;
     const Eigen::MatrixXd identity =
         Eigen::MatrixXd::Identity(tangent.dimension(), tangent.dimension());
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-    factors.setThreshold(1e-9);  // the matrix errs by its steps, not by rounding
-    factors.compute(Eigen::MatrixXd((motion.period.matrix - identity)(wanted, unknown)));
-    const Eigen::VectorXd step = -factors.solve(off);
+    // The matrix errs by its steps, not by rounding.
+    const detail::NewtonStep newton((motion.period.matrix - identity)(wanted, unknown), off, 1e-9);
     motion.start =
-        tangent.moved(motion.start, detail::scattered(tangent.dimension(), unknown, step));
+        tangent.moved(motion.start, detail::scattered(tangent.dimension(), unknown, newton.step));
   }
   std::ostringstream text;
   text.precision(10);

@@ -37,6 +37,20 @@ BOOST_AUTO_TEST_CASE(solves_trees_of_bodies) {
   }
 }
 
+// A tree in which nothing can move has states without a number, which no method minds.
+BOOST_AUTO_TEST_CASE(solves_trees_that_stand_still) {
+  const InertiaTensor<Body> block{{2, {0, 0, -1}, {2.6, 2.6, 0.1}}};
+  const BodySystem system(RestingFrame<>{}, {{.name = "block", .inertia = block}},
+                          UniformGravity<Guide>{{0, 0, -9.81}});
+  BOOST_TEST(system.rest().coordinates.size() == 0);
+  for (const Method method :
+       {Method::automatic, Method::verner98, Method::radau13, Method::gauss16}) {
+    const auto found = solve(system, system.rest(), {.times = {1, 2}, .method = method});
+    BOOST_TEST(found.report.tolerance_kept, name(method));
+    BOOST_TEST(found.states.size() == 2U, name(method));
+  }
+}
+
 // The Cardan gyro with the stiff bearing once more, as three bodies.
 BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
   const Vector3<double> rotor(5e-4, 5e-4, 8e-4), inner(2e-4, 3e-4, 2.5e-4), outer(4e-4, 1, 1);

@@ -80,4 +80,11 @@ BOOST_AUTO_TEST_CASE(keep_the_volume_of_their_neighbours) {
   BOOST_TEST(std::abs(found.matrix.determinant() - 1) <= 1e-9);
 }
 
+BOOST_AUTO_TEST_CASE(of_what_cannot_move_are_there_at_once) {
+  const BodySystem system(RestingFrame<>{}, {wheel(JointKind::fixed)});
+  const auto found = periodic_motion(system, 0, period, system.to_vector(system.rest()));
+  BOOST_TEST(found.iterations == 0);
+  BOOST_TEST(found.period.matrix.size() == 0);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

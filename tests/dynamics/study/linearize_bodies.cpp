@@ -336,4 +336,37 @@ BOOST_AUTO_TEST_CASE(of_a_load_that_takes_no_dual_numbers_are_refused) {
   BOOST_TEST(std::abs(linear.A(3, 0) + 2 * 9.81 * 1.5 / across) < 1e-14);
 }
 
+const InertiaTensor<Body> block{{2, {0, 0, -1}, {2.6, 2.6, 0.1}}};
+
+BodySystem<RestingFrame<>> block_on(const Joint& joint, double stiffness = 0) {
+  BodyDescription body{.name = "block", .joint = joint, .inertia = block};
+  if (stiffness > 0) body.forces = {{.stiffness = stiffness}};
+  return {RestingFrame<>{}, {body}, UniformGravity<Guide>{{0, 0, -9.81}}};
+}
+
+// No coordinate makes it fall, so that Newton's step is none; it does not rest for that.
+BOOST_AUTO_TEST_CASE(of_what_falls_are_about_no_equilibrium) {
+  for (const JointKind kind : {JointKind::prismatic, JointKind::free}) {
+    const auto falling = block_on({.kind = kind, .axis = {0, 0, 1}});
+    const Eigen::VectorXd y = falling.to_vector(falling.rest());
+    BOOST_CHECK_THROW((void)find_equilibrium(falling, 0, y), ComputationFailed);
+  }
+  for (const double stiffness : {1e-6, 1.0, 1e12}) {
+    const auto held = block_on({.kind = JointKind::prismatic, .axis = {0, 0, 1}}, stiffness);
+    const auto rest = find_equilibrium(held, 0, held.to_vector(held.rest()));
+    BOOST_TEST(rest.state[0] == -2 * 9.81 / stiffness, boost::test_tools::tolerance(1e-14));
+    BOOST_TEST(rest.neutral == 0);
+    // Where it is held it does not rest.
+    BOOST_CHECK_THROW((void)find_equilibrium(held, 0, held.to_vector(held.rest()), {{0, 1}}),
+                      ComputationFailed);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_what_cannot_move_are_none) {
+  const auto still = block_on({});
+  const Eigen::VectorXd nothing = still.to_vector(still.rest());
+  BOOST_TEST(find_equilibrium(still, 0, nothing).neutral == 0);
+  BOOST_TEST((linearize<Guide, Body>(still, 0, nothing).A.size()) == 0);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
