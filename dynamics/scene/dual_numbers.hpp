@@ -8,6 +8,7 @@
 #include <dynamics/inertia.hpp>
 #include <dynamics/scene/load.hpp>
 #include <dynamics/step/lanes.hpp>
+#include <motor/error.hpp>
 
 /// Scenes of double in numbers that calculate like it: dual numbers (Eigen's AutoDiffScalar), packs.
 
@@ -21,17 +22,31 @@ template <class S>
           {S(t.xx), S(t.yy), S(t.zz), S(t.xy), S(t.xz), S(t.yz)}};
 }
 
-/// The derivative of a function of time by central differences of step h: errs by 4 h^4 / 5! of the
-/// fifth derivative and by rounding, u/h of the value.
+/// The derivative of a function of time by differences of step h: central ones, or to one side at the
+/// end of the time for which the function is known. They err by up to h^4 / 5 of the fifth derivative
+/// and by rounding, u/h of the value.
+///
+/// Throws : as the function does, where it is known to neither side
 template <class F>
 [[nodiscard]] auto slope_in_time(const F& f, double t) {
+  using Value = std::decay_t<decltype(f(t))>;
   constexpr double h = 0x1p-10;
-  const auto off = [&](double step) {
-    using Value = std::decay_t<decltype(f(t))>;
-    return Value(f(t + step) - f(t - step));
+  const auto off = [&](double step) { return Value(f(t + step) - f(t - step)); };
+  const auto ahead = [&](double step) {
+    const Value begin = f(t);
+    const auto away = [&](int steps) { return Value(f(t + steps * step) - begin); };
+    const Value odd = 48 * away(1) + 16 * away(3);
+    return Value((odd - (36 * away(2) + 3 * away(4))) / (12 * step));
   };
-  using Value = decltype(off(h));
-  return Value((8 * off(h) - off(2 * h)) / (12 * h));
+  try {
+    return Value((8 * off(h) - off(2 * h)) / (12 * h));
+  } catch (const InvalidInput&) {  // outside of its time
+  }
+  try {
+    return ahead(h);
+  } catch (const InvalidInput&) {
+  }
+  return ahead(-h);
 }
 
 /// How the guide moves at a dual time. Of a guide that takes doubles alone pose and velocity are

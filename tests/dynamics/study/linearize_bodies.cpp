@@ -15,6 +15,7 @@
 #include <dynamics/scene/free_body.hpp>
 #include <dynamics/scene/held_body.hpp>
 #include <dynamics/scene/rotors_reference.hpp>
+#include <dynamics/solve/solve.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/spectrum.hpp>
@@ -250,6 +251,35 @@ BOOST_AUTO_TEST_CASE(of_loads_are_the_differences_of_the_field) {
 // A body that floats on springs, a damper and a rubber mount, its rotor brought to speed and slowed
 // down again, on a guide that swings: the linear equations are the differences of the field, and
 // the unsteadiness is with the field's own change in time, which both motions make.
+// A guide that is known from 0 to 2 s only, as a log or a series is: its rates at the ends come from
+// within.
+BOOST_AUTO_TEST_CASE(of_bodies_at_the_ends_of_what_is_known_of_their_guide) {
+  const auto swing = [](double t) {
+    FrameMotion<Guide, Inertial> motion;
+    motion.V.value.resultant = {0.3 * std::sin(2 * t), 0.1, 0};
+    motion.dV.value.resultant = {0.6 * std::cos(2 * t), 0, 0};
+    motion.dV.value.moment = {0, std::sin(5 * t), 0};
+    return motion;
+  };
+  const auto known = [swing](double t) {
+    if (!(t >= 0 && t <= 2)) throw InvalidInput("not known");
+    return swing(t);
+  };
+  const Eigen::Quaterniond attitude(0.8, 0.1, -0.3, 0.2);
+  const HeldBody everywhere(pendulum, {0.4, 0, 0}, swing, UniformGravity<Guide>{{0, 0, -9.81}});
+  const HeldBody within(pendulum, {0.4, 0, 0}, known, UniformGravity<Guide>{{0, 0, -9.81}});
+  const auto y = within.to_vector({attitude, {1, -2, 0.5}});
+  for (const double t : {0.0, 1.0, 2.0}) {
+    const auto found = linearize<Guide, Body>(within, t, y).unsteadiness;
+    const auto expected = linearize<Guide, Body>(everywhere, t, y).unsteadiness;
+    BOOST_TEST((found - expected).norm() <= 1e-9 * expected.norm(), "at " << t << " s");
+  }
+  const auto run = solve(HeldBody(pendulum, {0.4, 0, 0}, known, ViscousDrag<>{0, 100}),
+                         {attitude, {1, -2, 0.5}}, {.times = {2}, .method = Method::radau13});
+  BOOST_TEST(run.report.tolerance_kept, run.report.message);
+  BOOST_CHECK_THROW(((void)linearize<Guide, Body>(within, 2.1, y)), InvalidInput);
+}
+
 BOOST_AUTO_TEST_CASE(of_systems_with_loads_on_a_guide_that_swings) {
   const auto swing = [](double t) {
     FrameMotion<Guide, Inertial> motion;
