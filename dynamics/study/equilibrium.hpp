@@ -83,7 +83,7 @@ struct NewtonStep {
   /// though none of its coordinates makes it fall.
   [[nodiscard]] bool suffices(const Eigen::MatrixXd& A, const Eigen::VectorXd& f,
                               double size) const {
-    const Eigen::ArrayXd rounding = 1e-12 * (1 + size * A.cwiseAbs().rowwise().sum().array());
+    const Eigen::ArrayXd rounding = 1e-10 * (1 + size * A.cwiseAbs().rowwise().sum().array());
     return ((f + A * step).array().abs() <= rounding).all();
   }
 };
