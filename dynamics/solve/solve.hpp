@@ -187,7 +187,8 @@ class RunSoFar {
 /// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
 /// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
 /// are tried until two agree by chance would tell nothing: where the error does not fall as the
-/// steps do, the finest are taken at once, and four of them.
+/// steps do, the finest are taken at once, and four of them; or six, where rounding grows to more than
+/// the tolerance.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///
@@ -245,7 +246,12 @@ template <class Scene, class Runs>
     // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
     // steps of its own. Steps that begin near rounding and miss are near it in every later try.
     const bool near_rounding = last_try || (Runs::begins_near_rounding && missed.error > 0);
-    const int more = near_rounding ? 2 : Runs::begins_near_rounding ? 1 : 0;
+    const bool grown = last_try && digits_off(task) > 0;  // to far more than it is made by
+    const int more = grown ? 4 : near_rounding ? 2 : Runs::begins_near_rounding ? 1 : 0;
+    // What begins near rounding and comes near the tolerance is rounding that has grown: three runs
+    // agree on that by chance more often than four.
+    const bool surprises = Runs::begins_near_rounding && !near_rounding;
+    const double enough = surprises ? task.tolerance / 10 : task.tolerance;
     std::vector<RunSoFar<Scene, decltype(runs.run(setting, scene, start))>> others;
     for (int i = 1; i <= more; ++i) {
       others.push_back(run_with(runs.between(setting, double(i) / (more + 1)), -digits));
@@ -295,8 +301,7 @@ template <class Scene, class Runs>
         report.error_estimate = std::max(report.error_estimate, error);
         missed.note(done, report.error_estimate);
         expected = forecast(task, t, report.error_estimate);
-        too_coarse =
-            !last_try && (report.error_estimate > task.tolerance || expected > 4 * task.tolerance);
+        too_coarse = !last_try && (report.error_estimate > enough || expected > 4 * enough);
         if (too_coarse) break;
         if (!output(result, watch, task, t, state, error)) break;
         ++done;
