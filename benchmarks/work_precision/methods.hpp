@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/numeric/odeint.hpp>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -77,12 +78,45 @@ class Methods {
   }
 
   /// What one calls who knows nothing about integrators.
-  void automatic() {
+  void automatic() { solved(work_precision::automatic, kreisel::Method::automatic); }
+
+  /// solve() by the method of one's own choice, with the same error estimate.
+  void solved_by(kreisel::Method method) {
+    solved(fmt::format("{}{}", fixed_choice, kreisel::name(method)), method);
+  }
+
+  /// All for fields that are not stiff.
+  void not_stiff() {
+    solved_by(kreisel::Method::verner98);
+    if constexpr (knows_series) solved_by(kreisel::Method::taylor);
+    explicit_ones(budget());
+    taylor();
+    gauss();
+    cvode<false>();
+  }
+
+  /// The explicit ones, which get a part of the evaluations lest they fail slowly, and those for
+  /// stiff fields, with the scene's exact Jacobian.
+  void stiff(double explicit_part) {
+    solved_by(kreisel::Method::radau13);
+    if (explicit_part == 1) solved_by(kreisel::Method::verner98);
+    explicit_ones({explicit_part * thoroughness_.most_evaluations});
+    radau<5>("Radau 9");
+    radau<7>("Radau 13");
+    stiff_gsl("GSL bsimp", kreisel::GslMethod::bsimp);
+    stiff_gsl("GSL msbdf", kreisel::GslMethod::msbdf);
+    cvode<true>();
+  }
+
+ private:
+  static constexpr bool knows_series = requires(const Scene& scene) { scene.series(); };
+
+  void solved(const std::string& called, kreisel::Method method) {
     for (const double tolerance : thoroughness_.tolerances) {
-      note("auto", tolerance, [tolerance](const P& p) {
-        const auto result =
-            kreisel::solve(p.scene, Scene::from_vector(p.start),
-                           {.times = p.times, .tolerance = tolerance, .smallest = p.smallest});
+      note(called, tolerance, [tolerance, method](const P& p) {
+        const auto result = kreisel::solve(
+            p.scene, Scene::from_vector(p.start),
+            {.times = p.times, .tolerance = tolerance, .method = method, .smallest = p.smallest});
         const kreisel::RunReport& report = result.report;
         if (report.status == kreisel::RunStatus::failed) throw std::runtime_error(report.message);
         double worst = 0;
@@ -100,26 +134,6 @@ class Methods {
     }
   }
 
-  /// All for fields that are not stiff.
-  void not_stiff() {
-    explicit_ones(budget());
-    taylor();
-    gauss();
-    cvode<false>();
-  }
-
-  /// The explicit ones, which get a part of the evaluations lest they fail slowly, and those for
-  /// stiff fields, with the scene's exact Jacobian.
-  void stiff(double explicit_part) {
-    explicit_ones({explicit_part * thoroughness_.most_evaluations});
-    radau<5>("Radau 9");
-    radau<7>("Radau 13");
-    stiff_gsl("GSL bsimp", kreisel::GslMethod::bsimp);
-    stiff_gsl("GSL msbdf", kreisel::GslMethod::msbdf);
-    cvode<true>();
-  }
-
- private:
   /// Copied into the runs, which outlive this object.
   struct Budget {
     double most_evaluations;
@@ -150,7 +164,7 @@ class Methods {
   }
 
   void taylor() {
-    if constexpr (requires(const Scene& scene) { scene.series(); }) {
+    if constexpr (knows_series) {
       add("Taylor", thoroughness_.tolerances, [budget = budget()](const P& p, double tolerance) {
         return kreisel::TaylorSteps(p.scene.series(), 0.0, p.start, budget.at(p, tolerance),
                                     Scene::blocks);

@@ -7,13 +7,14 @@
 
 namespace work_precision {
 
-/// The method that stands for what one calls who knows nothing about integrators, and the one that
-/// is no integrator.
-inline const std::string automatic = "auto";
+/// The method that is no integrator.
 inline const std::string closed_form = "closed form";
 
 /// Whether it is one of the libraries'.
 bool of_a_library(const std::string& method);
+
+/// Whether it is one of our steppers, bare.
+bool is_stepper(const std::string& method);
 
 void write_csv(const std::string& path, const std::vector<Point>& points);
 

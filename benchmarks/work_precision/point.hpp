@@ -43,6 +43,11 @@ struct Point {
   std::optional<Promise> promise;
 };
 
+/// The method that stands for what one calls who knows nothing about integrators, and how the name of
+/// one begins that solve() was told to take; both tell their error.
+inline const std::string automatic = "auto";
+inline const std::string fixed_choice = "solve: ";
+
 inline const std::string ok = "ok";
 inline const std::string not_tried = "not tried: too slow at the setting before";
 
