@@ -421,6 +421,23 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_where_its_angles_count_from) {
   BOOST_TEST(error_of(gyro.rates(0, y).tail<3>(), truth) < 1e-14);
 }
 
+// Next to 90 degrees it is the cosine that is nearly 0, next to 180 the sine: what is less than the
+// last digit of the angle is all there is to them.
+BOOST_AUTO_TEST_CASE(has_sines_of_what_its_reference_hides) {
+  using L = long double;
+  constexpr double pi = std::numbers::pi;
+  for (const double hidden : {1e-20, -3e-18, 1e-17}) {
+    const auto half_turn = detail::sin_cos(pi, hidden);
+    const auto quarter = detail::sin_cos(pi / 2, hidden);
+    const L sine = std::sin(L(pi)) - L(hidden);
+    const L cosine = std::cos(L(pi / 2)) - L(hidden);
+    BOOST_TEST(std::abs(half_turn.sin / sine - 1) <= 4e-16L);
+    BOOST_TEST(std::abs(quarter.cos / cosine - 1) <= 4e-16L);
+    BOOST_TEST(half_turn.cos == -1);
+    BOOST_TEST(quarter.sin == 1);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(stops_where_nothing_resists) {
   const Vector6 y = (Vector6() << 0.3, std::numbers::pi / 2, 0.7, 0.4, -0.6, 50).finished();
   const auto says = [](const char* words) {
