@@ -86,15 +86,24 @@ class EquilibriumSearch {
             -single_rate - S(4) * twice_rate};
   }
 
-  /// The moment, F and H brought together first: near 0 and pi they are the difference that counts.
+  /// The moment. Near 0 and pi F and H are brought together first: it is their difference that counts
+  /// there; elsewhere each term is as small as its cosine.
   [[nodiscard]] S moment(const S& x) const {
-    using std::cos, std::sin;
+    using std::abs, std::cos, std::sin;
     const S s = sin(x);
     const S c = cos(x);
+    return e_ * s + S(2) * c_.k * s * c + (abs(s) < S(0.25) ? level(s, c) : steep(s, c));
+  }
+
+  /// F cos x + H cos 2x
+  [[nodiscard]] S steep(const S& s, const S& c) const {
+    return c_.f * c + c_.h * ((c - s) * (c + s));
+  }
+  [[nodiscard]] S level(const S& s, const S& c) const {
     const S s_squared = s * s;
-    const S level = c > S(0) ? S((c_.f + c_.h) - c_.f * s_squared / (S(1) + c))
-                             : S((c_.h - c_.f) + c_.f * s_squared / (S(1) - c));
-    return e_ * s + S(2) * c_.k * s * c + (level - S(2) * c_.h * s_squared);
+    const S at_zero = c > S(0) ? S((c_.f + c_.h) - c_.f * s_squared / (S(1) + c))
+                               : S((c_.h - c_.f) + c_.f * s_squared / (S(1) - c));
+    return at_zero - S(2) * c_.h * s_squared;
   }
 
   [[nodiscard]] bool positive(const S& x) const { return moment(x) >= S(0); }

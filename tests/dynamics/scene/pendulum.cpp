@@ -662,6 +662,48 @@ BOOST_AUTO_TEST_CASE(are_as_many_as_the_quartics_roots_on_the_unit_circle) {
   BOOST_TEST(seen[4] > 1000);
 }
 
+// Against Newton's method in 64 bits, wherever on the circle and however small the terms are there.
+BOOST_AUTO_TEST_CASE(have_all_the_digits_that_their_terms_have) {
+  using L = long double;
+  Sample sample(2);
+  double worst = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto draw = [&] {
+      return sample.uniform(-1, 1) * std::pow(10.0, std::floor(sample.uniform(-2, 1)));
+    };
+    const PendulumCoefficients<double> c{1, draw(), draw(), draw(), draw()};
+    const L e = 1 + L(c.delta_e);
+    for (const auto& found : equilibria(c)) {
+      L x = found.angle;
+      L slope = 0;
+      for (int step = 0; step < 3; ++step) {
+        slope = e * std::cos(x) - c.f * std::sin(x) - 2 * c.h * std::sin(2 * x) +
+                2 * c.k * std::cos(2 * x);
+        x -= (e * std::sin(x) + c.f * std::cos(x) + c.h * std::cos(2 * x) + c.k * std::sin(2 * x)) /
+             slope;
+      }
+      const L terms = std::abs(e * std::sin(x)) + std::abs(c.f * std::cos(x)) +
+                      std::abs(c.h * std::cos(2 * x)) + std::abs(c.k * std::sin(2 * x));
+      if (std::abs(slope) < 1e-2L * terms) continue;  // almost merged
+      const L off = std::abs(found.angle - x) / (std::abs(x) + terms / std::abs(slope));
+      worst = std::max(worst, double(off) / u);
+    }
+  }
+  BOOST_TEST_MESSAGE("at most " << worst << " u of what their terms are");
+  BOOST_TEST(worst <= 2);
+}
+
+// The circle is cut where no equilibrium is: hit by one, the signs at the ends of the cut are chance.
+BOOST_AUTO_TEST_CASE(are_not_lost_where_the_circle_is_cut) {
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = 0.9 + (i - 1000) * 3e-17;
+    const double size = 1 + 0.37 * (i % 7);
+    const PendulumCoefficients<double> c{size, size * (std::cos(angle) - 1),
+                                         -size * std::sin(angle), 0, 0};
+    BOOST_TEST_REQUIRE(equilibria(c).size() == 2U);
+  }
+}
+
 // (1 - cos(x - a)) (cos(a - b)/2 + cos(x - b)): a double root at a whatever b is.
 BOOST_DATA_TEST_CASE(a_merged_pair_is_reported_once_and_unstable, data::xrange(200u), seed) {
   Sample sample(seed);
