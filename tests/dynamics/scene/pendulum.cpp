@@ -662,6 +662,29 @@ BOOST_AUTO_TEST_CASE(are_as_many_as_the_quartics_roots_on_the_unit_circle) {
   BOOST_TEST(seen[4] > 1000);
 }
 
+// By the arithmetic-geometric mean, T = 2 pi/agm(1, cos(amplitude/2)): sums of many terms are not
+// rounded as often as there are terms.
+BOOST_AUTO_TEST_CASE(periods_of_great_swings_do_not_add_up_rounding) {
+  using L = long double;
+  const PendulumCoefficients<double> c{1, 0, 0, 0, 0};
+  const auto all = equilibria(c);
+  for (const double below : {1.0, 0.137, 0.1}) {
+    const double amplitude = std::acos(-1.0) - below;
+    const auto found = period_at_amplitude(PendulumBody<double>{.arm = 1, .theta_c = 1}, c, all,
+                                           nearest_stable(all), amplitude);
+    L a = 1;
+    L g = std::cos(L(amplitude) / 2);
+    for (int i = 0; i < 8; ++i) {
+      const L mean = (a + g) / 2;
+      g = std::sqrt(a * g);
+      a = mean;
+    }
+    const L off = found.period / (2 * std::acos(L(-1)) / a) - 1;
+    BOOST_TEST(std::abs(off) <= L(1.8) * u, below << " rad below: off by " << double(off) / u
+                                                  << " u with " << found.nodes << " nodes");
+  }
+}
+
 // Against Newton's method in 64 bits, wherever on the circle and however small the terms are there.
 BOOST_AUTO_TEST_CASE(have_all_the_digits_that_their_terms_have) {
   using L = long double;

@@ -140,6 +140,17 @@ BOOST_AUTO_TEST_CASE(held_still_moves_as_elliptic_functions_say) {
   BOOST_TEST_MESSAGE("against elliptic functions: at most " << worst << " of what is told");
 }
 
+// Counted from the nearest of two wells: 1e-9 rad beside 0 has all its digits.
+BOOST_AUTO_TEST_CASE(counts_from_the_nearest_well) {
+  const PendulumCoefficients<> c{1, 0, 0.1, -0.1, 0.9};  // the other one is at -3.0 rad
+  for (const double angle : {1e-9, -1e-9}) {
+    const SteadyPendulumMotion<double> motion({.arm = 1, .theta_c = 1}, c, angle, 0);
+    const auto truth = by_series(c, angle, 0, 12, 100);
+    const double off = std::abs(motion.at(12).angle / static_cast<double>(truth[0]) - 1);
+    BOOST_TEST(off <= 1e-13);
+  }
+}
+
 // Hardly over the barrier its phase runs so unevenly that Newton's steps for it leave their bracket.
 BOOST_AUTO_TEST_CASE(nearly_stands_as_elliptic_functions_say) {
   const PhysicalPendulum pendulum(rod, room);
