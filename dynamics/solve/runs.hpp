@@ -29,6 +29,8 @@
 ///   tightened(x, ratio)   a setting whose error is `ratio` < 1 of this one's
 ///   finest(), last(x)     the setting beyond which rounding leaves nothing to gain; whether x is it
 ///   falls(x, y)           what the error of steps at y is of that at x
+///   may_be_rounding(x)    whether what steps at x err by, after others that erred by too much, may be
+///                         rounding that has grown
 ///   begins_near_rounding  whether the first setting errs by little more than rounding
 ///   rounding              of one step where nothing grows, in units of 2^-53
 ///   finer_by(x)           how many times finer that is
@@ -265,6 +267,7 @@ class FixedRuns {
     return 0.02 * std::sqrt(steps);
   }
   [[nodiscard]] EqualLength finest() const { return {shortest_}; }
+  [[nodiscard]] static bool may_be_rounding(const EqualLength& /*step*/) { return false; }
   [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
   [[nodiscard]] double falls(const EqualLength& from, const EqualLength& to) const {
     return std::pow(to.longest / from.longest, 1 / root_);

@@ -186,9 +186,10 @@ class RunSoFar {
 /// grows to: near a separatrix steps of any length round the same digits away. Where the error
 /// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
 /// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
-/// are tried until two agree by chance would tell nothing: where the error does not fall as the
-/// steps do, the finest are taken at once, and four of them; or six, where rounding grows to more than
-/// the tolerance.
+/// are tried until two agree by chance would tell nothing: a third is held beside them where, after a
+/// miss, steps are so fine that what they err by may be rounding; and where the error does not fall as
+/// the steps do, the finest are taken at once, and four of them; or six, where rounding grows to more
+/// than the tolerance.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///
@@ -246,8 +247,10 @@ template <class Scene, class Runs>
     // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
     // steps of its own. Steps that begin near rounding and miss are near it in every later try.
     const bool near_rounding = last_try || (Runs::begins_near_rounding && missed.error > 0);
+    const bool may_be_rounding =
+        Runs::begins_near_rounding || (missed.error > 0 && runs.may_be_rounding(setting));
     const bool grown = last_try && digits_off(task) > 0;  // to far more than it is made by
-    const int more = grown ? 4 : near_rounding ? 2 : Runs::begins_near_rounding ? 1 : 0;
+    const int more = grown ? 4 : near_rounding ? 2 : may_be_rounding ? 1 : 0;
     // What begins near rounding and comes near the tolerance is rounding that has grown: three runs
     // agree on that by chance more often than four.
     const bool surprises = Runs::begins_near_rounding && !near_rounding;
