@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -516,8 +517,8 @@ BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
   int beyond = 0;
   int broken = 0;
   double greatest = 0;
-  for (int i = 0; i < 200; ++i) {
-    test::Sample sample(i + 1);
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    test::Sample sample(seed);
     const auto vector = [&](double from, double to) {
       const double x = sample.uniform(from, to);
       const double y = sample.uniform(from, to);
