@@ -543,6 +543,7 @@ BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
     ExplicitSteps<LongVector, decltype(field)> steps(
         field, 0.0L, EulerTop::to_vector(start).cast<long double>(), {1e-17}, EulerTop::blocks);
     std::vector<EulerTop::Vector> truth;
+    truth.reserve(times.size());
     for (const double t : times) truth.push_back(steps.advance_to(t).cast<double>());
     for (const Method method : {Method::verner98, Method::taylor}) {
       for (const double tolerance : {1e-9, 1e-11}) {
