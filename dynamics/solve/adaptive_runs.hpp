@@ -36,11 +36,13 @@ class AdaptiveRuns {
   }
   [[nodiscard]] double finest() const { return finest_; }
   [[nodiscard]] bool last(double accuracy) const { return accuracy <= finest(); }
+
   /// Where steps have to be so much finer than the tolerance, the motion makes much of what they err
   /// by, and as much of rounding.
   [[nodiscard]] bool may_be_rounding(double accuracy) const {
     return accuracy <= 5e-14 && accuracy < task_.tolerance / 50;
   }
+
   [[nodiscard]] static double falls(double from, double to) { return to / from; }
   [[nodiscard]] double tightened(double accuracy, double ratio) const {
     return allowed(accuracy * std::clamp(ratio, 1e-4, 0.2));

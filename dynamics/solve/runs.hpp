@@ -211,7 +211,7 @@ class RadauRuns : public AdaptiveRuns {
     return 4 * AdaptiveRuns::digits_lost(accuracy, steps);
   }
 
-  /// At finer tolerances a third run cost a third more and kept one promise more in 1800.
+  /// To finer tolerances a third run would tell ten times too great an error of stiff bearings.
   [[nodiscard]] bool may_be_rounding(double accuracy) const {
     return digits_off(task()) > 0 && AdaptiveRuns::may_be_rounding(accuracy);
   }
