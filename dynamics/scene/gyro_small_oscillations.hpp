@@ -31,8 +31,10 @@ enum class GuideMomentum {
 ///   J_fy = R u_x + Q u_y + u_z g_b        g_b = (Q - C) alpha - R beta
 ///   J_fz = C u_z + u_x g_a + u_y g_b
 ///
-/// M is what springs and friction do, and of first order the drive's torque C ou_z, which lies
-/// along the inclined axis: -alpha C ou_z to M_y.
+/// M is what springs and friction do, and of first order the drive's torque M_C, which lies along the
+/// inclined axis: -alpha M_C to M_y.
+///
+///   M_C = C ou_z + R (u_x^2 - u_y^2) + (Q - P) u_x u_y
 ///
 /// Source : paper 002 (44)-(48), with the terms of g that (47) lacks. Of J_z only H is in the
 ///          field: its parts of second order come with u and do not change the error's order.
@@ -41,7 +43,8 @@ enum class GuideMomentum {
 /// Units  : rad, rad/s
 /// Error  : for angles and u of the size eps, of the order eps^k, k = 3 with first_order, also if
 ///          u_z is not small; 2 with constant, 1 if u_z is not small; 1 with none, but 2 for a
-///          symmetric rotor and constant u (tests/dynamics/scene/gyro_small_oscillations.cpp).
+///          symmetric rotor and constant u. With first_order the field's is of the order eps^2 for
+///          angles of the size eps and any u (tests/dynamics/scene/gyro_small_oscillations.cpp).
 ///          departure() measures it
 /// Throws : InvalidInput for what CardanGyro refuses, references of the bearings other than 0, or a
 ///          speed that is not finite
@@ -91,6 +94,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
     c.force[0] -= dP * x + dR * y + P * du.x() + R * du.y() - z * (R * x + Q * y) + C * z * y;
     c.force[1] -= dR * x + dQ * y + R * du.x() + Q * du.y() + z * (P * x + R * y) - C * z * x;
     if (kept_ == GuideMomentum::constant) return c;
+    const double drive = C * dz + R * (x * x - y * y) + (Q - P) * x * y;
     // g_a and g_b: J_f gains u_z g across and along z  along = u_x g_a + u_y g_b.
     const double along_a = x * R + y * (Q - C);
     const double along_b = x * (C - P) - y * R;
@@ -100,7 +104,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
     c.damping(1, 1) -= z * R;
     c.stiffness(0, 0) += z * dR + dz * R - z * z * (Q - C) + y * along_a;
     c.stiffness(0, 1) += -z * dP + dz * (C - P) + z * z * R + y * along_b;
-    c.stiffness(1, 0) += z * dQ + dz * (Q - C) + z * z * R - x * along_a + C * dz;
+    c.stiffness(1, 0) += z * dQ + dz * (Q - C) + z * z * R - x * along_a + drive;
     c.stiffness(1, 1) += -z * dR - dz * R - z * z * (P - C) - x * along_b;
     return c;
   }
@@ -134,7 +138,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
     list.add("Coriolis", "u x J");
     list.add("guide", "oJ_f + u x J_f of the rotor not inclined", constant, asked);
     list.add("guide", "g_a, g_b in J_f", first_order, of_order);
-    list.add("load", "torque C ou_z of the drive, along the inclined axis", first_order, of_order);
+    list.add("load", "torque of the drive, along the inclined axis", first_order, of_order);
     return list;
   }
 
