@@ -139,15 +139,15 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
         for (std::size_t k = 0; k < members.size(); ++k) {
           if (!members[k]) continue;
           const auto y = scene.to_vector(states[k]);
-          off[k] = std::max(off[k], distance[k](y, scene.to_vector(beside[k])));
+          off[k] = worse(off[k], distance[k](y, scene.to_vector(beside[k])));
         }
       }
       for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
         if (!members[k]) continue;
         double& estimate = members[k]->report.error_estimate;
-        estimate = std::max(estimate, error_of_pair(off[k], runs.finer_by(setting), rounding,
-                                                    coarse.effort().steps, coarse.noise()));
-        worst = std::max(worst, estimate);
+        estimate = worse(estimate, error_of_pair(off[k], runs.finer_by(setting), rounding,
+                                                 coarse.effort().steps, coarse.noise()));
+        worst = worse(worst, estimate);
       }
       missed.note(output, worst);
       if (worst > task.tolerance && !last_try) break;

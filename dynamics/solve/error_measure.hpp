@@ -15,6 +15,9 @@ namespace kreisel::detail {
 /// How much finer the run is beside which another is held.
 inline constexpr double times_finer = 30;
 
+/// The greater of two errors; a NaN stays, which std::max may forget.
+[[nodiscard]] inline double worse(double a, double b) { return b <= a || a != a ? a : b; }
+
 /// The global error of a run after so many steps, `off` from one beside it whose error is so many
 /// times finer: what the coarser errs by, less that part of it, and half as much again for what is
 /// not so much finer, as where stability keeps explicit steps short; and a random walk of rounding,
@@ -83,9 +86,6 @@ class ErrorMeasure {
   template <class Blocks>
   ErrorMeasure(const Blocks& blocks, double smallest)
       : blocks_(blocks.begin(), blocks.end()), size_(blocks_.size(), smallest) {}
-
-  /// The greater; a NaN stays.
-  [[nodiscard]] static double worse(double a, double b) { return b <= a || a != a ? a : b; }
 
   [[nodiscard]] static Eigen::Vector4d attitude_at(const Vector& v, int begin) {
     return {v[begin], v[begin + 1], v[begin + 2], v[begin + 3]};

@@ -38,8 +38,7 @@ class InvariantWatch {
         for (const auto& [name, value] : now) drifts_.push_back({name, value, 0});
       }
       for (std::size_t i = 0; i < now.size(); ++i) {
-        drifts_[i].largest =
-            std::max(drifts_[i].largest, std::abs(now[i].second - drifts_[i].start));
+        drifts_[i].largest = worse(drifts_[i].largest, std::abs(now[i].second - drifts_[i].start));
       }
     }
   }
@@ -55,10 +54,6 @@ class InvariantWatch {
   const Scene& scene_;
   std::vector<InvariantDrift> drifts_;
 };
-
-}  // namespace detail
-
-namespace detail {
 
 using Clock = std::chrono::steady_clock;
 
@@ -91,7 +86,7 @@ template <class Scene>
   watch.note(task.begin, start);
   for (const double t : task.times) {
     const double error = motion.error(t, task.smallest);
-    report.error_estimate = std::max(report.error_estimate, error);
+    report.error_estimate = worse(report.error_estimate, error);
     if (!output(result, watch, task, t, motion.at(t), error)) break;
   }
   report.method = motion.name;
@@ -297,11 +292,11 @@ template <class Scene, class Runs>
         double off = distance(scene.to_vector(state), scene.to_vector(better));
         for (auto& other : others) {
           const typename Scene::State& beside = better_at_output(other, done);
-          off = std::max(off, distance(scene.to_vector(state), scene.to_vector(beside)));
+          off = worse(off, distance(scene.to_vector(state), scene.to_vector(beside)));
         }
         const double error = error_of_pair(off, runs.finer_by(setting), Runs::rounding,
                                            coarse->effort().steps, coarse->noise());
-        report.error_estimate = std::max(report.error_estimate, error);
+        report.error_estimate = worse(report.error_estimate, error);
         missed.note(done, report.error_estimate);
         expected = forecast(task, t, report.error_estimate);
         too_coarse = !last_try && (report.error_estimate > enough || expected > 4 * enough);

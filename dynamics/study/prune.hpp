@@ -104,7 +104,7 @@ class PruningEffect {
     double off = 0;
     for (std::size_t i = 0; i < fine.states.size(); ++i) {
       const Vector& x = fine.states[i];
-      off = std::max(off, distance(x + coarse.departures[i], x + fine.departures[i]));
+      off = worse(off, distance(x + coarse.departures[i], x + fine.departures[i]));
     }
     return caution * fine.worst + 2 * off + error_of_pair(0, times_finer, rounding, fine.steps);
   }
@@ -183,7 +183,7 @@ class PruningEffect {
     ErrorMeasure<Scene> distance(scene_, task_.smallest);
     const auto note = [&](const Pair& both) {
       const Vector x = scene_part(both);
-      result.worst = std::max(result.worst, distance(x + departure(both), x));
+      result.worst = worse(result.worst, distance(x + departure(both), x));
     };
     Steps steps = started(&rates, accuracy);
     note(steps.y());
