@@ -195,7 +195,7 @@ void list_terms(const PendulumBody<S>& body, const PendulumGuide<S>& guide,
 ///
 /// Source : paper 002 section 5
 /// Error  : true error <= estimate in all reference cases; measured ratios in
-///          tests/dynamics/scene/pendulum.cpp
+///          tests/dynamics/scene/pendulum_deviation.cpp
 /// Cost   : 8 us without, 17 us with amplitude 0.1, 90 us with amplitude 3 (2.5 GHz Xeon)
 /// Throws : InvalidInput: a body check() refuses, a guide that accelerates its turn or has no
 ///          gravity, a number that is not finite, |amplitude| > pi;
