@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <string>
+#include <tests/support/worst.hpp>
 #include <vector>
 
 #include <dynamics/ensemble/ensemble.hpp>
@@ -82,7 +83,7 @@ void measure(const char* name, const Make& make) {
     detail::ErrorMeasure<Scene> distance(task.smallest);
     for (std::size_t i = 0; i < checked; ++i) {
       const auto y = Scene::to_vector(result.members[i].states.back());
-      way.error = std::max(way.error, distance(y, Scene::to_vector(truth[i])));
+      way.error = test::worst_of(way.error, distance(y, Scene::to_vector(truth[i])));
     }
   };
   const Sampling alone{.count = members, .threads = 1, .estimates_errors = false};

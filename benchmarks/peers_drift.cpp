@@ -9,6 +9,7 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <tests/support/worst.hpp>
 #include <vector>
 
 #include <dynamics/exact/free_top.hpp>
@@ -94,9 +95,9 @@ Drift drift(const std::vector<Turning>& motion) {
     const Vector3<double> L = I.cwiseProduct(rate);
     const double energy = L.dot(rate) / L0.dot(w0) - 1;
     if (std::abs(energy) > std::abs(worst.energy)) worst.energy = energy;
-    worst.momentum = std::max(worst.momentum, (q * L - L0).norm() / L0.norm());
+    worst.momentum = kreisel::test::worst_of(worst.momentum, (q * L - L0).norm() / L0.norm());
     const auto there = truth.at(end * static_cast<double>(i + 1) / count);
-    worst.attitude = std::max(worst.attitude, q.angularDistance(there.attitude));
+    worst.attitude = kreisel::test::worst_of(worst.attitude, q.angularDistance(there.attitude));
   }
   return worst;
 }

@@ -10,6 +10,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <tests/support/worst.hpp>
 
 #include <dynamics/scene/unsymmetric_rotor.hpp>
 #include <dynamics/study/floquet.hpp>
@@ -108,8 +109,8 @@ void beside_limit(const Recorder& out, const std::string& what, const Vector3<do
     const Eigen::Matrix4d scale = units * units.cwiseInverse().transpose();
     const double size = X.matrix.cwiseQuotient(scale).cwiseAbs().maxCoeff();
     const double digits = 4 * u * rotor.x() / rotor.y();
-    worst_transition =
-        std::max(worst_transition, wrong.cwiseQuotient(X.error + digits * size * scale).maxCoeff());
+    worst_transition = test::worst_of(
+        worst_transition, wrong.cwiseQuotient(X.error + digits * size * scale).maxCoeff());
 
     const PairedMultipliers m = PairedMultipliers::of(X);
     const auto [growing, swinging] = truth.squares();
@@ -125,7 +126,7 @@ void beside_limit(const Recorder& out, const std::string& what, const Vector3<do
       const double z_2 = -2 * double(std::cos(std::sqrt(-swinging) * truth.period()));
       const double known = m.one_error() + digits * size * size;
       const double bound = 4 * known / (std::abs(z_1 - z_2) * (l - 1 / l)) + 4 * u;
-      worst_growth = std::max(worst_growth, std::abs(m.growth() / l - 1) / bound);
+      worst_growth = test::worst_of(worst_growth, std::abs(m.growth() / l - 1) / bound);
     }
   }
   expect_below(out, what + ": error of the growth over its bound", "Floquet", worst_growth, 1,
@@ -241,7 +242,7 @@ void platform_modes(const Recorder& out) {
           resting += 1;
           continue;
         }
-        worst = std::max(worst, correction(c, mode.root) / mode.error);
+        worst = test::worst_of(worst, correction(c, mode.root) / mode.error);
       }
       expect_below(out, what + ": error of the modes over the reported one",
                    "conservative_spectrum", worst, 1,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tests/support/worst.hpp>
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/step/events.hpp>
@@ -57,7 +58,7 @@ void events(const Recorder& out) {
     out.begin(what, "advance_to_event");
     double worst = found.size() == truth.size() ? 0 : inf;
     for (std::size_t i = 0; i < truth.size() && i < found.size(); ++i) {
-      worst = std::max(worst, std::abs(found[i] - truth[i]));
+      worst = test::worst_of(worst, std::abs(found[i] - truth[i]));
     }
     expect_below(out, what, "advance_to_event", worst, 1e-11,
                  fmt::format("{} of {} crossings", found.size(), truth.size()));
@@ -115,8 +116,8 @@ void circle_in(const Recorder& out, const char* what, double accuracy, double bo
     ExplicitSteps<Vector, Circle<S>> steps(Circle<S>{}, S(0), Vector(S(1), S(0)),
                                            {.relative = accuracy, .most_evaluations = 1e6});
     const Vector y = steps.advance_to(S(10));
-    const double error = std::max(std::abs(static_cast<double>(y[0]) - std::cos(10.0)),
-                                  std::abs(static_cast<double>(y[1]) + std::sin(10.0)));
+    const double error = test::worst_of(std::abs(static_cast<double>(y[0]) - std::cos(10.0)),
+                                        std::abs(static_cast<double>(y[1]) + std::sin(10.0)));
     row.error = error;
     row.steps = steps.effort().steps;
     row.evaluations = steps.effort().evaluations;

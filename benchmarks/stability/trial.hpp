@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +7,7 @@
 #include <functional>
 #include <initializer_list>
 #include <string>
+#include <tests/support/worst.hpp>
 #include <vector>
 
 #include <dynamics/solve/solve.hpp>
@@ -69,7 +69,7 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
     const double off = (y - y).isZero(0)
                            ? distance(y, trial.scene.to_vector(trial.truth(found.times[i])))
                            : double(NAN);
-    if (!(off <= row.error)) row.error = off;
+    row.error = kreisel::test::worst_of(row.error, off);
     if (!trial.picture.empty() && found.times[i] != trial.task.begin) {
       out.drift(trial.picture + ", " + row.method, found.times[i] - trial.task.begin, off);
     }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <tests/support/worst.hpp>
 #include <utility>
 #include <vector>
 
@@ -124,8 +125,8 @@ class Methods {
         kreisel::detail::ErrorMeasure<Scene> distance(p.smallest);
         for (std::size_t i = 0; i < p.times.size(); ++i) {
           const Vector y = Scene::to_vector(result.states.at(i));
-          worst = std::max(worst, p.distance(i, y));
-          promised = std::max(promised, distance(y, p.truth[i]));
+          worst = kreisel::test::worst_of(worst, p.distance(i, y));
+          promised = kreisel::test::worst_of(promised, distance(y, p.truth[i]));
         }
         return Result{
             worst, report.all_evaluations,

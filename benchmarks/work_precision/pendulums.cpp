@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
+#include <tests/support/worst.hpp>
 #include <type_traits>
 #include <vector>
 
@@ -52,7 +52,8 @@ void add_closed_form(std::vector<Run>& runs, const P& problem, const Thoroughnes
     const auto motion = closed_form(p.scene, 0, P::Scene::from_vector(p.start)).value();
     double worst = 0;
     for (std::size_t i = 0; i < p.times.size(); ++i) {
-      worst = std::max(worst, p.distance(i, P::Scene::to_vector(motion.at(p.times[i]))));
+      worst =
+          kreisel::test::worst_of(worst, p.distance(i, P::Scene::to_vector(motion.at(p.times[i]))));
     }
     return Result{worst, 0};
   });

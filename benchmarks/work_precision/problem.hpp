@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <tests/support/worst.hpp>
 #include <vector>
 
 namespace work_precision {
@@ -43,7 +44,7 @@ struct Problem {
                            : units[b] == Unit::angle
                                ? distance_of(y, truth[i], begin, n)
                                : distance_of(y, truth[i], begin, n) / size(begin, n);
-      worst = error <= worst || worst != worst ? worst : error;  // a NaN stays
+      worst = kreisel::test::worst_of(worst, error);
       begin += n;
     }
     return worst;

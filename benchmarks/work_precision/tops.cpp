@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <tests/support/worst.hpp>
 #include <type_traits>
 
 #include <dynamics/exact/free_top.hpp>
@@ -51,7 +52,7 @@ void closed_form(Methods<TopProblem>& methods, const Make& make) {
     for (std::size_t i = 0; i < p.times.size(); ++i) {
       const auto m = motion.at(p.times[i]);
       const auto y = EulerTop::to_vector({m.attitude, m.angular_velocity});
-      worst = std::max(worst, p.distance(i, y));
+      worst = kreisel::test::worst_of(worst, p.distance(i, y));
     }
     return Result{worst, 0};
   });
@@ -73,7 +74,7 @@ void splitting(Methods<TopProblem>& methods, double spin, bool quick) {
         double worst = 0;
         for (std::size_t i = 0; i < p.times.size(); ++i) {
           steps.advance_to(p.times[i]);
-          worst = std::max(
+          worst = kreisel::test::worst_of(
               worst,
               p.distance(i, EulerTop::to_vector({steps.attitude(), steps.angular_velocity()})));
         }

@@ -13,6 +13,7 @@
 #include <motor/attitude.hpp>
 
 #include <support/program.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 
@@ -183,7 +184,7 @@ BOOST_AUTO_TEST_CASE(tumbling_brick_agrees_with_the_closed_form) {
     const auto angles = YawPitchRoll<>::of(level.transpose() * attitude.toRotationMatrix());
     const auto note = [&](double& worst, const char* column, double truth) {
       const double off = std::abs(table.number(i, column) - truth / d);
-      worst = std::max(worst, std::min(off, std::abs(off - 360)));
+      worst = test::worst_of(worst, std::min(off, std::abs(off - 360)));
     };
     note(worst_angle, "yaw_deg", angles.yaw);
     note(worst_angle, "pitch_deg", angles.pitch);

@@ -17,6 +17,7 @@
 #include <support/sample.hpp>
 #include <support/six.hpp>
 #include <support/terms.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::cast;
@@ -335,8 +336,8 @@ BOOST_AUTO_TEST_CASE(of_the_exponential_gives_the_motor_back) {
                                   : sample.magnitude(std::log10(range.low), std::log10(range.high));
       const Motor<> A = turn(sample, range.from_pi ? pi - distance : distance);
       const Motor<> B = log(exp(A));
-      resultant = std::max(resultant, relative(B.resultant, A.resultant));
-      moment = std::max(moment, relative(B.moment, A.moment));
+      resultant = test::worst_of(resultant, relative(B.resultant, A.resultant));
+      moment = test::worst_of(moment, relative(B.moment, A.moment));
     }
     std::printf("%-14s %10.1f %10.1f\n", range.name, resultant * 1e16, moment * 1e16);
     BOOST_TEST(resultant <= range.limit * 1e-16);

@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(below_the_smallest_normal_number_keep_the_direction) {
   BOOST_TEST(near(s.direction.norm(), 1.0, 1.0, 4));
   BOOST_TEST(std::abs(s.intensity - 2 * denormal) <= denormal);
   const Vector3<double> back = motor(s).resultant;
-  BOOST_TEST((back - a.resultant).cwiseAbs().maxCoeff() <= denormal);
+  BOOST_TEST((back - a.resultant).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= denormal);
 
   const Screw<> couple = screw(Motor<>{{0, 0, 0}, denormal * Vector3<double>(1, 1, 1)});
   BOOST_TEST((couple.kind == ScrewKind::couple));

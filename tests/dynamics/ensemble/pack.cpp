@@ -15,6 +15,7 @@
 
 #include <support/heap.hpp>
 #include <support/near.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -43,7 +44,7 @@ double rates_differ_by(const Scene& scene) {
       for (int i = 0; i < n; ++i) own[i] = y[i].lane(k);
       const typename Scene::Vector alone = scene.rates(t, own);
       for (int i = 0; i < n; ++i) {
-        worst = std::max(worst, std::abs(rates[i].lane(k) - alone[i]) / alone.norm());
+        worst = test::worst_of(worst, std::abs(rates[i].lane(k) - alone[i]) / alone.norm());
       }
     }
   }
@@ -87,8 +88,8 @@ BOOST_AUTO_TEST_CASE(have_sines_of_nearly_full_precision) {
       for (int k = 0; k < lanes; ++k) x.set_lane(k, in(random));
       const Pack s = sin(x), c = cos(x);
       for (int k = 0; k < lanes; ++k) {
-        worst = std::max(worst, std::abs(s.lane(k) - std::sin(x.lane(k))));
-        worst = std::max(worst, std::abs(c.lane(k) - std::cos(x.lane(k))));
+        worst = test::worst_of(worst, std::abs(s.lane(k) - std::sin(x.lane(k))));
+        worst = test::worst_of(worst, std::abs(c.lane(k) - std::cos(x.lane(k))));
       }
     }
   }

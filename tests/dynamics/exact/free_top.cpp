@@ -2,7 +2,6 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -13,6 +12,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 #include <support/top_truth.hpp>
+#include <support/worst.hpp>
 
 namespace data = boost::unit_test::data;
 using namespace kreisel;
@@ -33,9 +33,9 @@ struct Errors {
   double rate = 0;  ///< relative
 
   void take(const test::TopTruth& truth, const exact::TopMotion& motion) {
-    attitude = std::max(attitude, truth.attitude_error(motion.attitude));
-    rate =
-        std::max(rate, truth.rate_error(motion.angular_velocity) / motion.angular_velocity.norm());
+    attitude = test::worst_of(attitude, truth.attitude_error(motion.attitude));
+    rate = test::worst_of(
+        rate, truth.rate_error(motion.angular_velocity) / motion.angular_velocity.norm());
   }
 };
 

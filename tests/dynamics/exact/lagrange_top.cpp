@@ -14,6 +14,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 #include <support/top_truth.hpp>
+#include <support/worst.hpp>
 
 namespace data = boost::unit_test::data;
 using namespace kreisel;
@@ -46,8 +47,8 @@ struct Errors {
   double fastest = 0;
 
   void take(const test::TopTruth& truth, const exact::TopMotion& motion) {
-    attitude = std::max(attitude, truth.attitude_error(motion.attitude));
-    rate = std::max(rate, truth.rate_error(motion.angular_velocity));
+    attitude = test::worst_of(attitude, truth.attitude_error(motion.attitude));
+    rate = test::worst_of(rate, truth.rate_error(motion.angular_velocity));
     fastest = std::max(fastest, motion.angular_velocity.norm());
   }
 };

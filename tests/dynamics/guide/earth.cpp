@@ -17,6 +17,7 @@
 #include <dynamics/guide/normal_gravity.hpp>
 
 #include <support/near.hpp>
+#include <support/worst.hpp>
 
 namespace data = boost::unit_test::data;
 using namespace kreisel;
@@ -88,7 +89,7 @@ BOOST_AUTO_TEST_CASE(err_by_less_than_three_units) {
     const Exact exact_cosine = cos(Exact(Exact(angle) * degree));
     const Exact error_s = abs(Exact((sine - exact_sine) / exact_sine));
     const Exact error_c = abs(Exact((cosine - exact_cosine) / exact_cosine));
-    worst = std::max({worst, error_s.convert_to<double>(), error_c.convert_to<double>()});
+    worst = test::worst_of(worst, error_s.convert_to<double>(), error_c.convert_to<double>());
   }
   std::cout << "sine_cosine_degrees: worst relative error " << worst / u << " u\n";
   BOOST_TEST(worst < 3 * u);
@@ -290,7 +291,7 @@ BOOST_DATA_TEST_CASE(gradient_has_eleven_digits, data::xrange(12u), seed) {
     for (int j = 0; j < 3; ++j) {
       const double truth =
           second(axes[static_cast<std::size_t>(i)], axes[static_cast<std::size_t>(j)]);
-      worst = std::max(worst, std::abs(gradient(i, j) - truth) / scale);
+      worst = test::worst_of(worst, std::abs(gradient(i, j) - truth) / scale);
     }
   }
   const double trace = std::abs(gradient.trace()) / scale;

@@ -17,6 +17,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 #include <support/scratch.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -60,7 +61,7 @@ InterpolationError<> errors(const TabulatedFrame<>& frame) {
     const auto a = frame(t);
     const auto b = exact(t);
     const Matrix3<double> off = a.X.value.rotation.transpose() * b.X.value.rotation;
-    const auto note = [](double& most, double x) { most = std::max(most, x); };
+    const auto note = [](double& most, double x) { most = test::worst_of(most, x); };
     note(e.attitude, log(Pose<double>{off}).resultant.norm());
     note(e.angular_velocity, (a.V.value - b.V.value).resultant.norm());
     note(e.angular_acceleration, (a.dV.value - b.dV.value).resultant.norm());

@@ -16,6 +16,7 @@
 #include <support/near.hpp>
 #include <support/reference.hpp>
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::cast;
@@ -65,7 +66,7 @@ double relative_error(const Motor<>& x, const Motor<>& y) {
   const auto half = [](const Vector3<double>& a, const Vector3<double>& b) {
     return b.norm() == 0 ? 0.0 : (a - b).norm() / b.norm();
   };
-  return std::max(half(x.resultant, y.resultant), half(x.moment, y.moment));
+  return test::worst_of(half(x.resultant, y.resultant), half(x.moment, y.moment));
 }
 
 }  // namespace

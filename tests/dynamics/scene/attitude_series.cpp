@@ -1,6 +1,5 @@
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <type_traits>
@@ -15,6 +14,7 @@
 #include <motor/attitude.hpp>
 
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 
@@ -43,7 +43,7 @@ void hold(const std::string& what, const Scene& scene, const typename Scene::Vec
       state = state * s + c.col(k);
     }
     const Vector rate = h * scene.rates(t + s * h, state);
-    worst = std::max(worst, (slope - rate).norm() / (rate.norm() + h));
+    worst = test::worst_of(worst, (slope - rate).norm() / (rate.norm() + h));
   }
   BOOST_TEST_MESSAGE(what << ": " << worst);
   BOOST_TEST(worst <= 2e-15);
@@ -116,6 +116,24 @@ BOOST_AUTO_TEST_CASE(is_that_of_bodies_on_analytic_guides) {
   hold_samples("on a ship, without gravity", HeldBody(inertia(), point, ship));
   hold_samples("body of revolution on a ship",
                AxisymmetricBody(1, -0.3, 0.25, 0.06, point, ship, inertial));
+}
+
+// A series of the guide serves the steps of the body that lie within its reach, and no others.
+BOOST_AUTO_TEST_CASE(follows_a_guide_beyond_the_reach_of_its_series) {
+  const HarmonicFrame<> slow({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}},
+                             {{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, 0.2}}}, 0, 60);
+  const HeldBody body(inertia(), point, slow, inertial);
+  constexpr int order = decltype(body.series())::most_order;
+  Eigen::Matrix<double, 7, order + 1> followed;
+  followed.col(0) << 0.1, -0.2, 0.3, 0.9, 1, 2, 3;
+  auto series = body.series();
+  constexpr double h = 0.125;
+  for (int step = 0; step < 400; ++step) {
+    series(h * step, h, order, followed);
+    auto anew = followed;
+    body.series()(h * step, h, order, anew);
+    BOOST_TEST_REQUIRE((followed - anew).norm() <= 1e-14 * anew.norm(), "at " << h * step << " s");
+  }
 }
 
 BOOST_AUTO_TEST_CASE(leaves_out_what_the_body_does) {

@@ -23,6 +23,7 @@
 #include <support/near.hpp>
 #include <support/reference_file.hpp>
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::Json;
@@ -159,7 +160,7 @@ Vector3<double> rounded(const Recursion<Exact>::V& v) {
 
 /// The greatest error of angular accelerations, relative to each one's own size or that of phi''.
 double error_of(const Vector3<double>& x, const Vector3<double>& truth) {
-  return (x - truth).cwiseAbs().maxCoeff() / truth.cwiseAbs().maxCoeff();
+  return (x - truth).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / truth.cwiseAbs().maxCoeff();
 }
 
 CardanMoments moments_at_random(Sample& sample) {
@@ -219,7 +220,8 @@ struct Worst {
 };
 
 double relative(const Eigen::VectorXd& x, const Eigen::VectorXd& truth) {
-  return (x - truth).cwiseAbs().maxCoeff() / std::max(truth.cwiseAbs().maxCoeff(), 1e-300);
+  return (x - truth).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() /
+         std::max(truth.cwiseAbs().maxCoeff(), 1e-300);
 }
 
 template <class Gyro>
@@ -229,7 +231,7 @@ double error_of_reactions(const Gyro& gyro, double t, const typename Gyro::State
   double worst = 0;
   double size = 0.1;  // what rings without mass carry is 0, made of terms of this size
   for (std::size_t i = 0; i < names.size(); ++i) {
-    worst = std::max(worst, std::abs(mine[i] - number(truth.at(names[i]))));
+    worst = test::worst_of(worst, std::abs(mine[i] - number(truth.at(names[i]))));
     size = std::max(size, std::abs(number(truth.at(names[i]))));
   }
   return worst / size;
@@ -258,15 +260,15 @@ Worst follow(const Json& c, M guide, Rotor rotor) {
     const Vector6 y = gyro.to_vector(s);
     const Vector6 truth = state(point.at("q"), point.at("qd"));
     const Vector6 off = (y - truth).cwiseAbs();
-    worst.angles = std::max(
-        {worst.angles, off[0] / angle_size, off[1] / angle_size, off[2] / std::abs(truth[2])});
-    worst.rates = std::max(
-        {worst.rates, off[3] / rate_size, off[4] / rate_size, off[5] / std::abs(truth[5])});
+    worst.angles = test::worst_of(worst.angles, off[0] / angle_size, off[1] / angle_size,
+                                  off[2] / std::max(std::abs(truth[2]), 1e-300));
+    worst.rates = test::worst_of(worst.rates, off[3] / rate_size, off[4] / rate_size,
+                                 off[5] / std::max(std::abs(truth[5]), 1e-300));
     worst.accelerations =
-        std::max(worst.accelerations,
-                 relative(gyro.rates(t, y).template tail<3>(), vector(point.at("qdd"))));
+        test::worst_of(worst.accelerations,
+                       relative(gyro.rates(t, y).template tail<3>(), vector(point.at("qdd"))));
     worst.reactions =
-        std::max(worst.reactions, error_of_reactions(gyro, t, s, point.at("reactions")));
+        test::worst_of(worst.reactions, error_of_reactions(gyro, t, s, point.at("reactions")));
     const double drive = number(point.at("M_C12_drive_total"));
     BOOST_TEST(near(-gyro.reactions(t, s).rotor_on_inner_ring.z(), drive, 1.0, 1e-11 / test::u<>));
     if (point.contains("energy")) {
@@ -318,9 +320,9 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_vectors_of_the_reference) {
     const Momentary base{vector(c.at("u")), vector(c.at("udot"))};
     const Vector6 y = state(c.at("q"), c.at("qd"));
     const auto compare = [&](const auto& gyro) {
-      worst.accelerations = std::max(
+      worst.accelerations = test::worst_of(
           worst.accelerations, relative(gyro.rates(0, y).template tail<3>(), vector(c.at("qdd"))));
-      worst.reactions = std::max(
+      worst.reactions = test::worst_of(
           worst.reactions, error_of_reactions(gyro, 0, gyro.from_vector(y), c.at("reactions")));
     };
     const double friction = parameter(p, "df");
@@ -357,7 +359,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler_in_50_digits) {
                       -(Exact(b.inner.stiffness) * y[1] + Exact(b.inner.damping) * y[4]),
                       Exact(on_rotor) - Exact(friction) * y[5]);
       const V dqd = truth.solve(applied, regulated);
-      worst = std::max(worst, error_of(gyro.rates(0, y).template tail<3>(), rounded(dqd)));
+      worst = test::worst_of(worst, error_of(gyro.rates(0, y).template tail<3>(), rounded(dqd)));
       const auto t = truth.moments(dqd, truth.dq, truth.u, truth.du);
       const V on_inner = Recursion<Exact>::turn(2, truth.q[2]) * -t[2];
       const V on_outer = Recursion<Exact>::turn(1, truth.q[1]) * -t[1];
@@ -367,7 +369,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler_in_50_digits) {
       for (const double e : {(r.rotor_on_inner_ring - rounded(on_inner)).norm(),
                              (r.inner_ring_on_outer_ring - rounded(on_outer)).norm(),
                              (r.guide_on_outer_ring - rounded(t[0])).norm()}) {
-        worst_reaction = std::max(worst_reaction, e / size);
+        worst_reaction = test::worst_of(worst_reaction, e / size);
       }
       BOOST_TEST(near(r.motor_torque, static_cast<double>(t[2][2]) + friction * y[5], size,
                       1e-12 / test::u<>));
@@ -436,6 +438,20 @@ BOOST_AUTO_TEST_CASE(has_sines_of_what_its_reference_hides) {
     BOOST_TEST(half_turn.cos == -1);
     BOOST_TEST(quarter.sin == 1);
   }
+  for (const double reference : {0.1, 0.3, 0.7, 1.1}) {  // the lesser of both
+    const double deviation = pi - reference;
+    const L sine = std::sin(L(reference) + L(deviation));
+    BOOST_TEST(std::abs(detail::sin_cos(reference, deviation).sin / sine - 1) <= 4e-16L);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(is_rounded_to_the_mean_of_its_moments) {
+  const CardanGyro round =
+      CardanGyro(unsymmetric, {}, RestingFrame<>{}).without(RotorAsymmetry{}, 0, 1);
+  const Vector3<double>& rotor = unsymmetric.rotor;
+  const double mean = (rotor.x() + rotor.y()) / 2;
+  BOOST_TEST((round.moments().rotor == Vector3<double>(mean, mean, rotor.z())));
+  BOOST_TEST((round.moments().inner_ring == unsymmetric.inner_ring));
 }
 
 BOOST_AUTO_TEST_CASE(stops_where_nothing_resists) {
@@ -648,7 +664,7 @@ BOOST_AUTO_TEST_CASE(has_an_exact_jacobian) {
         const Vector3<double> truth = rounded(Recursion<Exact>::V((at(1) - at(-1)) / Exact(2 * h)));
         const Vector3<double> column =
             k < 6 ? Vector3<double>(mine.of_state.col(k).tail<3>()) : mine.of_time.tail<3>();
-        worst = std::max(worst, (column - truth).norm() / std::max(truth.norm(), 1.0));
+        worst = test::worst_of(worst, (column - truth).norm() / std::max(truth.norm(), 1.0));
       }
       BOOST_TEST_MESSAGE("Jacobian: " << worst);
       BOOST_TEST(worst < 1e-13);

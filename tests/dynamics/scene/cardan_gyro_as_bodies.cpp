@@ -18,6 +18,7 @@
 #include <dynamics/step/advance.hpp>
 
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::Sample;
@@ -86,8 +87,9 @@ void compare(const CardanMoments& m, const CardanBearings& b, const M& guide, co
   const Eigen::VectorXd z = counted_from_zero(b, y);
   const Vector3<double> dv = gyro.rates(t, y).template tail<3>();
   const Vector3<double> dv_bodies = bodies.rates(t, z).template tail<3>();
-  worst.accelerations = std::max(worst.accelerations,
-                                 (dv - dv_bodies).cwiseAbs().maxCoeff() / dv.cwiseAbs().maxCoeff());
+  worst.accelerations = test::worst_of(
+      worst.accelerations,
+      (dv - dv_bodies).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / dv.cwiseAbs().maxCoeff());
 
   // Of the bodies each is what the outer one of two exerts, on the axes of the inner one.
   const CardanReactions mine = gyro.reactions(t, gyro.from_vector(y));
@@ -102,7 +104,8 @@ void compare(const CardanMoments& m, const CardanBearings& b, const M& guide, co
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i) size = std::max(size, moment(i).cwiseAbs().maxCoeff());
   for (const Vector3<double>& v : off) {
-    worst.reactions = std::max(worst.reactions, v.cwiseAbs().maxCoeff() / size);
+    worst.reactions =
+        test::worst_of(worst.reactions, v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / size);
   }
 }
 
@@ -176,7 +179,7 @@ BOOST_AUTO_TEST_CASE(move_together) {
     const Vector6 y = counted_from_zero(b, gyro.to_vector(run.to(0.25 * i)));
     const Vector6 z = bodies.to_vector(bodies_run.to(0.25 * i));
     for (int k = 0; k < 6; ++k) {
-      worst = std::max(worst, std::abs(y[k] - z[k]) / std::max(std::abs(y[k]), 1.0));
+      worst = test::worst_of(worst, std::abs(y[k] - z[k]) / std::max(std::abs(y[k]), 1.0));
     }
   }
   BOOST_TEST_MESSAGE("trajectories differ by " << worst);

@@ -20,6 +20,7 @@
 #include <support/near.hpp>
 #include <support/reference_file.hpp>
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::Json;
@@ -65,7 +66,7 @@ BOOST_AUTO_TEST_CASE(drifts_as_the_reference_says) {
       const double t = periods * period;
       Advance run(gyro, 0, drift_start(c));
       const double off = std::abs(run.to(t).alpha / t / mean - 1);
-      worst = std::max(worst, off);
+      worst = test::worst_of(worst, off);
       BOOST_TEST(off < 1e-10, c.at("b") << ", " << periods << " periods: " << off);
     }
   }
@@ -333,7 +334,7 @@ BOOST_AUTO_TEST_CASE(equations_35_to_39_corrected_are_the_scene) {
         x.M_A21 - r.rotor_on_inner_ring.x(),      x.M_B21 - r.rotor_on_inner_ring.y(),
         x.M_A32 - r.inner_ring_on_outer_ring.x(), x.M_C32 - r.inner_ring_on_outer_ring.z(),
         x.M_BL - r.guide_on_outer_ring.y(),       x.M_CL - r.guide_on_outer_ring.z()};
-    for (const double off : moments) worst = std::max(worst, std::abs(off));
+    for (const double off : moments) worst = test::worst_of(worst, std::abs(off));
   }
   BOOST_TEST_MESSAGE("moments off by " << worst);
   BOOST_TEST(worst < 1e-11);
@@ -365,8 +366,8 @@ BOOST_AUTO_TEST_CASE(equation_40_has_the_sine_not_its_square) {
     const auto off = [&](int power) {
       return forty(unsymmetric, y, dqd, -2 * y[0], -1.5 * y[1], power).norm();
     };
-    corrected = std::max(corrected, off(1));
-    printed = std::max(printed, off(2));
+    corrected = test::worst_of(corrected, off(1));
+    printed = test::worst_of(printed, off(2));
   }
   BOOST_TEST_MESSAGE("(40) off by " << corrected << ", as printed by " << printed);
   BOOST_TEST(corrected < 1e-13);

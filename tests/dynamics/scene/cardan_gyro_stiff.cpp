@@ -12,6 +12,8 @@
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/step/gsl.hpp>
 
+#include <support/worst.hpp>
+
 using namespace kreisel;
 
 BOOST_AUTO_TEST_SUITE(a_cardan_gyro_in_a_stiff_bearing)
@@ -51,11 +53,11 @@ Outcome run(const char* name, double stiffness, double damping, bool deviations,
     const auto s = gyro.from_vector(steps.advance_to(t));
     const double beta = number(1) - (deviations ? 0 : reference_angle);
     outcome.angles =
-        std::max({outcome.angles, std::abs(s.alpha - number(0)), std::abs(s.beta - beta)});
+        test::worst_of(outcome.angles, std::abs(s.alpha - number(0)), std::abs(s.beta - beta));
     if (deviations) {
       const double moment = stiffness * beta + damping * number(4);
       const double off = gyro.reactions(t, s).inner_ring_on_outer_ring.y() - moment;
-      outcome.bearing = std::max(outcome.bearing, std::abs(off / moment));
+      outcome.bearing = test::worst_of(outcome.bearing, std::abs(off / moment));
     }
   }
   outcome.effort = steps.effort();

@@ -9,6 +9,7 @@
 #include <dynamics/step/advance.hpp>
 
 #include <support/near.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -24,7 +25,9 @@ TopInvariants<> drift(const EulerTop& top, const EulerTop::State& start, double 
   Advance run(top, 0, start);
   for (int i = 1; i <= 100; ++i) {
     const TopInvariants<> now = top.invariants(run.to(t_end * i / 100));
-    const auto note = [](double& worst, double off) { worst = std::max(worst, std::abs(off)); };
+    const auto note = [](double& worst, double off) {
+      worst = test::worst_of(worst, std::abs(off));
+    };
     note(most.energy, now.energy - at_start.energy);
     note(most.vertical_momentum, now.vertical_momentum - at_start.vertical_momentum);
     note(most.axial_momentum, now.axial_momentum - at_start.axial_momentum);
@@ -41,7 +44,7 @@ BOOST_AUTO_TEST_SUITE(eulers_top)
 BOOST_AUTO_TEST_CASE(keeps_energy_and_momentum_when_free) {
   const auto d = drift(EulerTop({1, 2, 2.9}), {tilted, {0.3, 2, -0.4}}, 100);
   BOOST_TEST(d.energy < 1e-12);
-  BOOST_TEST(d.momentum.maxCoeff() < 1e-12);
+  BOOST_TEST(d.momentum.maxCoeff<Eigen::PropagateNaN>() < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(turns_for_ever_about_a_principal_axis) {
@@ -90,7 +93,8 @@ BOOST_AUTO_TEST_CASE(sleeps_above_the_critical_spin) {
     Advance run(top, 0, {nearly, {0, 0, spin}});
     for (int i = 1; i <= 200; ++i) {
       const auto s = run.to(0.2 * i);
-      most = std::max(most, 2 * std::hypot(s.attitude.x(), s.attitude.y()) / s.attitude.norm());
+      most =
+          test::worst_of(most, 2 * std::hypot(s.attitude.x(), s.attitude.y()) / s.attitude.norm());
     }
     return most;
   };
@@ -104,7 +108,7 @@ BOOST_AUTO_TEST_CASE(carries_a_regulated_rotor) {
   const EulerTop gyrostat({1, 2, 2.5}, {0, 0, 0}, h);
   const auto d = drift(gyrostat, {tilted, {0.3, 0.2, -0.4}}, 100);
   BOOST_TEST(d.energy < 1e-12);
-  BOOST_TEST(d.momentum.maxCoeff() < 1e-12);
+  BOOST_TEST(d.momentum.maxCoeff<Eigen::PropagateNaN>() < 1e-12);
 }
 
 // The same top as a body held in a guide at rest.

@@ -1,7 +1,6 @@
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <type_traits>
@@ -14,6 +13,7 @@
 #include <dynamics/step/explicit.hpp>
 
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::Json;
@@ -79,7 +79,7 @@ RotorMatrices matrices(RotorMode mode, const Angles& q, const Vector8& u) {
 
 Angles some_angles() { return (Angles() << 0.7, -0.4, 0.9, 0.3, -0.8).finished(); }
 
-double largest(const Eigen::MatrixXd& m) { return m.cwiseAbs().maxCoeff(); }
+double largest(const Eigen::MatrixXd& m) { return m.cwiseAbs().maxCoeff<Eigen::PropagateNaN>(); }
 
 }  // namespace
 
@@ -170,7 +170,8 @@ BOOST_AUTO_TEST_CASE(swings_at_the_frequencies_of_the_reference) {
         const std::complex<double> truth(number(root[0]), number(root[1]));
         // Zero is a root four times and more, which rounding takes apart.
         if (std::abs(truth) < 1e-9) continue;
-        worst = std::max(worst, (found.array() - truth).abs().minCoeff() / std::abs(truth));
+        worst = test::worst_of(
+            worst, (found.array() - truth).abs().minCoeff<Eigen::PropagateNaN>() / std::abs(truth));
       }
       BOOST_TEST_MESSAGE(name << (as_printed ? ", as printed: " : ": ") << worst);
       BOOST_TEST(worst <= 1e-11);
@@ -229,8 +230,8 @@ BOOST_AUTO_TEST_CASE(has_complete_equations_that_are_the_linear_ones) {
     const auto [at_rest, slopes] = errors(PlatformEquations::complete);
     BOOST_TEST(at_rest <= 1e-13);
     BOOST_TEST(slopes <= 1e-6);
-    worst = std::max(worst, slopes);
-    wrong = std::max(wrong, errors(PlatformEquations::printed).first);
+    worst = test::worst_of(worst, slopes);
+    wrong = test::worst_of(wrong, errors(PlatformEquations::printed).first);
     BOOST_TEST(errors(PlatformEquations::corrected).first <= 0.1);
   }
   BOOST_TEST_MESSAGE("complete (27) off by " << worst << ", the printed one's constants by "
@@ -273,8 +274,8 @@ BOOST_AUTO_TEST_CASE(follows_a_moved_platform_by_27) {
     std::size_t row = 0;
     for (const double t : {0.25, 0.5, 1.0}) {
       const Angles found = steps.advance_to(t).head(5);
-      off = std::max(off, largest(found - numbers(truth[key]["angles"][row])));
-      from_exact = std::max(from_exact, largest(found - numbers(truth["exact"][row])));
+      off = test::worst_of(off, largest(found - numbers(truth[key]["angles"][row])));
+      from_exact = test::worst_of(from_exact, largest(found - numbers(truth["exact"][row])));
       ++row;
     }
     BOOST_TEST_MESSAGE(key << ": " << off << " from the reference, " << from_exact

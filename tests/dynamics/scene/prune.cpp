@@ -26,6 +26,7 @@
 #include <dynamics/study/prune.hpp>
 
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 // What prune() says that leaving terms out does at most is held against what it does, by steps of
 // 1e-15 of the whole scene and of the pruned one.
@@ -69,7 +70,7 @@ double distance(const Scene& scene, const Rates<typename Scene::Vector>& reduced
   double worst = measure(less.at(0), whole.at(0));
   for (int i = 1; i <= times; ++i) {
     const double t = horizon * std::pow(static_cast<double>(i) / times, 1.5);
-    worst = std::max(worst, measure(less.at(t), whole.at(t)));
+    worst = test::worst_of(worst, measure(less.at(t), whole.at(t)));
   }
   return worst;
 }
@@ -106,7 +107,7 @@ void compare(const Scene& scene, const typename Scene::State& start, const Pruni
     if (term.name != Quantity::name || !(term.bound > 0 && term.bound < 0.1)) continue;
     const auto less = scene.without(Quantity{}, 0, task.horizon);
     const double off = distance(scene, rates_of(less), start, task.horizon);
-    tally.worst_alone = std::max(tally.worst_alone, off / term.bound);
+    tally.worst_alone = test::worst_of(tally.worst_alone, off / term.bound);
     BOOST_TEST(off <= term.bound);
   }
   BOOST_TEST(sum <= task.tolerance);
@@ -116,7 +117,7 @@ void compare(const Scene& scene, const typename Scene::State& start, const Pruni
       [&](const auto& kind) { return distance(scene, rates_of(kind), start, task.horizon); },
       pruned.scene);
   BOOST_TEST(off <= pruned.bound);
-  tally.worst = std::max(tally.worst, off / pruned.bound);
+  tally.worst = test::worst_of(tally.worst, off / pruned.bound);
   ++tally.pruned;
   tally.close += off > 0.1 * pruned.bound ? 1 : 0;
 }
@@ -232,7 +233,7 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_under_weak_loads) {
       for (const PrunedTerm& term : pruned.terms) tally.dropped += term.kept ? 0 : 1;
       if (pruned.bound == 0) continue;
       BOOST_TEST(off <= pruned.bound);
-      tally.worst = std::max(tally.worst, off / pruned.bound);
+      tally.worst = test::worst_of(tally.worst, off / pruned.bound);
       ++tally.pruned;
       tally.close += off > 0.1 * pruned.bound ? 1 : 0;
     }
@@ -270,7 +271,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_several_motions_together) {
   const auto both = prune<GuideRate>(body, starts, task);
   double greatest = 0;
   for (const auto& start : starts) {
-    greatest = std::max(greatest, prune<GuideRate>(body, start, task).bound);
+    greatest = test::worst_of(greatest, prune<GuideRate>(body, start, task).bound);
   }
   BOOST_TEST(both.bound == greatest);
   BOOST_TEST(both.bound > 0);
@@ -295,7 +296,8 @@ BOOST_AUTO_TEST_CASE(is_solved_as_any_and_says_what_it_lacks) {
   detail::ErrorMeasure<decltype(gyro)> measure(gyro, 1e-3);
   double off = measure(gyro.to_vector(start), gyro.to_vector(start));
   for (std::size_t i = 0; i < 5; ++i) {
-    off = std::max(off, measure(gyro.to_vector(run.states[i]), gyro.to_vector(whole.states[i])));
+    off = test::worst_of(off,
+                         measure(gyro.to_vector(run.states[i]), gyro.to_vector(whole.states[i])));
   }
   BOOST_TEST(off <= pruned.bound);
   BOOST_TEST(off > 0);

@@ -15,6 +15,8 @@
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/step/advance.hpp>
 
+#include <support/worst.hpp>
+
 /// Trees with rotors against plain Newton-Euler, in which a rotor is a body like any other.
 
 using namespace kreisel;
@@ -32,7 +34,7 @@ const Json& trajectory(const std::string& name) {
 /// The largest distance of two vectors, relative to the largest number of the second.
 double off(const Eigen::VectorXd& found, const Eigen::VectorXd& truth) {
   const double size = std::max(truth.cwiseAbs().maxCoeff(), 1e-300);
-  return (found - truth).cwiseAbs().maxCoeff() / size;
+  return (found - truth).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / size;
 }
 
 /// A state of a model from a row of results.
@@ -94,8 +96,8 @@ Worst compare(const System& system, Root root, const std::string& name) {
     const Eigen::VectorXd y = state(root, row);
     Eigen::VectorXd dv;
     system.accelerations(t, y, {}, dv, w);
-    worst.acceleration = std::max(worst.acceleration,
-                                  off(without_place(system, root, dv), accelerations(root, row)));
+    worst.acceleration = test::worst_of(
+        worst.acceleration, off(without_place(system, root, dv), accelerations(root, row)));
     JointReactions r;
     system.reactions(t, y, r, w);
     for (const auto& [rotor, torque] : row["drive_torque"].items()) {
@@ -103,20 +105,20 @@ Worst compare(const System& system, Root root, const std::string& name) {
       // The carriers' accelerations are what it is made of.
       const double size = std::max(std::abs(number(torque)),
                                    1e-4 * std::abs(number(row["rotor_momentum_weight_l"][rotor])));
-      worst.drive = std::max(worst.drive, std::abs(r.drive[v] - number(torque)) / size);
+      worst.drive = test::worst_of(worst.drive, std::abs(r.drive[v] - number(torque)) / size);
     }
     if (root == Root::fixed) {
       const Vector3<double> base = numbers(row["base_torque_required"]);
-      worst.base = std::max(worst.base, off(r.on_body[0].value.moment, base));
+      worst.base = test::worst_of(worst.base, off(r.on_body[0].value.moment, base));
     }
     if (row.contains("T_kinetic")) {
       const BodyBalance b = system.balance(t, y, w);
       const Eigen::VectorXd H = numbers(row["H_inertial_about_inertial_origin"]);
-      worst.momentum = std::max(worst.momentum, off(b.momentum.value.moment, H));
+      worst.momentum = test::worst_of(worst.momentum, off(b.momentum.value.moment, H));
       const double T = number(row["T_kinetic"]);
       const double law = number(row["T2_plus_V"]);
-      worst.energy = std::max({worst.energy, std::abs(b.kinetic_energy - T) / T,
-                               std::abs(b.carrier_energy + b.potential_energy - law) / law});
+      worst.energy = test::worst_of(worst.energy, std::abs(b.kinetic_energy - T) / T,
+                                    std::abs(b.carrier_energy + b.potential_energy - law) / law);
     }
     if (t > 0) {
       const Eigen::VectorXd found = System::to_vector(run.to(t));
@@ -127,15 +129,16 @@ Worst compare(const System& system, Root root, const std::string& name) {
         // Together, for the small ones pass through 0; a rotor alone, for it turns far.
         if (system.tree().body(i).rotor) {
           const double far = std::max(1.0, turned);
-          worst.spin = std::max({worst.spin, std::abs(found[p.q] - y[p.q]) / far,
-                                 std::abs(found[n + p.v] - y[n + p.v]) / std::abs(y[n + p.v])});
+          worst.spin = test::worst_of(worst.spin, std::abs(found[p.q] - y[p.q]) / far,
+                                      std::abs(found[n + p.v] - y[n + p.v]) / std::abs(y[n + p.v]));
           continue;
         }
         for (int k = 0; k < p.q_count; ++k) {
-          worst.motion = std::max(worst.motion, std::abs(found[p.q + k] - y[p.q + k]));
+          worst.motion = test::worst_of(worst.motion, std::abs(found[p.q + k] - y[p.q + k]));
         }
         for (int k = 0; k < p.v_count; ++k) {
-          worst.motion = std::max(worst.motion, std::abs(found[n + p.v + k] - y[n + p.v + k]));
+          worst.motion =
+              test::worst_of(worst.motion, std::abs(found[n + p.v + k] - y[n + p.v + k]));
         }
       }
     }
@@ -319,8 +322,8 @@ BOOST_AUTO_TEST_CASE(loses_no_digits_at_a_million_radians_a_second) {
     const Eigen::VectorXd rest = at(0);
     const Eigen::VectorXd fast = at(0x1p20) - rest;
     const Eigen::VectorXd slow = 0x1p10 * (at(0x1p10) - rest);
-    return std::max((fast - slow).head(2).norm() / fast.head(2).norm(),
-                    (fast - slow).tail(3).norm() / fast.tail(3).norm());
+    return test::worst_of((fast - slow).head(2).norm() / fast.head(2).norm(),
+                          (fast - slow).tail(3).norm() / fast.tail(3).norm());
   };
   BOOST_TEST_MESSAGE("not linear: rotor " << unevenness(true) << ", ordinary body "
                                           << unevenness(false));

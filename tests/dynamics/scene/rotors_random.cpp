@@ -11,6 +11,7 @@
 #include <dynamics/scene/rotor_matrices.hpp>
 
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 /// Random trees with rotors against the same trees with ordinary bodies in their place, which know
 /// nothing of rotors: a free rotor is a revolute joint without force, a driven one has its torque
@@ -152,7 +153,7 @@ double size(const Motor<>& m) { return m.resultant.norm() + m.moment.norm(); }
 struct Worst {
   double value = 0;
 
-  void note(double distance, double scale) { value = std::max(value, distance / scale); }
+  void note(double distance, double scale) { value = test::worst_of(value, distance / scale); }
 };
 
 constexpr std::uint64_t seeds = 500;
@@ -179,19 +180,19 @@ BOOST_AUTO_TEST_CASE(is_the_tree_with_ordinary_bodies) {
       a.accelerations(0, y, random.extra, x, w);
       b.accelerations(0, y, random.extra, z, v);
       const double fastest = z.cwiseAbs().maxCoeff() + 1;
-      rates.note((x - z).cwiseAbs().maxCoeff(), fastest);
+      rates.note((x - z).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), fastest);
       a.rates(0, y, x, w);
       b.rates(0, y, z, v);
-      rates.note((x - z).cwiseAbs().maxCoeff(), z.cwiseAbs().maxCoeff() + 1);
+      rates.note((x - z).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), z.cwiseAbs().maxCoeff() + 1);
 
       a.joint_forces(0, y, random.extra, x, w);
       b.joint_forces(0, y, random.extra, z, v);
-      inverse.note((x - z).cwiseAbs().maxCoeff(), z.cwiseAbs().maxCoeff() + 1);
+      inverse.note((x - z).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), z.cwiseAbs().maxCoeff() + 1);
 
       Eigen::MatrixXd A, B;
       a.mass_matrix(y, A, w);
       b.mass_matrix(y, B, v);
-      mass.note((A - B).cwiseAbs().maxCoeff(), B.cwiseAbs().maxCoeff());
+      mass.note((A - B).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), B.cwiseAbs().maxCoeff());
 
       JointReactions r, s;
       a.reactions(0, y, r, w);
@@ -201,7 +202,7 @@ BOOST_AUTO_TEST_CASE(is_the_tree_with_ordinary_bodies) {
       for (std::size_t i = 0; i < r.on_body.size(); ++i) {
         reaction.note(size(r.on_body[i].value - s.on_body[i].value), largest);
       }
-      drive.note((r.drive - s.drive).cwiseAbs().maxCoeff(), largest);
+      drive.note((r.drive - s.drive).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), largest);
 
       std::vector<ReactionParts> p, o;
       a.reaction_parts(0, y, p, w);
@@ -285,7 +286,7 @@ BOOST_AUTO_TEST_CASE(obeys_its_matrices) {
       const Eigen::VectorXd gyroscopic = m.G_R * u;
       const Eigen::VectorXd rest = inertia + m.c + gyroscopic - m.Q;
       const double scale = 1 + inertia.norm() + m.c.norm() + gyroscopic.norm() + m.Q.norm();
-      worst = std::max(worst, rest.cwiseProduct(moved(m.rates)).norm() / scale);
+      worst = test::worst_of(worst, rest.cwiseProduct(moved(m.rates)).norm() / scale);
     }
   }
   BOOST_TEST_MESSAGE("matrices: " << worst);
@@ -327,8 +328,8 @@ BOOST_AUTO_TEST_CASE(is_linearised_by_dual_numbers) {
           other[i] = g[i].derivatives()[k];
           BOOST_TEST(std::abs(f[i].value() - value[i]) <= 1e-15 * size);
         }
-        worst = std::max(worst, (found - slope).norm() / size);
-        apart = std::max(apart, (found - other).norm() / size);
+        worst = test::worst_of(worst, (found - slope).norm() / size);
+        apart = test::worst_of(apart, (found - other).norm() / size);
       }
     }
   }

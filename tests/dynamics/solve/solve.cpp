@@ -25,6 +25,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 #include <support/top_truth.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 
@@ -46,8 +47,8 @@ double true_error(const Trajectory<EulerTop::State>& found, const Truth& truth) 
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     const exact::TopMotion exact = truth.at(found.times[i]);
     const EulerTop::State state{exact.attitude, exact.angular_velocity};
-    worst =
-        std::max(worst, distance(EulerTop::to_vector(found.states[i]), EulerTop::to_vector(state)));
+    worst = test::worst_of(
+        worst, distance(EulerTop::to_vector(found.states[i]), EulerTop::to_vector(state)));
   }
   return worst;
 }
@@ -63,7 +64,7 @@ struct Honesty {
     const double ratio = error / report.error_estimate;
     runs += 1;
     within += ratio >= 0.1 && ratio <= 1 ? 1 : 0;
-    greatest = std::max(greatest, ratio);
+    greatest = test::worst_of(greatest, ratio);
     if (report.tolerance_kept && error > report.tolerance) promises_kept = false;
   }
 };
@@ -123,7 +124,7 @@ BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
     detail::ErrorMeasure<Scene> distance(1e-3);
     double off = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
-      off = std::max(
+      off = test::worst_of(
           off, distance(Scene::to_vector(found.states[i]), Scene::to_vector(truth.states[i])));
     }
     BOOST_TEST(off <= found.report.error_estimate);
@@ -223,8 +224,8 @@ BOOST_AUTO_TEST_CASE(tells_how_far_closed_forms_are_off) {
     for (std::size_t i = 0; i < run.times.size(); ++i) {
       truth.advance(run.times[i] - (i > 0 ? run.times[i - 1] : 0));
       const auto& [attitude, rate] = run.states[i];
-      error = std::max({error, truth.attitude_error(attitude),
-                        truth.rate_error(rate) / std::max(1e-3, rate.norm())});
+      error = test::worst_of(error, truth.attitude_error(attitude),
+                             truth.rate_error(rate) / std::max(1e-3, rate.norm()));
     }
     honesty.note(run.report, error);
   }
@@ -274,7 +275,8 @@ BOOST_AUTO_TEST_CASE(solves_bodies_on_moving_guides) {
   detail::ErrorMeasure<std::remove_const_t<decltype(body)>> distance(1e-3);
   double off = 0;
   for (std::size_t i = 0; i < loose.states.size(); ++i) {
-    off = std::max(off, distance(body.to_vector(loose.states[i]), body.to_vector(tight.states[i])));
+    off = test::worst_of(
+        off, distance(body.to_vector(loose.states[i]), body.to_vector(tight.states[i])));
   }
   BOOST_TEST(off <= loose.report.error_estimate);
   BOOST_TEST(off >= 0.1 * loose.report.error_estimate);
@@ -330,8 +332,8 @@ BOOST_AUTO_TEST_CASE(splits_fast_tops) {
     double off = 0;
     detail::ErrorMeasure<EulerTop> distance(1e-3);
     for (std::size_t i = 0; i < times.size(); ++i) {
-      off = std::max(off, distance(EulerTop::to_vector(found.states[i]),
-                                   EulerTop::to_vector(by_steps.states[i])));
+      off = test::worst_of(off, distance(EulerTop::to_vector(found.states[i]),
+                                         EulerTop::to_vector(by_steps.states[i])));
     }
     BOOST_TEST_MESSAGE(tolerance << ": off by " << off << ", estimate "
                                  << found.report.error_estimate << ", "
@@ -552,13 +554,14 @@ BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
         detail::ErrorMeasure<EulerTop> distance(1e-3);
         double error = 0;
         for (std::size_t k = 0; k < times.size(); ++k) {
-          error = std::max(error, distance(EulerTop::to_vector(found.states.at(k)), truth[k]));
+          error =
+              test::worst_of(error, distance(EulerTop::to_vector(found.states.at(k)), truth[k]));
         }
         const double ratio = error / found.report.error_estimate;
         runs += 1;
         beyond += ratio > 1 ? 1 : 0;
         broken += found.report.tolerance_kept && error > tolerance ? 1 : 0;
-        greatest = std::max(greatest, ratio);
+        greatest = test::worst_of(greatest, ratio);
       }
     }
   }
@@ -592,7 +595,7 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
       const double ratio = true_error(found, truth) / found.report.error_estimate;
       runs += 1;
       beyond += ratio > 1 ? 1 : 0;
-      greatest = std::max(greatest, ratio);
+      greatest = test::worst_of(greatest, ratio);
     }
   }
   BOOST_TEST_MESSAGE(beyond << " of " << runs << " beyond their estimate, greatest " << greatest);
@@ -615,7 +618,7 @@ BOOST_AUTO_TEST_CASE(does_not_try_until_two_agree) {
           solve(top, start, {.times = every(10, 100), .tolerance = 1e-6, .method = method});
       const double ratio = true_error(found, truth) / found.report.error_estimate;
       beyond += ratio > 1 ? 1 : 0;
-      greatest = std::max(greatest, ratio);
+      greatest = test::worst_of(greatest, ratio);
     }
   }
   BOOST_TEST_MESSAGE(beyond << " of 50 beyond their estimate, greatest " << greatest);

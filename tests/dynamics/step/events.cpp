@@ -8,6 +8,7 @@
 #include <dynamics/step/explicit.hpp>
 
 #include <support/near.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -33,7 +34,7 @@ BOOST_AUTO_TEST_CASE(is_of_full_order_within_a_step) {
     steps.step_towards(10);
     for (int i = 0; i <= 20; ++i) {
       const double t = from + (steps.t() - from) * i / 20;
-      worst = std::max(worst, (steps.at(t) - State(std::cos(t), std::sin(t))).norm());
+      worst = test::worst_of(worst, (steps.at(t) - State(std::cos(t), std::sin(t))).norm());
     }
   }
   BOOST_TEST_MESSAGE("worst " << worst);

@@ -1,6 +1,5 @@
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <dynamics/step/explicit.hpp>
 
 #include <support/near.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_within_steps_too) {
       rough.advance_to(0.8L * i / n);
       for (const long double share : {0.1L, 0.3L, 0.5L, 0.7L, 0.9L}) {
         const long double t = from + share * (rough.t() - from);
-        within = std::max(within, std::abs(rough.at(t)[0] - exact.advance_to(t)[0]));
+        within = test::worst_of(within, std::abs(rough.at(t)[0] - exact.advance_to(t)[0]));
       }
     }
     BOOST_TEST(rough.effort().evaluations <= 26 * n + 2);
@@ -398,7 +398,7 @@ BOOST_AUTO_TEST_CASE(give_what_those_of_fixed_size_give) {
   double worst = 0;
   const auto compare = [&](const VectorXd& truth) {
     BOOST_TEST((in_place.y() == by_value.y()));
-    worst = std::max(worst, (in_place.y() - truth).norm() / truth.norm());
+    worst = test::worst_of(worst, (in_place.y() - truth).norm() / truth.norm());
   };
   for (const double t : {5.0, 20.0, -3.0}) {
     fixed.advance_to(t);
@@ -414,14 +414,14 @@ BOOST_AUTO_TEST_CASE(give_what_those_of_fixed_size_give) {
   for (const double share : {0.0, 0.3, 0.8, 0.1, 0.5, 0.99, 1.0}) {
     const double t = -3 + share * length;
     const VectorXd truth = fixed.at(t);
-    worst = std::max(worst, (in_place.at(t) - truth).norm() / truth.norm());
+    worst = test::worst_of(worst, (in_place.at(t) - truth).norm() / truth.norm());
   }
   fixed.back_to(-3 + 0.4 * length);
   in_place.back_to(-3 + 0.4 * length);
   fixed.advance_to(0);
   in_place.advance_to(0);
   by_value.advance_to(0);
-  worst = std::max(worst, (in_place.y() - fixed.y()).norm() / fixed.y().norm());
+  worst = test::worst_of(worst, (in_place.y() - fixed.y()).norm() / fixed.y().norm());
   BOOST_TEST_MESSAGE("fixed and run-time size differ by " << worst);
   BOOST_TEST(worst < 1e-13);
   // and back where they began, by steps of 1e-12

@@ -19,6 +19,7 @@
 #include <dynamics/study/stability_boundaries.hpp>
 
 #include <support/reference_file.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::Json;
@@ -90,7 +91,7 @@ double distance(const Json& expected, const Multipliers& multipliers) {
     const std::complex<double> l(number(pair.at(0)), number(pair.at(1)));
     double nearest = std::numeric_limits<double>::infinity();
     for (const auto& m : multipliers) nearest = std::min(nearest, std::abs(m - l));
-    worst = std::max(worst, nearest);
+    worst = test::worst_of(worst, nearest);
   }
   return worst;
 }
@@ -115,7 +116,7 @@ BOOST_AUTO_TEST_CASE(are_those_of_the_reference) {
       BOOST_TEST(m.a_1_error + m.a_2_error < 1e-10, name);
     }
     const double off = distance(c.at("multipliers"), m.multipliers());
-    worst = std::max(worst, off);
+    worst = test::worst_of(worst, off);
     BOOST_TEST(off < 1e-11, name << ": " << off);
     BOOST_TEST(std::abs(m.growth() - number(c.at("rho"))) < 1e-11, name << ' ' << m.growth());
     const auto verdict = c.at("stable").get<bool>() ? Stability::stable : Stability::unstable;
@@ -281,7 +282,7 @@ BOOST_AUTO_TEST_CASE(have_the_boundaries_of_the_reference) {
       BOOST_TEST(nearest < 1e-10, all.at(k).at("label") << ' ' << expected << ": " << nearest);
       BOOST_TEST(nearest <= error + 1e-15, all.at(k).at("label")
                                                << ' ' << expected << ": " << error);
-      worst = std::max(worst, nearest);
+      worst = test::worst_of(worst, nearest);
       ++found;
     }
   }

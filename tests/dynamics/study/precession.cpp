@@ -13,6 +13,7 @@
 #include <dynamics/study/precession_gimbals.hpp>
 
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 using namespace kreisel;
 using test::Json;
@@ -40,7 +41,7 @@ double true_error(Exact& exact, const Places& places, const TechnicalMotion& mot
   double worst = 0;
   for (const TechnicalSample& s : motion.samples) {
     exact.advance_to(s.t);
-    worst = std::max(worst, (places(exact.y()) - places(s.place)).norm());
+    worst = test::worst_of(worst, (places(exact.y()) - places(s.place)).norm());
   }
   return worst;
 }

@@ -12,6 +12,8 @@
 #include <dynamics/study/precession_admissibility.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 
+#include <support/worst.hpp>
+
 using namespace kreisel;
 using test::Json;
 using test::number;
@@ -42,7 +44,7 @@ double off(const Json& roots, const std::vector<Complex>& found) {
     const Complex truth = complex(root.get<std::string>());
     double least = 1e9;
     for (const Complex& s : found) least = std::min(least, std::abs(s - truth));
-    worst = std::max(worst, least);
+    worst = test::worst_of(worst, least);
   }
   return worst;
 }
