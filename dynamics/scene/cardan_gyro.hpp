@@ -468,17 +468,17 @@ class CardanGyro {
   }
 
   /// This gyro with something left out, for prune(): on a guide in the mean steady motion between
-  /// two times; on one at rest where it is at their middle; with the mean of A_1 and B_1 for both;
-  /// with rings without mass.
+  /// two times; on one at rest, in whatever pose; with the mean of A_1 and B_1 for both; with rings
+  /// without mass.
   [[nodiscard]] CardanGyro<RotatingFrame<>, Rotor> without(GuideUnsteadiness /*what*/, double begin,
                                                            double end) const
       requires(!SteadyGuide<M> && !detail::never_turns<M>) {
     return {moments_, bearings_, mean_motion(guide_, begin, end), rotor_};
   }
-  [[nodiscard]] CardanGyro<RestingFrame<>, Rotor> without(GuideRate /*what*/, double begin,
-                                                          double end) const
+  [[nodiscard]] CardanGyro<RestingFrame<>, Rotor> without(GuideRate /*what*/, double /*begin*/,
+                                                          double /*end*/) const
       requires(!detail::is_resting<M> && !detail::never_turns<M>) {
-    return {moments_, bearings_, RestingFrame<>{guide_((begin + end) / 2).X}, rotor_};
+    return {moments_, bearings_, RestingFrame<>{}, rotor_};
   }
   [[nodiscard]] CardanGyro without(RotorAsymmetry /*what*/, double /*begin*/,
                                    double /*end*/) const {
