@@ -91,6 +91,11 @@ BOOST_AUTO_TEST_CASE(infinite_periods_are_refused) {
              "3.141592654 rad: it stays there");
   BOOST_TEST(message_of([&] { (void)swing(plain, 3.2); }) ==
              "amplitude = 3.2 rad lies outside [-3.141592654, 3.141592654] rad");
+  // So little below the top it is, to rounding, as high as the top.
+  BOOST_CHECK_EXCEPTION((void)swing(plain, std::acos(-1.0) - 4.4e-14), ComputationFailed,
+                        [](const auto& error) {
+                          return std::string(error.what()).starts_with("the period is infinite");
+                        });
   // E = 1, K = -1: the height of the barrier at 0 is reached again where
   // 1 - cos p = sin^2 p, p = pi/2: E (1 - cos p) + K sin^2 p = 1 - 1 = 0.
   const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
