@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
 #include <limits>
 
 #include <dynamics/scene/structure.hpp>
@@ -54,6 +55,20 @@ BOOST_AUTO_TEST_CASE(know_a_body_of_revolution) {
   const detail::TensorOfFour<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
   BOOST_TEST(T.across() == 2);
   BOOST_TEST(T.along() == 3);
+}
+
+// By four roundings, and neighbours the other way, so that their difference moves by as much.
+BOOST_AUTO_TEST_CASE(move_by_last_digits) {
+  const detail::GeneralTensor T({2, 3, 4, 0, 0, 0});
+  const detail::GeneralTensor moved = T.off_by_last_digits();
+  const auto change = [&](const Vector3<double>& w) {
+    const auto torque = [&w](const detail::GeneralTensor& tensor) {
+      return detail::vector<double>(tensor.gyroscopic_torque(detail::components(w)));
+    };
+    return (torque(moved) - torque(T)).norm();
+  };
+  BOOST_TEST(std::abs(change({1, 1, 0}) - 4 * u * (2 + 3)) <= 4 * u);
+  BOOST_TEST(std::abs(change({0, 1, 1}) - 4 * u * (3 + 4)) <= 4 * u);
 }
 
 BOOST_AUTO_TEST_CASE(solve) {
