@@ -11,12 +11,13 @@
 #include <cstdlib>
 #include <ctime>
 #include <string>
-#include <tests/support/worst.hpp>
 #include <vector>
 
 #include <dynamics/ensemble/ensemble.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
+
+#include <tests/support/worst.hpp>
 
 using namespace kreisel;
 

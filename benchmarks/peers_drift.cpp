@@ -9,13 +9,13 @@
 #include <exception>
 #include <functional>
 #include <string>
-#include <tests/support/worst.hpp>
 #include <vector>
 
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/solve/solve.hpp>
 
 #include "peers_drift/engine.hpp"
+#include <tests/support/worst.hpp>
 
 namespace peers {
 

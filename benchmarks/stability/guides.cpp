@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <tests/support/worst.hpp>
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/posed.hpp>
@@ -16,6 +15,7 @@
 #include <motor/attitude.hpp>
 
 #include "trial.hpp"
+#include <tests/support/worst.hpp>
 
 namespace stability {
 
@@ -31,12 +31,13 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 double distance(const Motion& a, const Motion& b) {
   const double size = std::max(
       1.0, b.V.value.moment.norm() + b.X.value.translation.norm() + b.dV.value.moment.norm());
-  return test::worst_of((a.X.value.rotation - b.X.value.rotation).cwiseAbs().maxCoeff(),
-                        (a.X.value.translation - b.X.value.translation).norm() / size,
-                        (a.V.value.resultant - b.V.value.resultant).norm(),
-                        (a.V.value.moment - b.V.value.moment).norm() / size,
-                        (a.dV.value.resultant - b.dV.value.resultant).norm(),
-                        (a.dV.value.moment - b.dV.value.moment).norm() / size);
+  return test::worst_of(
+      (a.X.value.rotation - b.X.value.rotation).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+      (a.X.value.translation - b.X.value.translation).norm() / size,
+      (a.V.value.resultant - b.V.value.resultant).norm(),
+      (a.V.value.moment - b.V.value.moment).norm() / size,
+      (a.dV.value.resultant - b.dV.value.resultant).norm(),
+      (a.dV.value.moment - b.dV.value.moment).norm() / size);
 }
 
 /// Rates so small that nothing may be seen of them.

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <numbers>
 #include <stdexcept>
-#include <tests/support/worst.hpp>
 
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/guide/resting.hpp>
@@ -16,6 +15,7 @@
 
 #include "../work_precision/references.hpp"
 #include "trial.hpp"
+#include <tests/support/worst.hpp>
 
 namespace stability {
 

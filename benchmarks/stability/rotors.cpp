@@ -10,7 +10,6 @@
 #include <complex>
 #include <limits>
 #include <numbers>
-#include <tests/support/worst.hpp>
 
 #include <dynamics/scene/unsymmetric_rotor.hpp>
 #include <dynamics/study/floquet.hpp>
@@ -18,6 +17,7 @@
 
 #include "platform.hpp"
 #include "trial.hpp"
+#include <tests/support/worst.hpp>
 
 namespace stability {
 
@@ -110,7 +110,8 @@ void beside_limit(const Recorder& out, const std::string& what, const Vector3<do
     const double size = X.matrix.cwiseQuotient(scale).cwiseAbs().maxCoeff();
     const double digits = 4 * u * rotor.x() / rotor.y();
     worst_transition = test::worst_of(
-        worst_transition, wrong.cwiseQuotient(X.error + digits * size * scale).maxCoeff());
+        worst_transition,
+        wrong.cwiseQuotient(X.error + digits * size * scale).maxCoeff<Eigen::PropagateNaN>());
 
     const PairedMultipliers m = PairedMultipliers::of(X);
     const auto [growing, swinging] = truth.squares();

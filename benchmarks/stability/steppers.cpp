@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tests/support/worst.hpp>
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/step/events.hpp>
@@ -18,6 +17,7 @@
 #include <motor/attitude.hpp>
 
 #include "trial.hpp"
+#include <tests/support/worst.hpp>
 
 namespace stability {
 

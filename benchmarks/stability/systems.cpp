@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <tests/support/worst.hpp>
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/resting.hpp>
@@ -14,6 +13,7 @@
 
 #include "platform.hpp"
 #include "trial.hpp"
+#include <tests/support/worst.hpp>
 
 namespace stability {
 

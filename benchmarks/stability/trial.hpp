@@ -7,13 +7,13 @@
 #include <functional>
 #include <initializer_list>
 #include <string>
-#include <tests/support/worst.hpp>
 #include <vector>
 
 #include <dynamics/solve/solve.hpp>
 #include <motor/error.hpp>
 
 #include "catalogue.hpp"
+#include <tests/support/worst.hpp>
 
 namespace stability {
 

@@ -10,7 +10,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <tests/support/worst.hpp>
 #include <utility>
 #include <vector>
 
@@ -24,6 +23,7 @@
 
 #include "point.hpp"
 #include "problem.hpp"
+#include <tests/support/worst.hpp>
 #ifdef KREISEL_WITH_SUNDIALS
 #include "cvode.hpp"
 #endif

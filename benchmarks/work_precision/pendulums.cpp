@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <string>
-#include <tests/support/worst.hpp>
 #include <type_traits>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "methods.hpp"
 #include "references.hpp"
 #include "scenes.hpp"
+#include <tests/support/worst.hpp>
 
 namespace work_precision {
 

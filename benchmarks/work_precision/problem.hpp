@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <tests/support/worst.hpp>
 #include <vector>
+
+#include <tests/support/worst.hpp>
 
 namespace work_precision {
 

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <tests/support/worst.hpp>
 #include <type_traits>
 
 #include <dynamics/exact/free_top.hpp>
@@ -14,6 +13,7 @@
 #include "methods.hpp"
 #include "references.hpp"
 #include "scenes.hpp"
+#include <tests/support/worst.hpp>
 
 namespace work_precision {
 

@@ -31,8 +31,8 @@ enum class GuideMomentum {
 ///   J_fy = R u_x + Q u_y + u_z g_b        g_b = (Q - C) alpha - R beta
 ///   J_fz = C u_z + u_x g_a + u_y g_b
 ///
-/// M is what springs and friction do, and of first order the drive's torque M_C, which lies along the
-/// inclined axis: -alpha M_C to M_y.
+/// M is what springs and friction do, and of first order the drive's torque M_C, which lies along
+/// the inclined axis: -alpha M_C to M_y.
 ///
 ///   M_C = C ou_z + R (u_x^2 - u_y^2) + (Q - P) u_x u_y
 ///
@@ -43,8 +43,9 @@ enum class GuideMomentum {
 /// Units  : rad, rad/s
 /// Error  : for angles and u of the size eps, of the order eps^k, k = 3 with first_order, also if
 ///          u_z is not small; 2 with constant, 1 if u_z is not small; 1 with none, but 2 for a
-///          symmetric rotor and constant u. With first_order the field's is of the order eps^2 for
-///          angles of the size eps and any u (tests/dynamics/scene/gyro_small_oscillations.cpp).
+///          symmetric rotor and constant u. With first_order the field errs by the order eps^2
+///          where the angles are of the size eps and u of any
+///          (tests/dynamics/scene/gyro_small_oscillations.cpp).
 ///          departure() measures it
 /// Throws : InvalidInput for what CardanGyro refuses, references of the bearings other than 0, or a
 ///          speed that is not finite
