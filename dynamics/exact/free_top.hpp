@@ -43,7 +43,7 @@ namespace kreisel::exact {
 ///          near the separatrix (tried to 1e-15) and for symmetric bodies as elsewhere; besides
 ///          8 * 2^-64 of the angle L t/I_min, so <= 5e-14 rad over 1e4 periods, 5e-13 rad after
 ///          1e6 s at 2 rad/s                               (tests/dynamics/exact/free_top.cpp)
-/// Cost   : at() 1.1 us, to construct 5 us (g++ 12 -O2, EPYC)
+/// Cost   : at() 1.3 us, to construct 4.8 us (g++ 12 -O2, EPYC)
 /// Limits : near the separatrix the rounding of an input to double moves D by u L^2 and so each
 ///          passage by the middle axis by u L^2 / (2 lambda |D|) seconds; no formula gets that back
 class FreeTop {

@@ -140,7 +140,7 @@ class SymmetricGyrostat {
 ///          nearly symmetric bodies as elsewhere; besides 8 * 2^-64 of the angle
 ///          (L + |h|) t/I_min, measured 7e-14 rad over 1e4 periods
 ///                                                         (tests/dynamics/exact/gyrostat.cpp)
-/// Cost   : at() 1.3 us, to construct 22 us (g++ 12 -O2, EPYC)
+/// Cost   : at() 0.8 us, to construct 5 us (g++ 12 -O2, EPYC)
 /// Limits : as with FreeTop, near a separatrix an input's own rounding decides; on it the motion
 ///          may return after the time in which 2^-120 grows to 1
 class Gyrostat {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <limits>
 
 namespace kreisel::exact {
 
@@ -29,8 +29,25 @@ struct Twofold {
 
   friend Twofold operator*(const Twofold& a, const Twofold& b) {
     const long double product = a.hi * b.hi;
-    const long double error = std::fma(a.hi, b.hi, -product);
+    const Halves p = halves(a.hi);
+    const Halves q = halves(b.hi);
+    const long double error =
+        p.low * q.low - (((product - p.high * q.high) - p.low * q.high) - p.high * q.low);
     return {product, error + (a.hi * b.lo + a.lo * b.hi)};
+  }
+
+ private:
+  /// x by its leading and its last digits, whose products are exact. fma() of long double takes as
+  /// long as the rest of a top's start.
+  struct Halves {
+    long double high, low;
+  };
+  [[nodiscard]] static Halves halves(long double x) {
+    constexpr long double splitter =
+        static_cast<long double>(1ULL << (std::numeric_limits<long double>::digits + 1) / 2) + 1;
+    const long double scaled = splitter * x;
+    const long double high = scaled - (scaled - x);
+    return {high, x - high};
   }
 };
 
