@@ -106,15 +106,17 @@ struct Inertia {
 
   /// The momentum of a velocity (or the force of an acceleration). Cost: 48 flops.
   [[gnu::always_inline]] friend Motor<S> operator*(const Inertia& T, const Motor<S>& V) {
-    const auto& [u, v] = V;
-    const Vector3<S>& s = T.first_moment;
+    using detail::Read;
+    Read<S> ux = V.resultant.x(), uy = V.resultant.y(), uz = V.resultant.z();
+    Read<S> vx = V.moment.x(), vy = V.moment.y(), vz = V.moment.z();
+    Read<S> m = T.mass, sx = T.first_moment.x(), sy = T.first_moment.y(), sz = T.first_moment.z();
     const Symmetric3<S>& t = T.tensor;
-    return {{T.mass * v.x() + (u.y() * s.z() - u.z() * s.y()),
-             T.mass * v.y() + (u.z() * s.x() - u.x() * s.z()),
-             T.mass * v.z() + (u.x() * s.y() - u.y() * s.x())},
-            {s.y() * v.z() - s.z() * v.y() + (t.xx * u.x() + t.xy * u.y() + t.xz * u.z()),
-             s.z() * v.x() - s.x() * v.z() + (t.xy * u.x() + t.yy * u.y() + t.yz * u.z()),
-             s.x() * v.y() - s.y() * v.x() + (t.xz * u.x() + t.yz * u.y() + t.zz * u.z())}};
+    Read<S> xx = t.xx, yy = t.yy, zz = t.zz, xy = t.xy, xz = t.xz, yz = t.yz;
+    return {
+        {m * vx + (uy * sz - uz * sy), m * vy + (uz * sx - ux * sz), m * vz + (ux * sy - uy * sx)},
+        {sy * vz - sz * vy + (xx * ux + xy * uy + xz * uz),
+         sz * vx - sx * vz + (xy * ux + yy * uy + yz * uz),
+         sx * vy - sy * vx + (xz * ux + yz * uy + zz * uz)}};
   }
 
   /// Two bodies rigidly joined, both reduced at the same origin on the same axes.
@@ -396,7 +398,8 @@ struct InertiaTensor {
     const Inertia<S> centred{mass, Vector3<S>::Zero(), symmetric(tensor)};
     check(centred, rule);
     const Vector3<S> s(mass * centre.x(), mass * centre.y(), mass * centre.z());
-    return {{mass, s, centred.tensor + offset_product(centre, Vector3<S>(s / S(2)))}};
+    const Vector3<S> half(s.x() / S(2), s.y() / S(2), s.z() / S(2));
+    return {{mass, s, centred.tensor + offset_product(centre, half)}};
   }
 
   /// From mass, centre of mass and the tensor about the origin of In.

@@ -3,6 +3,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <type_traits>
+
+#include <motor/columns.hpp>
+
 namespace kreisel {
 
 template <class S>
@@ -17,6 +21,11 @@ using Matrix3 = Eigen::Matrix<S, 3, 3>;
 // (benchmarks/kernels.cpp).
 
 namespace detail {
+
+/// A number that is read before anything of a result is stored: by value, for the compiler cannot
+/// tell that what it stores is none of what it has yet to read. No copies of dual numbers, though.
+template <class S>
+using Read = std::conditional_t<std::is_arithmetic_v<S>, const S, const S&>;
 
 /// The i-th component of R v.
 template <class S>
@@ -39,6 +48,16 @@ template <class S>
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) C(i, k) = A(i, 0) * B(0, k) + A(i, 1) * B(1, k) + A(i, 2) * B(2, k);
   }
+}
+[[gnu::always_inline]] inline void multiply(const Columns& A, const Matrix3<double>& B,
+                                            Matrix3<double>& C) {
+  A.combined(B.data()).to(C.data());
+  A.combined(B.data() + 3).to(C.data() + 3);
+  A.combined(B.data() + 6).to(C.data() + 6);
+}
+[[gnu::always_inline]] inline void multiply(const Matrix3<double>& A, const Matrix3<double>& B,
+                                            Matrix3<double>& C) {
+  multiply(Columns(A.data()), B, C);
 }
 
 /// R^t v
@@ -165,13 +184,13 @@ struct Motor {
 /// Cost   : 30 flops
 template <class S>
 [[nodiscard, gnu::always_inline]] inline Motor<S> cross(const Motor<S>& a, const Motor<S>& b) {
-  const auto& [p, p0] = a;
-  const auto& [q, q0] = b;
-  return {
-      {p.y() * q.z() - p.z() * q.y(), p.z() * q.x() - p.x() * q.z(), p.x() * q.y() - p.y() * q.x()},
-      {p.y() * q0.z() - p.z() * q0.y() + (p0.y() * q.z() - p0.z() * q.y()),
-       p.z() * q0.x() - p.x() * q0.z() + (p0.z() * q.x() - p0.x() * q.z()),
-       p.x() * q0.y() - p.y() * q0.x() + (p0.x() * q.y() - p0.y() * q.x())}};
+  detail::Read<S> ax = a.resultant.x(), ay = a.resultant.y(), az = a.resultant.z();
+  detail::Read<S> bx = b.resultant.x(), by = b.resultant.y(), bz = b.resultant.z();
+  detail::Read<S> ax0 = a.moment.x(), ay0 = a.moment.y(), az0 = a.moment.z();
+  detail::Read<S> bx0 = b.moment.x(), by0 = b.moment.y(), bz0 = b.moment.z();
+  return {{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx},
+          {ay * bz0 - az * by0 + (ay0 * bz - az0 * by), az * bx0 - ax * bz0 + (az0 * bx - ax0 * bz),
+           ax * by0 - ay * bx0 + (ax0 * by - ay0 * bx)}};
 }
 
 /// Reciprocal product  a . b0 + a0 . b: the power of a force motor on a velocity motor.

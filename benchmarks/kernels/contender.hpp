@@ -39,15 +39,24 @@ template <class Operation, class Input>
   return operation(input);
 }
 
+/// Some inputs would lie across lines of the cache and others not, of one library and not of another.
+template <class Input>
+struct alignas(64) OnLinesOfItsOwn {
+  Input input;
+};
+
 /// `operate` works on one of the `all`, which are the Numbers in a library's own forms; `flat` makes
 /// a list of numbers, in their order, of what comes out.
 template <class Input, class Operation, class Flat>
 Contender contender(std::string operation, std::string name, const std::array<Input, inputs>& all,
                     Operation operate, Flat flat) {
+  std::array<OnLinesOfItsOwn<Input>, inputs> apart;
+  for (std::size_t i = 0; i < inputs; ++i) apart[i].input = all[i];
   return {std::move(operation), std::move(name),
-          [all, operate](long calls) {
+          [apart, operate](long calls) {
             for (long n = 0; n < calls; ++n) {
-              const auto result = call(operate, all[static_cast<std::size_t>(n) % inputs]);
+              alignas(64) const auto result =
+                  call(operate, apart[static_cast<std::size_t>(n) % inputs].input);
               asm volatile("" : : "r"(&result) : "memory");  // the result counts as used
             }
           },
