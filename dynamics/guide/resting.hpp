@@ -15,4 +15,14 @@ struct RestingFrame {
   [[nodiscard]] SteadyMotion<detail::NoVector, detail::NoVector> steady() const { return {}; }
 };
 
+namespace detail {
+
+/// Whether a guide is a RestingFrame.
+template <class M>
+inline constexpr bool is_resting = false;
+template <class G, class I, class S>
+inline constexpr bool is_resting<RestingFrame<G, I, S>> = true;
+
+}  // namespace detail
+
 }  // namespace kreisel

@@ -4,10 +4,15 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/felt_motion.hpp>
 #include <dynamics/scene/free_body.hpp>
+#include <dynamics/scene/terms.hpp>
 
 namespace kreisel {
 
@@ -58,6 +63,8 @@ template <class S>
 /// Source : paper 002 section 8a, (19) with the tensor of (41)-(43)
 /// Units  : metre, radian
 /// Error  : of second order in q; linear_error() measures it against the exact equations
+/// Cost   : coefficients that do not change, on a guide at rest or in steady motion without gravity, are
+///          worked out once
 template <class M>
 class SmallOscillations {
   static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
@@ -94,39 +101,38 @@ class SmallOscillations {
       throw InvalidInput(
           "small oscillations: the body's inertia is singular (a point or a needle)");
     }
+    if constexpr (SteadyGuide<M>) {
+      if (detail::is_resting<M> || gravity.isZero(0)) steady_ = coefficients_at(0);
+    }
   }
 
   [[nodiscard]] Coefficients coefficients(const S& t) const {
-    const FrameMotion<Guide, Inertial, S> motion = guide_(t);
-    const Vector3<S>& u = motion.V.value.resultant;
-    const Vector3<S> a =
-        motion.origin_acceleration() - motion.X.value.rotation.transpose() * gravity_;
-    const Matrix3<S> U = skew(u);
-    const Matrix3<S> W = skew(Vector3<S>(motion.dV.value.resultant)) + U * U;
-    const auto& [m, s, tensor] = inertia_.value;
-    const Matrix3<S> theta = tensor.matrix();
-    const Matrix3<S> J = theta.trace() / 2 * Matrix3<S>::Identity() - theta;
-    const Matrix3<S> s_cross = skew(s);
-
-    Coefficients c;
-    c.mass = mass_;
-    c.damping << 2 * m * U, -2 * U * s_cross, 2 * s_cross * U, 2 * skew(Vector3<S>(J * u));
-    Matrix3<S> turning = skew(a) * s_cross;
-    for (int i = 0; i < 3; ++i) {
-      const Matrix3<S> E = skew(Vector3<S>(Vector3<S>::Unit(i)));
-      turning.col(i) += axial(W * E * J - W * J * E);
-    }
-    c.stiffness << m * W, -W * s_cross, s_cross * W, turning;
-    c.force << -(m * a + W * s), -(s.cross(a) + axial(W * J));
-    for (const ElasticMount<S>& mount : mounts_) add(mount, c);
-    return c;
+    return steady_ ? *steady_ : coefficients_at(t);
   }
 
   /// The vector field  y' = rates(t, y)  on  y = (r; angles; their rates).
   [[nodiscard]] Vector rates(const S& t, const Vector& y) const {
-    const Coefficients c = coefficients(t);
-    const Vector6 force = c.force - c.damping * y.tail<6>() - c.stiffness * y.head<6>();
-    return (Vector() << y.tail<6>(), factor_.solve(force)).finished();
+    return steady_ ? rates_by(*steady_, y) : rates_by(coefficients_at(t), y);
+  }
+
+  /// What the coefficients are made of: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    const std::string of_turning = turns ? "" : "the guide does not turn";
+    const bool unsteadily = turns && !SteadyGuide<M>;
+    const bool falls = !gravity_.isZero(0);
+    Terms list;
+    list.add("relative", "M q''");
+    list.add("guide", "(m W, -W skew(s); skew(s) W, [ax(W E_i J - W J E_i)]) q, W s, ax(W J)",
+             turns, of_turning);
+    list.add("guide", "skew(ou) in W", unsteadily,
+             turns && !unsteadily ? "the guide moves steadily" : of_turning);
+    list.add("guide", "m a, s x a, skew(a) skew(s) q", !detail::is_resting<M>,
+             detail::is_resting<M> ? "the guide rests" : "");
+    list.add("Coriolis", "(2 m skew(u), -2 skew(u) skew(s); 2 skew(s) skew(u), 2 skew(J u)) q'",
+             turns, of_turning);
+    list.add("load", "gravity in a", falls, falls ? "" : "none is given");
+    list.add("load", "mounts", !mounts_.empty(), mounts_.empty() ? "none is given" : "");
+    return list;
   }
 
   /// The same body by the exact equations.
@@ -163,6 +169,45 @@ class SmallOscillations {
   }
 
  private:
+  static constexpr bool turns = detail::turns<M>();
+
+  [[nodiscard]] Coefficients coefficients_at(const S& t) const {
+    const FrameMotion<Guide, Inertial, S> motion = guide_(t);
+    const Vector3<S> a =
+        motion.origin_acceleration() - motion.X.value.rotation.transpose() * gravity_;
+    const auto& [m, s, tensor] = inertia_.value;
+    const Matrix3<S> s_cross = skew(s);
+
+    Coefficients c;
+    c.mass = mass_;
+    c.damping.setZero();
+    c.stiffness.setZero();
+    c.stiffness.template bottomRightCorner<3, 3>() = skew(a) * s_cross;
+    c.force << -(m * a), -s.cross(a);
+    if constexpr (turns) {
+      const Vector3<S>& u = motion.V.value.resultant;
+      const Matrix3<S> U = skew(u);
+      const Matrix3<S> W = skew(Vector3<S>(motion.dV.value.resultant)) + U * U;
+      const Matrix3<S> theta = tensor.matrix();
+      const Matrix3<S> J = theta.trace() / 2 * Matrix3<S>::Identity() - theta;
+      c.damping << 2 * m * U, -2 * U * s_cross, 2 * s_cross * U, 2 * skew(Vector3<S>(J * u));
+      Matrix3<S> turning;
+      for (int i = 0; i < 3; ++i) {
+        const Matrix3<S> E = skew(Vector3<S>(Vector3<S>::Unit(i)));
+        turning.col(i) = axial(W * E * J - W * J * E);
+      }
+      c.stiffness += (Matrix6() << m * W, -W * s_cross, s_cross * W, turning).finished();
+      c.force -= (Vector6() << W * s, axial(W * J)).finished();
+    }
+    for (const ElasticMount<S>& mount : mounts_) add(mount, c);
+    return c;
+  }
+
+  [[nodiscard]] Vector rates_by(const Coefficients& c, const Vector& y) const {
+    const Vector6 force = c.force - c.damping * y.tail<6>() - c.stiffness * y.head<6>();
+    return (Vector() << y.tail<6>(), factor_.solve(force)).finished();
+  }
+
   /// sum of p x (B p) over masses is ax(B J).
   [[nodiscard]] static Vector3<S> axial(const Matrix3<S>& b) {
     return {b(2, 1) - b(1, 2), b(0, 2) - b(2, 0), b(1, 0) - b(0, 1)};
@@ -188,6 +233,7 @@ class SmallOscillations {
   Vector3<S> gravity_;
   Matrix6 mass_;
   Eigen::LDLT<Matrix6> factor_;
+  std::optional<Coefficients> steady_;  ///< those that do not change
 };
 
 }  // namespace kreisel

@@ -3,10 +3,14 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/guide/translating.hpp>
 #include <dynamics/scene/small_oscillations.hpp>
 #include <dynamics/study/linear_error.hpp>
 #include <motor/attitude.hpp>
@@ -34,9 +38,11 @@ constexpr auto aircraft = [](const auto& t) {
                  Vector3<S>(S(60.0 * t), S(0.1 * sin(3.0 * t)), S(0.2 * sin(2.0 * t)))};
 };
 
-/// An engine of 150 kg on four mounts below its centre of mass, z down.
+/// An engine of 150 kg on four mounts below its centre of mass, z down, drawn by `off` beside where
+/// the mounts are unloaded.
 template <class M>
-auto engine(M guide, double stiffness) {
+auto engine(M guide, double stiffness, const Vector3<double>& gravity = {0, 0, 9.81},
+            const Vector3<double>& off = {0, 0, 0}) {
   Matrix3<double> Theta;
   Theta << 6, 0.3, -0.5, 0.3, 12, 0.2, -0.5, 0.2, 11;
   const auto T = InertiaTensor<Body>::about_centre(150, {0.02, -0.01, -0.05}, Theta);
@@ -47,10 +53,10 @@ auto engine(M guide, double stiffness) {
       const Vector3<double> k = stiffness * Vector3<double>(0.6, 0.7, 1);
       // Preload by a quarter of the weight: at rest the engine sits where it was drawn.
       mounts.push_back(
-          {foot, foot, k.asDiagonal(), (0.005 * k).asDiagonal(), {0, 0, -150 * 9.81 / 4}});
+          {foot + off, foot, k.asDiagonal(), (0.005 * k).asDiagonal(), {0, 0, -150 * 9.81 / 4}});
     }
   }
-  return SmallOscillations(T, std::move(guide), mounts, {0, 0, 9.81});
+  return SmallOscillations(T, std::move(guide), mounts, gravity);
 }
 
 }  // namespace
@@ -95,7 +101,7 @@ BOOST_AUTO_TEST_SUITE(small_oscillations)
 // difference quotients in each of the twelve variables. (At q'' other than 0 the exact equations have
 // products of q and q'' besides, the first-order part of the tensor.)
 BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearised) {
-  const auto linear = engine(posed(aircraft), 2e5);
+  const auto linear = engine(posed(aircraft), 2e5, {0, 0, 9.81}, {0.002, -0.001, 0.003});
   const auto exact = linear.exact();
   using Linear = std::remove_const_t<decltype(linear)>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -122,6 +128,58 @@ BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearised) {
       BOOST_TEST(near(slope, Vector6(-column), 1500 / h, 100));
     }
   }
+}
+
+// A guide whose type says nothing gives them anew each time.
+BOOST_AUTO_TEST_CASE(are_the_same_whatever_the_guides_type_says) {
+  const auto hold = [](const auto& guide, const Vector3<double>& gravity) {
+    const auto hidden = [guide](double t) { return guide(t); };
+    const auto known = engine(guide, 2e5, gravity);
+    const auto found = engine(hidden, 2e5, gravity);
+    for (const double t : {0.0, 0.7, 30.0}) {
+      const auto c = known.coefficients(t);
+      const auto truth = found.coefficients(t);
+      BOOST_TEST(near(c.stiffness, truth.stiffness, 1e6, 4));
+      BOOST_TEST(near(c.damping, truth.damping, 1e4, 4));
+      BOOST_TEST(near(c.force, truth.force, 1500.0, 4));
+      const auto y = Eigen::Matrix<double, 12, 1>::LinSpaced(-0.01, 0.02);
+      BOOST_TEST(near(known.rates(t, y), found.rates(t, y), 1e4, 16));
+    }
+  };
+  const Vector3<double> gravity(1, 2, 9);
+  const RotatingFrame<> turntable{{0.3, -0.8, 0.5}, {0.1, 0.2, 0.3}};
+  const TranslatingFrame lift([](double t) {
+    return Translation<>{{0, 0, t * t}, {0, 0, 2 * t}, {0, 0, 2}};
+  });
+  hold(RestingFrame<>{}, gravity);
+  hold(turntable, {0, 0, 0});
+  hold(turntable, gravity);
+  hold(lift, gravity);
+}
+
+BOOST_AUTO_TEST_CASE(say_what_they_are_made_of) {
+  const auto kept = [](const auto& scene) {
+    std::string all;
+    for (const Term& term : terms(scene)) {
+      all += term.kept ? '1' : '0';
+      BOOST_TEST((term.kept || !term.why.empty()), term.name);
+    }
+    return all;
+  };
+  const Vector3<double> none(0, 0, 0);
+  const Vector3<double> down(0, 0, 9.81);
+  const RotatingFrame<> turntable{{0.3, -0.8, 0.5}};
+  const TranslatingFrame lift([](double) { return Translation<>{}; });
+  // M, turning, unsteady, accelerated, Coriolis, gravity, mounts
+  BOOST_TEST(kept(engine(RestingFrame<>{}, 2e5, none)) == "1000001");
+  BOOST_TEST(kept(engine(RestingFrame<>{}, 2e5, down)) == "1000011");
+  BOOST_TEST(kept(engine(lift, 2e5, none)) == "1001001");
+  BOOST_TEST(kept(engine(turntable, 2e5, none)) == "1101101");
+  BOOST_TEST(kept(engine(posed(aircraft), 2e5, down)) == "1111111");
+  const SmallOscillations loose(
+      InertiaTensor<Body>::about_centre(2, {0, 0, 0}, Matrix3<double>::Identity()),
+      RestingFrame<>{}, std::vector<ElasticMount<>>{});
+  BOOST_TEST(kept(loose) == "1000000");
 }
 
 // Half the motion, a quarter of the error.
