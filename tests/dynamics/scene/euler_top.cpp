@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/euler_top.hpp>
@@ -77,6 +79,38 @@ BOOST_AUTO_TEST_CASE(keeps_kovalevskayas_invariant) {
   // A top that is not hers does not keep it.
   BOOST_TEST(drift(EulerTop({2, 2, 1.1}, {0.7, -0.3, 0}), {tilted, {0.5, 1, 2}}, 10).kovalevskaya >
              0.01);
+}
+
+// With the weight and a rotor's momentum in no special direction.
+BOOST_AUTO_TEST_CASE(keeps_energy_and_vertical_momentum_whatever_it_bears) {
+  const auto d =
+      drift(EulerTop({1, 2, 2.5}, {0.7, -0.3, 1.1}, {0.2, -1, 0.5}), {tilted, {0.5, 1, 2}}, 100);
+  BOOST_TEST_MESSAGE("over 100 s: energy " << d.energy << ", L_z " << d.vertical_momentum);
+  BOOST_TEST(d.energy < 1e-12);
+  BOOST_TEST(d.vertical_momentum < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(names_what_it_keeps) {
+  using Names = std::vector<std::string>;
+  const auto kept = [](const EulerTop& top) {
+    Names names;
+    for (const auto& [name, value] : top.conserved(0, {tilted, {0.5, 1, 2}})) {
+      names.emplace_back(name);
+    }
+    return names;
+  };
+  const Names always{"energy", "vertical momentum"};
+  const Names axial{"energy", "vertical momentum", "axial momentum"};
+  BOOST_TEST(kept(EulerTop({1, 2, 2.5}, {0.7, -0.3, 1.1})) == always);
+  BOOST_TEST(kept(EulerTop({1, 2, 2.5}, {0, 0, 1.1})) == always);
+  BOOST_TEST(kept(EulerTop({2, 2, 3}, {0, 0, 5})) == axial);
+  BOOST_TEST(kept(EulerTop({2, 2, 3}, {0, 0, 5}, {0, 0, 1})) == axial);
+  BOOST_TEST(kept(EulerTop({2, 2, 3}, {0, 0, 5}, {0, 1, 0})) == always);
+  BOOST_TEST(kept(EulerTop({1, 2, 2.5})) == (Names{"energy", "vertical momentum", "momentum"}));
+  BOOST_TEST(kept(EulerTop({2, 2, 1}, {0.7, -0.3, 0})) ==
+             (Names{"energy", "vertical momentum", "kovalevskaya"}));
+  BOOST_TEST(kept(EulerTop({2, 2, 2}, {0.7, -0.3, 0})) == always);
+  BOOST_TEST(kept(EulerTop({2, 2, 1}, {0.7, -0.3, 0}, {0, 0, 0.5})) == always);
 }
 
 // A sleeping top stands however long; just under the critical spin it falls, just over it does not.

@@ -107,6 +107,52 @@ BOOST_AUTO_TEST_CASE(keeps_its_energy_on_springs) {
   BOOST_TEST(near(energy(5, run.to(5)), energy(0, start), 100.0, tight));
 }
 
+// What loads give to a body is what their potentials lose, less what their dampers take: by lengths
+// and places a little before and after, whose differences err by (3 h)^2/6 and by 1e-14/h.
+BOOST_DATA_TEST_CASE(loses_to_dampers_what_they_resist, data::xrange(20u), seed) {
+  test::Sample sample(seed);
+  Situation<> s;
+  s.inertia = lopsided_body();
+  s.X.value = exp(Motor<double>{2 * sample.direction(), sample.direction()});
+  s.V_rel.value = {2 * sample.direction(), 2 * sample.direction()};
+  const auto rate = [&s](const auto& of) {
+    const double h = 1e-5;
+    const auto after = [&s](double t) {
+      Situation<> moved = s;
+      moved.X.value = s.X.value * exp(t * s.V_rel.value);
+      return moved;
+    };
+    return decltype(of(s))((of(after(h)) - of(after(-h))) / (2 * h));
+  };
+  const auto given = [&](const auto& load) {
+    return power(load(s), s.V_rel) +
+           rate([&](const Situation<>& at) { return load.potential(at); });
+  };
+  const double tolerance = 1e-9 / test::u<>;
+
+  const Vector3<double> end(0.1, 0.2, 0);
+  const Vector3<double> from(0, 0.5, 3);
+  const double stretching =
+      rate([&](const Situation<>& at) { return (at.place<Guide>(end) - from).norm(); });
+  BOOST_TEST(
+      near(given(Spring<>{from, end, 40, 0.5, 3}), -3 * stretching * stretching, 200.0, tolerance));
+
+  const Matrix3<double> K = Vector3<double>(30, 20, 25).asDiagonal();
+  Matrix3<double> D;
+  D << 3, 0.2, 0, 0.2, 2, 0.1, 0, 0.1, 2.5;
+  const Vector3<double> velocity =
+      rate([&](const Situation<>& at) -> Vector3<double> { return at.place<Guide>(end); });
+  BOOST_TEST(near(given(ElasticMount<>{from, end, K, D, {1, 2, 3}}), -velocity.dot(D * velocity),
+                  200.0, tolerance));
+
+  const Vector3<double> origin = rate([&](const Situation<>& at) -> Vector3<double> {
+    return at.place<Guide>({0, 0, 0});
+  });
+  BOOST_TEST(near(power(ViscousDrag<>{2, 3}(s), s.V_rel),
+                  -3 * origin.squaredNorm() - 2 * s.V_rel.value.resultant.squaredNorm(), 200.0,
+                  tolerance));
+}
+
 // On a guide that turns steadily the energy in the guide with the centrifugal potential -F.(T F)/2
 // stays (Jacobi's integral).
 BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_turntable) {

@@ -180,6 +180,9 @@ BOOST_AUTO_TEST_CASE(linearised_field_is_the_tangent_at_0) {
   const LinearPendulum<double> linear = linearised(in.body, c);
   BOOST_TEST(near(linear.acceleration(0.0) * in.body.theta_c, -c.moment(0.0), c.weight, 4));
   BOOST_TEST(linear.stiffness == c.stiffness(0.0));
+  const double phi = 1e-3;
+  BOOST_TEST(near(linear.acceleration(phi) * in.body.theta_c,
+                  -c.moment(0.0) - c.stiffness(0.0) * phi, c.weight * phi, 16));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -537,6 +537,15 @@ BOOST_AUTO_TEST_CASE(name_what_a_gradient_lacks) {
   }
 }
 
+// Turned about the line between its axes A and B.
+BOOST_AUTO_TEST_CASE(name_what_a_rotation_lacks) {
+  PendulumGuide<double> guide = refused::hanging;
+  guide.angular_velocity = {1e-3, 1e-3, 0};
+  const std::string dropped =
+      listed(deviation(PendulumBody<double>::thin_rod(0.75), guide).terms_dropped);
+  BOOST_TEST(dropped.find("K: centrifugal: u_x^2 = u_y^2 and Phi_C = 0\n") != std::string::npos);
+}
+
 // What two products make up for is told from what is not there.
 BOOST_AUTO_TEST_CASE(name_what_cancels) {
   // H = -G_xy (Theta_B - Theta_A) - (G_yy - G_xx) Phi_C = -1/4 + 2/8

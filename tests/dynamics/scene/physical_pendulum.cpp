@@ -161,6 +161,13 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_leaves) {
     worst = test::worst_of(worst, off);
   }
   BOOST_TEST(worst >= u / 2);
+
+  // Counted from the beginning, whenever that is.
+  constexpr double begin = 0x1p20;
+  for (double& t : times) t += begin;
+  const auto later =
+      solve(pendulum, {.angle = 0.1}, {.begin = begin, .times = times, .tolerance = 1e-14});
+  BOOST_TEST(later.errors.back() <= 1.01 * run.errors.back());
 }
 
 // Counted from the nearest of two wells: 1e-9 rad beside 0 has all its digits.
@@ -171,6 +178,17 @@ BOOST_AUTO_TEST_CASE(counts_from_the_nearest_well) {
     const auto truth = by_series(c, angle, 0, 12, 100);
     const double off = std::abs(motion.at(12).angle / static_cast<double>(truth[0]) - 1);
     BOOST_TEST(off <= 1e-13);
+  }
+}
+
+// A barrier at -2.04 rad parts it from the well that is nearest, at -2.29 rad: it swings in the other.
+BOOST_AUTO_TEST_CASE(swings_in_the_well_that_it_is_in) {
+  const PendulumCoefficients<> c{1, 0, -0.7, -0.7, 0.2};
+  const double angle = -2;
+  const SteadyPendulumMotion<double> motion({.arm = 1, .theta_c = 1}, c, angle, 0);
+  for (const double t : {3.0, 12.0}) {
+    const auto truth = by_series(c, angle, 0, t, 100);
+    BOOST_TEST(std::abs(motion.at(t).angle - static_cast<double>(truth[0])) <= 1e-13);
   }
 }
 
@@ -219,11 +237,22 @@ BOOST_AUTO_TEST_CASE(moves_as_taylor_series_say) {
     worst = test::worst_of(worst, double(off) / told);
     BOOST_TEST(double(off) <= told);
     BOOST_TEST(told <= 1e-14);
+    const exact::Real off_at_once = std::abs(motion.at(0).angle - exact::Real(angle));
+    BOOST_TEST(double(off_at_once / motion.angle_per_phase()) <= double(motion.phase_error(0)));
     if (motion.angle_per_phase() != 1) ++swings;
   }
   BOOST_TEST(swings >= 6);
   BOOST_TEST(swings <= 11);
   BOOST_TEST_MESSAGE("against Taylor series: at most " << worst << " of what is told");
+}
+
+// phi = a cos theta, phi. = -a sin theta for E = Theta_C = 1.
+BOOST_AUTO_TEST_CASE(tells_what_a_phase_is_worth) {
+  const double amplitude = 1e-3;
+  const SteadyPendulumMotion<double> motion({.arm = 1, .theta_c = 1}, {1, 0, 0, 0, 0}, amplitude,
+                                            0);
+  BOOST_TEST(std::abs(motion.angle_per_phase() - amplitude) <= 1e-6 * amplitude);
+  BOOST_TEST(std::abs(motion.rate_per_phase() - amplitude) <= 0.05 * amplitude);
 }
 
 // So near a barrier that the series is too long, steps take over; so they do at rest and in a fall without end.
