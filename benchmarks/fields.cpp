@@ -115,9 +115,14 @@ int main(int argc, char** argv) {
   const by_hand::PrincipalTop hand{top_moments, top_weight};
   const by_hand::BallPendulum ball_hand{ball_moments, earth, arm * gravity};
   const by_hand::CardanGyro hand_gyro = gyro_hand;
-  const HeldBody ball(InertiaTensor<Body>::about_origin(1, {0, 0, -arm},
-                                                        Matrix3<double>(ball_moments.asDiagonal())),
-                      V3::Zero(), RotatingFrame<>{earth}, UniformGravity<Guide>{{0, 0, -gravity}});
+  const auto body = InertiaTensor<Body>::about_origin(1, {0, 0, -arm},
+                                                      Matrix3<double>(ball_moments.asDiagonal()));
+  const RotatingFrame<> ground{earth};
+  const UniformGravity<Guide> down{{0, 0, -gravity}};
+  const HeldBody ball(body, V3::Zero(), ground, down);
+  const HeldBody hanging(body, V3::Zero(), ground, down, Without<ProductsOfInertia>{},
+                         Without<FirstMoment, Axis::x, Axis::y>{},
+                         Without<FeltGravity, Axis::x, Axis::y>{}, Without<GuideRate, Axis::y>{});
   const PendulumField plane(rod, meridian);
   const CardanBearings bearings{{outer_stiffness, outer_damping}, {inner_stiffness, inner_damping}};
   const CardanGyro gyro(moments, bearings, RestingFrame<>{});
@@ -133,8 +138,12 @@ int main(int argc, char** argv) {
       "plane pendulum on the earth", plane_state,
       [=](const Eigen::Vector2d& y) { return plane(0.0, y); }, plane_by_hand());
   pair(
-      "ball pendulum on the earth", top_state, [=](const Top& y) { return ball.rates(0, y); },
-
+      "ball pendulum on the earth, its zeros stated", top_state,
+      [=](const Top& y) { return hanging.rates(0, y); },
+      [=](const Top& y) { return ball_hand.rates(y); });
+  pair(
+      "ball pendulum on the earth, nothing stated", top_state,
+      [=](const Top& y) { return ball.rates(0, y); },
       [=](const Top& y) { return ball_hand.rates(y); });
   pair(
       "Cardan gyro", gyro_state, [=](const Gyro& y) { return gyro.rates(0, y); },

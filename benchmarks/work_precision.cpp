@@ -24,13 +24,15 @@ using namespace work_precision;
 namespace {
 
 const std::pair<std::string, AddRuns> all_scenes[] = {
-    {"dzhanibekov", &dzhanibekov},   {"fast_top", &fast_top},
-    {"slow_top", &slow_top},         {"fast_top_axis", &fast_top_axis},
-    {"pendulum", &pendulum},         {"earth_pendulum", &earth_pendulum},
-    {"earth_ball", &earth_ball},     {"ship", &ship},
-    {"bearing_1e3", &bearing_1e3},   {"bearing_1e6", &bearing_1e6},
-    {"bearing_1e9", &bearing_1e9},   {"bearing_undamped", &bearing_undamped},
-    {"bearing_1e12", &bearing_1e12}, {"bearing_deviation", &bearing_deviation}};
+    {"dzhanibekov", &dzhanibekov},     {"fast_top", &fast_top},
+    {"slow_top", &slow_top},           {"fast_top_axis", &fast_top_axis},
+    {"pendulum", &pendulum},           {"earth_pendulum", &earth_pendulum},
+    {"earth_ball", &earth_ball},       {"ship", &ship},
+    {"cardan_free", &cardan_free},     {"cardan_on_base", &cardan_on_base},
+    {"cardan_blades", &cardan_blades}, {"satellite", &satellite},
+    {"bearing_1e3", &bearing_1e3},     {"bearing_1e6", &bearing_1e6},
+    {"bearing_1e9", &bearing_1e9},     {"bearing_undamped", &bearing_undamped},
+    {"bearing_1e12", &bearing_1e12},   {"bearing_deviation", &bearing_deviation}};
 
 std::vector<Run> runs(const std::string& scene, const Thoroughness& thoroughness) {
   std::vector<Run> all;

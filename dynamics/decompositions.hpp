@@ -5,18 +5,11 @@
 #include <complex>
 #include <optional>
 
+#include <dynamics/compiled.hpp>
 #include <motor/error.hpp>
 
-// Decompositions of matrices whose size is known at run time, by Eigen. They are the slowest of
-// Eigen to compile, and are the same for every scene: whoever defines
-// KREISEL_DECOMPOSITIONS_COMPILED links dynamics/decompositions.cpp, compiled once. Without it they
-// come with this header, as templates of nothing: a program compiles those that it calls.
-
-#ifdef KREISEL_DECOMPOSITIONS_COMPILED
-#define KREISEL_IF_CALLED
-#else
-#define KREISEL_IF_CALLED template <int = 0>
-#endif
+/// Decompositions of matrices whose size is known at run time, by Eigen. They are the slowest of
+/// Eigen to compile, and are the same for every scene.
 
 namespace kreisel::detail {
 
@@ -27,10 +20,10 @@ struct Eigenpairs {
 };
 
 /// Throws : ComputationFailed if the QR iteration does not converge; as all below for eigenvalues
-KREISEL_IF_CALLED [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
+KREISEL_DECLARED [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
 
 /// As eigenpairs(), without vectors.
-KREISEL_IF_CALLED [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+KREISEL_DECLARED [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// Of a symmetric or Hermitian matrix, whose values are real and whose vectors are orthonormal.
 template <class Matrix>
@@ -40,9 +33,9 @@ struct RealEigenpairs {
 };
 
 /// Only the lower triangle is read.
-KREISEL_IF_CALLED [[nodiscard]] RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(
+KREISEL_DECLARED [[nodiscard]] RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(
     const Eigen::MatrixXd& A);
-KREISEL_IF_CALLED [[nodiscard]] RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(
+KREISEL_DECLARED [[nodiscard]] RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(
     const Eigen::MatrixXcd& A);
 
 /// A = U diag(values) V^*, with square U and V.
@@ -53,22 +46,20 @@ struct SingularValues {
   Matrix V;
 };
 
-KREISEL_IF_CALLED [[nodiscard]] SingularValues<Eigen::MatrixXd> singular_values(
+KREISEL_DECLARED [[nodiscard]] SingularValues<Eigen::MatrixXd> singular_values(
     const Eigen::MatrixXd& A);
-KREISEL_IF_CALLED [[nodiscard]] SingularValues<Eigen::MatrixXcd> singular_values(
+KREISEL_DECLARED [[nodiscard]] SingularValues<Eigen::MatrixXcd> singular_values(
     const Eigen::MatrixXcd& A);
 
 /// By full pivoting; nothing where A has not its full rank, to rounding.
-KREISEL_IF_CALLED [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A);
+KREISEL_DECLARED [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A);
 
 /// A^-1 b, by full pivoting.
-KREISEL_IF_CALLED [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
-                                                          const Eigen::VectorXcd& b);
+KREISEL_DECLARED [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
+                                                         const Eigen::VectorXcd& b);
 
 }  // namespace kreisel::detail
 
-#undef KREISEL_IF_CALLED
-
-#ifndef KREISEL_DECOMPOSITIONS_COMPILED
-#include <dynamics/decompositions_by_eigen.hpp>
+#ifndef KREISEL_COMPILED
+#include <dynamics/decompositions_defined.hpp>
 #endif

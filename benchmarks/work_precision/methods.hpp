@@ -20,13 +20,13 @@
 #include <dynamics/step/jacobian.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/taylor.hpp>
+#ifdef KREISEL_WITH_SUNDIALS
+#include <dynamics/step/cvode.hpp>
+#endif
 
 #include "point.hpp"
 #include "problem.hpp"
 #include <tests/support/worst.hpp>
-#ifdef KREISEL_WITH_SUNDIALS
-#include "cvode.hpp"
-#endif
 
 namespace work_precision {
 
@@ -248,36 +248,23 @@ class Methods {
 #ifdef KREISEL_WITH_SUNDIALS
   template <bool exact_jacobian>
   void cvode() {
-    const std::pair<const char*, CvodeMethod> both[] = {{"CVODE Adams", CvodeMethod::adams},
-                                                        {"CVODE BDF", CvodeMethod::bdf}};
-    for (const auto& [name, method] : both) {
-      for (const double tolerance : thoroughness_.tolerances) {
-        note(name, tolerance,
-             [m = method, tolerance, most = thoroughness_.most_evaluations / 10](const P& p) {
-               CvodeTask task{
-                   m,  {},        {},  std::vector<double>(p.start.data(), p.start.data() + n),
-                   {}, tolerance, most};
-               for (const double y : task.start) {
-                 task.absolute.push_back(tolerance * std::max(std::abs(y), p.smallest));
-               }
-               task.field = [&p](double t, const double* y, double* rate) {
-                 Eigen::Map<Vector>{rate} = p.scene.rates(t, Vector(Eigen::Map<const Vector>(y)));
-               };
-               if constexpr (exact_jacobian) {
-                 task.jacobian = [&p](double t, const double* y, double* columns) {
-                   const auto jacobian = kreisel::forward_jacobian<n>(Field{&p.scene});
-                   Eigen::Map<Eigen::Matrix<double, n, n>>{columns} =
-                       jacobian(t, Vector(Eigen::Map<const Vector>(y))).of_state;
-                 };
-               }
-               Cvode steps(std::move(task));
-               const double worst = follow(p, [&](double t) {
-                 return Vector(Eigen::Map<const Vector>(steps.advance_to(t)));
-               });
-               return Result{worst, steps.evaluations()};
-             });
+    using kreisel::CvodeMethod;
+    // Evaluations are the least of what it costs.
+    const Budget few{thoroughness_.most_evaluations / 10};
+    add("CVODE Adams", thoroughness_.tolerances, [few](const P& p, double tolerance) {
+      return kreisel::CvodeSteps(CvodeMethod::adams, Field{&p.scene}, 0.0, p.start,
+                                 few.at(p, tolerance), Scene::blocks);
+    });
+    add("CVODE BDF", thoroughness_.tolerances, [few](const P& p, double tolerance) {
+      const Field field{&p.scene};
+      if constexpr (exact_jacobian) {
+        return kreisel::CvodeSteps(CvodeMethod::bdf, field, kreisel::forward_jacobian<n>(field),
+                                   0.0, p.start, few.at(p, tolerance), Scene::blocks);
+      } else {
+        return kreisel::CvodeSteps(CvodeMethod::bdf, field, 0.0, p.start, few.at(p, tolerance),
+                                   Scene::blocks);
       }
-    }
+    });
   }
 #else
   template <bool exact_jacobian>

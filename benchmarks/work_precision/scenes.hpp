@@ -18,6 +18,11 @@ void earth_pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness);
 void earth_ball(std::vector<Run>& runs, const Thoroughness& thoroughness);
 void ship(std::vector<Run>& runs, const Thoroughness& thoroughness);
 
+void cardan_free(std::vector<Run>& runs, const Thoroughness& thoroughness);
+void cardan_on_base(std::vector<Run>& runs, const Thoroughness& thoroughness);
+void cardan_blades(std::vector<Run>& runs, const Thoroughness& thoroughness);
+void satellite(std::vector<Run>& runs, const Thoroughness& thoroughness);
+
 /// In a bearing of 1e3, 1e6, 1e9 N m/rad, of 1e6 without damping, of 1e12, and of 1e12 with the
 /// bearing's deviation to ten digits.
 void bearing_1e3(std::vector<Run>& runs, const Thoroughness& thoroughness);

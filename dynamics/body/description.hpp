@@ -99,18 +99,20 @@ namespace detail {
 using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
 
 /// A situation in dual numbers, of which only the k-th derivative counts.
-template <class Dual>
-[[nodiscard]] Situation<AlongOne> along_one(const Situation<Dual>& s, Eigen::Index k) {
+///
+/// One : AlongOne; a parameter, so that nothing of it is compiled where this is not called
+template <class One, class Dual>
+[[nodiscard]] Situation<One> along_one(const Situation<Dual>& s, Eigen::Index k) {
   const auto number = [k](const Dual& x) {
-    AlongOne one(x.value());
+    One one(x.value());
     one.derivatives()[0] = x.derivatives()[k];
     return one;
   };
   const auto all = [&number](const auto& v) { return v.unaryExpr(number).eval(); };
-  const auto motor = [&all](const Motor<Dual>& m) -> Motor<AlongOne> {
+  const auto motor = [&all](const Motor<Dual>& m) -> Motor<One> {
     return {all(m.resultant), all(m.moment)};
   };
-  const auto pose = [&all](const Pose<Dual>& X) -> Pose<AlongOne> {
+  const auto pose = [&all](const Pose<Dual>& X) -> Pose<One> {
     return {all(X.rotation), all(X.translation)};
   };
   const Inertia<Dual>& T = s.inertia.value;
@@ -135,8 +137,8 @@ template <class Dual>
 ///   static constexpr bool ignores_spin = true;
 class BodyLoad {
  public:
-  template <Load L>
-  requires(!std::same_as<L, BodyLoad>) BodyLoad(L load)
+  template <class L>
+  requires(!std::same_as<L, BodyLoad> && Load<L>) BodyLoad(L load)
       : force_(load) {  // NOLINT: a load is meant where a load is taken
     if constexpr (requires(const Situation<>& s) { load.potential(s); }) {
       potential_ = [load](const Situation<>& s) { return load.potential(s); };
@@ -152,9 +154,9 @@ class BodyLoad {
   [[nodiscard]] Force<Body, Dual> operator()(const Situation<Dual>& s) const {
     Force<Body, Dual> result;
     for (Eigen::Index k = 0; k < s.t.derivatives().size(); ++k) {
-      const Motor<detail::AlongOne> P = along_(detail::along_one(s, k)).value;
+      const auto P = along_(detail::along_one<detail::AlongOne>(s, k)).value;
       for (int i = 0; i < 3; ++i) {
-        const auto set = [k](Dual& to, const detail::AlongOne& from) {
+        const auto set = [k](Dual& to, const auto& from) {
           to.value() = from.value();
           to.derivatives()[k] = from.derivatives()[0];
         };

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <dynamics/body/check.hpp>
+#include <dynamics/body/description.hpp>
+#include <motor/absent.hpp>
 
 namespace kreisel {
 
@@ -34,25 +35,6 @@ struct Link {
   }
   [[nodiscard]] bool moves() const { return rule != JointRule::held && kind != LinkKind::fixed; }
 };
-
-/// Makes a link turn about an axis of its parent, on which it stands as `still` says, after
-/// Rodrigues:  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
-inline void turn_about(Link& link, const Vector3<double>& axis) {
-  link.kind = LinkKind::revolute;
-  link.axis = normalized(axis);
-  const Vector3<double>& a = link.axis;
-  for (int k = 0; k < 3; ++k) {
-    const Vector3<double> o(link.still(0, k), link.still(1, k), link.still(2, k));
-    const Vector3<double> along = dot(a, o) * a;
-    const Vector3<double> across = o - along;
-    const Vector3<double> turned = cross(a, o);
-    for (int i = 0; i < 3; ++i) {
-      link.still(i, k) = along[i];
-      link.cosine(i, k) = across[i];
-      link.sine(i, k) = turned[i];
-    }
-  }
-}
 
 /// A rotor beside the links: no pass over the tree comes across it.
 struct RotorLink {

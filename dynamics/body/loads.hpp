@@ -24,6 +24,15 @@ template <class S>
   return Vector3<S>::Zero();
 }
 
+/// Where a tree begins. In a uniform field the weights of all bodies are what a guide accelerated by
+/// -g would ask for.
+template <class S>
+[[nodiscard]] LinkMotion<S> root(const GuideNow<S>& guide, const Gravity& gravity, bool rests) {
+  if (rests) return {Vector3<S>::Zero(), Vector3<S>::Zero(), -field(gravity, guide)};
+  return {guide.V.value.resultant, guide.dV.value.resultant,
+          guide.origin_acceleration() - field(gravity, guide)};
+}
+
 /// Places in the guide and velocity motors V' against it.
 template <class S>
 void set_places(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
@@ -66,18 +75,6 @@ void take_off_loads(const BodyTree& tree, const S& t, const GuideNow<S>& guide, 
       w.force[carrier(rotor(tree, link))] += carried(w.pose[link].r, w.force[link]);
     }
   }
-}
-
-/// The energy of weight and loads of one body.
-[[nodiscard]] inline double potential(const Situation<>& s, const Gravity& gravity,
-                                      const BodyDescription& body) {
-  double sum = 0;
-  if (body.inertia.value.mass > 0) {
-    if (const auto* g = std::get_if<UniformGravity<Guide>>(&gravity)) sum += g->potential(s);
-    if (const auto* g = std::get_if<UniformGravity<Inertial>>(&gravity)) sum += g->potential(s);
-  }
-  for (const BodyLoad& load : body.loads) sum += load.potential(s);
-  return sum;
 }
 
 }  // namespace kreisel::detail

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <type_traits>
 
-#include <dynamics/body/elimination.hpp>
 #include <dynamics/body/rotors.hpp>
 #include <motor/attitude.hpp>
 
@@ -55,52 +52,6 @@ void set_poses_and_motions(const BodyTree& tree, const LinkMotion<S>& root, cons
     set_motion(tree.links()[i], i, v, dv, w);
   }
   begin_rotors(tree, w);
-}
-
-inline void clear_articulated(const BodyTree& tree, BodyWorkspace& w) {
-  for (std::size_t i = 0; i < tree.links().size(); ++i) {
-    w.articulated[i] = {};
-    w.size[i] = {};
-  }
-}
-
-/// Eliminates all joints: what depends on the coordinates alone.
-inline void eliminate_all(const BodyTree& tree, BodyWorkspace& w) {
-  clear_articulated(tree, w);
-  for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
-    add(w.articulated[i], w.inertia[i]);
-    eliminate(tree, i, w);
-  }
-}
-
-/// The joints' accelerations, once all are eliminated and all forces reduced.
-inline void accelerate_all(const BodyTree& tree, const double* joint_force, double* acceleration,
-                           BodyWorkspace& w) {
-  for (std::size_t i = 1; i < tree.links().size(); ++i) {
-    accelerate(tree.links()[i], i, acceleration, w);
-  }
-  accelerate_rotors(tree, joint_force, acceleration, w);
-}
-
-/// Solves for the joints' accelerations with the forces that stand in w.force at dv = 0.
-inline void solve(const BodyTree& tree, const double* joint_force, double* acceleration,
-                  BodyWorkspace& w) {
-  for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
-    reduce(tree.links()[i], i, joint_force, w);
-  }
-  accelerate_all(tree, joint_force, acceleration, w);
-}
-
-/// Eliminates and solves in one pass inwards and one outwards.
-inline void eliminate_and_solve(const BodyTree& tree, const double* joint_force,
-                                double* acceleration, BodyWorkspace& w) {
-  clear_articulated(tree, w);
-  for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
-    add(w.articulated[i], w.inertia[i]);
-    eliminate(tree, i, w);
-    reduce(tree.links()[i], i, joint_force, w);
-  }
-  accelerate_all(tree, joint_force, acceleration, w);
 }
 
 /// Sums the forces inwards: w.force[i] becomes what the parent exerts on link i through the joint,
@@ -159,54 +110,6 @@ void set_joint_forces(const BodyTree& tree, const S* q, const S* v, MotionSpace<
     const JointForce& f = tree.forces()[k];
     w.joint_force[static_cast<Eigen::Index>(k)] =
         f.constant - f.stiffness * (q[tree.coordinate_of()[k]] - f.rest) - f.damping * v[k];
-  }
-}
-
-/// The mass matrix by composite bodies: what hangs on a joint, as if frozen, accelerated by it.
-/// Needs the inertias in w and leaves sums in their place.
-inline void mass_matrix(const BodyTree& tree, BodyWorkspace& w, Eigen::MatrixXd& result) {
-  const std::vector<Link>& links = tree.links();
-  const auto parent_pose = [&](const Link& link) -> const LinkPose<>& {
-    return w.pose[static_cast<std::size_t>(link.parent)];
-  };
-  result.setZero(tree.rates(), tree.rates());
-  for (const RotorLink& rotor : tree.rotors()) {
-    auto j = static_cast<std::size_t>(rotor.link.parent);
-    const Vector3<double> e = w.pose[j].R * rotor.link.axis;
-    if (!rotor.regulated()) {
-      Symmetric3<>& tensor = w.inertia[j].tensor;
-      tensor = tensor + square(e, rotor.about);
-    }
-    result(rotor.link.v, rotor.link.v) = rotor.about;
-    const Motor<> P{Vector3<double>::Zero(), rotor.about * e};
-    for (; j > 0; j = static_cast<std::size_t>(links[j].parent)) {
-      for (int l = 0; l < rate_count(links[j].kind); ++l) {
-        const double entry =
-            reciprocal(P, direction(links[j], w.pose[j], parent_pose(links[j]), l));
-        result(rotor.link.v, links[j].v + l) = entry;
-        result(links[j].v + l, rotor.link.v) = entry;
-      }
-    }
-  }
-  for (std::size_t i = links.size() - 1; i > 0; --i) {
-    const Link& link = links[i];
-    const Inertia<>& composite = w.inertia[i];
-    for (int k = 0; k < rate_count(link.kind); ++k) {
-      Motor<> P = composite * direction(link, w.pose[i], parent_pose(link), k);
-      for (std::size_t j = i; j > 0; j = static_cast<std::size_t>(links[j].parent)) {
-        const Link& above = links[j];
-        for (int l = 0; l < rate_count(above.kind); ++l) {
-          const double entry = reciprocal(P, direction(above, w.pose[j], parent_pose(above), l));
-          result(link.v + k, above.v + l) = entry;
-          result(above.v + l, link.v + k) = entry;
-        }
-        P = carried(w.pose[j].r, P);
-      }
-    }
-    if (link.parent != 0) {
-      Inertia<>& above = w.inertia[static_cast<std::size_t>(link.parent)];
-      above = above + shifted(w.pose[i].r, composite);
-    }
   }
 }
 

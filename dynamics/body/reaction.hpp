@@ -4,8 +4,7 @@
 
 #include <vector>
 
-#include <dynamics/body/loads.hpp>
-#include <dynamics/law/relative.hpp>
+#include <motor/frame.hpp>
 
 namespace kreisel {
 
@@ -37,37 +36,5 @@ struct JointReactions {
   /// joint; 0 where forces rule.
   Eigen::VectorXd drive;
 };
-
-namespace detail {
-
-/// The force of its joint on a body, once w.force has been summed inwards.
-[[nodiscard]] inline Force<Body> joint_reaction(const BodyTree& tree, int body,
-                                                const BodyWorkspace& w) {
-  const std::size_t link = tree.link(body);
-  const Matrix3<double>& R = w.pose[link].R;
-  const auto& [force, moment] = w.force[link];
-  return {{transposed_product(R, force), transposed_product(R, moment)}};
-}
-
-/// The terms of (26) of one body, from the absolute accelerations in w, from which g was taken off.
-[[nodiscard]] inline ForceParts<Body> terms(const BodyTree& tree, const Situation<>& s, int body,
-                                            const Vector3<double>& g, const BodyWorkspace& w) {
-  const std::size_t link = tree.link(body);
-  const LinkMotion<>& absolute = w.motion[link];
-  const auto& [x, V] = w.place[link];
-  const Vector3<double>& u = s.guide.V.value.resultant;
-  const Vector3<double>& du = s.guide.dV.value.resultant;
-  const Vector3<double> carried =
-      s.guide.origin_acceleration() + cross(du, x) + cross(u, cross(u, x));
-  const Vector3<double> turn = absolute.dw - du - cross(u, V.resultant);
-  const Vector3<double> slide = absolute.a + g - carried - 2.0 * cross(u, V.moment);
-  const Matrix3<double>& R = w.pose[link].R;
-  const Rate<Body, Velocity<Body, Guide, Body>> dV_rel{
-      {transposed_product(R, turn), transposed_product(R, slide - cross(V.resultant, V.moment))}};
-  const Displacement<Body, Guide> X = s.X.inverse();
-  return equation_of_motion(s.inertia, s.V_rel, X * s.guide.V, dV_rel, X * s.guide.dV);
-}
-
-}  // namespace detail
 
 }  // namespace kreisel

@@ -58,16 +58,7 @@ struct MotionSpace {
 ///
 /// Cost : 1 kB for each body
 struct BodyWorkspace : detail::MotionSpace<> {
-  explicit BodyWorkspace(const BodyTree& tree)
-      : MotionSpace(tree),
-        articulated(tree.links().size()),
-        single(tree.links().size()),
-        size(tree.links().size()),
-        delta(tree.links().size()),
-        ball(static_cast<std::size_t>(tree.balls())),
-        still(Eigen::VectorXd::Zero(tree.rates())),
-        acceleration(Eigen::VectorXd::Zero(tree.rates())),
-        spin_up(tree.rotors().size()) {}
+  KREISEL_DECLARED explicit BodyWorkspace(const BodyTree& tree);
 
   std::vector<detail::ArticulatedInertia> articulated;
   std::vector<detail::SingleElimination> single;

@@ -13,23 +13,6 @@ namespace kreisel {
 
 namespace detail {
 
-/// The vector field of a scene on as many members as a pack has lanes: component after component,
-/// lane after lane in each.
-template <class Scene, class N>
-struct PackedField {
-  static constexpr int components = int(Scene::Vector::RowsAtCompileTime);
-  using Vector = Eigen::Matrix<double, components * N::lanes, 1>;
-
-  const Scene* scene;
-
-  void operator()(double t, const Vector& y, Vector& rate) const {
-    Eigen::Matrix<N, components, 1> state;
-    for (int i = 0; i < components; ++i) state[i] = component<N>(y, i);
-    const Eigen::Matrix<N, components, 1> rates = scene->rates(N(t), state);
-    for (int i = 0; i < components; ++i) rates[i].store(rate.data() + i * N::lanes);
-  }
-};
-
 /// Whether a scene's rates calculate with packs.
 template <class Scene, class N>
 inline constexpr bool takes_packs = false;
@@ -53,8 +36,8 @@ requires(is_pack<N>&& int(Scene::Vector::RowsAtCompileTime) >
 ///          from being met, which alone it would be forgiven for
 template <class Scene, class N = Pack>
 class PackedAdvance {
-  using Field = detail::PackedField<Scene, N>;
-  using Vector = typename Field::Vector;
+  static constexpr int components = int(Scene::Vector::RowsAtCompileTime);
+  using Vector = Eigen::Matrix<N, components, 1>;
 
  public:
   using States = std::array<typename Scene::State, std::size_t(N::lanes)>;
@@ -84,7 +67,7 @@ class PackedAdvance {
     Vector y;
     for (int k = 0; k < N::lanes; ++k) {
       const typename Scene::Vector own = scene.to_vector(states[std::size_t(k)]);
-      for (int i = 0; i < Field::components; ++i) y[i * N::lanes + k] = own[i];
+      for (int i = 0; i < components; ++i) y[i].set_lane(k, own[i]);
     }
     return y;
   }
@@ -93,14 +76,14 @@ class PackedAdvance {
     States states;
     for (int k = 0; k < N::lanes; ++k) {
       typename Scene::Vector own;
-      for (int i = 0; i < Field::components; ++i) own[i] = y[i * N::lanes + k];
+      for (int i = 0; i < components; ++i) own[i] = y[i].lane(k);
       states[std::size_t(k)] = scene_->from_vector(own);
     }
     return states;
   }
 
   const Scene* scene_;
-  ExplicitSteps<Vector, Field, Verner98, N> steps_;
+  ExplicitSteps<Vector, detail::SceneField<Scene>> steps_;
 };
 
 template <class Scene>

@@ -16,8 +16,12 @@
 
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/series.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/cardan_parts.hpp>
+#include <dynamics/scene/cardan_series.hpp>
 #include <dynamics/scene/dual_numbers.hpp>
+#include <dynamics/scene/felt_motion.hpp>
 #include <dynamics/scene/load.hpp>
 #include <dynamics/scene/structure.hpp>
 #include <dynamics/scene/terms.hpp>
@@ -28,112 +32,7 @@
 
 namespace kreisel {
 
-/// The principal moments of inertia (A, B, C) of a Cardan gyro's three bodies about the point where
-/// its three axes meet, which is the centre of mass of each.
-///
-/// C of the rotor lies along its spin axis, B of the inner ring along the inner bearing, A of the
-/// outer ring along the outer one. A ring of zeros has no mass.
-///
-/// Source : paper 002 section 6: Theta_A .. Theta_C with the indices 1, 2 and 3
-/// Units  : kg m^2
-template <class P>
-struct BasicCardanMoments {
-  Vector3<P> rotor;
-  Vector3<P> inner_ring = Vector3<P>::Zero();
-  Vector3<P> outer_ring = Vector3<P>::Zero();
-};
-using CardanMoments = BasicCardanMoments<double>;
-
-/// What a bearing does about its axis:  torque = -stiffness q - damping q',  q from `reference`.
-///
-/// The state counts the angle from `reference` too, so that a stiff bearing's torque keeps its
-/// digits: at 1e12 N m/rad the last digit of an angle of 0.3 is worth 5.5e-5 N m.
-///
-/// Units  : N m/rad, N m s/rad, radian
-template <class P>
-struct BasicCardanBearing {
-  P stiffness = P(0);
-  P damping = P(0);
-  P reference = P(0);  ///< where the spring is slack and the state's angle is 0
-};
-using CardanBearing = BasicCardanBearing<double>;
-
-template <class P>
-struct BasicCardanBearings {
-  BasicCardanBearing<P> outer = {};  ///< of alpha, between the guide and the outer ring
-  BasicCardanBearing<P> inner = {};  ///< of beta, between both rings
-};
-using CardanBearings = BasicCardanBearings<double>;
-
-/// How a Cardan gyro moves.
-struct CardanState {
-  double alpha = 0;       ///< of the outer ring, from bearings().outer.reference
-  double beta = 0;        ///< of the inner ring, from bearings().inner.reference
-  double phi = 0;         ///< of the rotor
-  double alpha_rate = 0;  ///< against the guide
-  double beta_rate = 0;   ///< against the outer ring
-  double phi_rate = 0;    ///< against the inner ring
-};
-
-/// A rotor left to itself. Friction acts between it and the inner ring, in N m s/rad.
-struct FreeRotor {
-  double friction = 0;
-};
-
-/// A rotor left to itself in a bearing without friction: a FreeRotor of 0, known beforehand.
-struct FrictionlessRotor {
-  static constexpr double friction = 0;
-};
-
-/// A rotor driven from the inner ring by a torque in N m: a number, or a function of the time and
-/// of phi', which for an exact Jacobian has to take dual numbers.
-template <class Torque = double>
-struct DrivenRotor {
-  Torque torque;
-  double friction = 0;
-};
-template <class Torque>
-DrivenRotor(Torque) -> DrivenRotor<Torque>;
-template <class Torque>
-DrivenRotor(Torque, double) -> DrivenRotor<Torque>;
-
-/// A rotor whose speed against the inner ring a motor keeps constant.
-struct RegulatedRotor {
-  double friction = 0;  ///< what the motor works against besides
-};
-
-/// The moments in the bearings of a Cardan gyro, springs, friction and drive included. What acts
-/// back on the other body is the negative.
-///
-/// Source : paper 002 (35)-(40), whose names stand behind
-/// Units  : N m, W
-struct CardanReactions {
-  Vector3<double> rotor_on_inner_ring;       ///< M_A21, M_B21, M_C21 on the axes of the inner ring
-  Vector3<double> inner_ring_on_outer_ring;  ///< M_A32, M_B32, M_C32 on the axes of the outer ring
-  Vector3<double> guide_on_outer_ring;       ///< M_A3, M_BL, M_CL on the axes of the outer ring
-
-  double motor_torque;  ///< the motor's on the rotor, without friction
-  double motor_power;   ///< motor_torque phi', what the motor gives
-};
-
-/// Energies and momenta of a Cardan gyro.
-///
-/// Units  : J, N m s
-struct CardanBalance {
-  double kinetic_energy;             ///< absolute
-  double potential_energy;           ///< of the springs
-  double alpha_momentum;             ///< dT/d alpha': of everything, about the outer axis
-  double beta_momentum;              ///< dT/d beta': of inner ring and rotor, about the inner axis
-  double rotor_momentum;             ///< dT/d phi' = C_1 u_C1: of the rotor, about its own axis
-  Vector3<double> angular_momentum;  ///< of everything, absolute, on guide axes
-};
-
 namespace detail {
-
-template <class M>
-inline constexpr bool is_resting = false;
-template <class G, class I, class S>
-inline constexpr bool is_resting<RestingFrame<G, I, S>> = true;
 
 /// u of a guide in steady motion, worked out once.
 template <class M>
@@ -152,54 +51,25 @@ inline constexpr bool is_driven = false;
 template <class Torque>
 inline constexpr bool is_driven<DrivenRotor<Torque>> = true;
 
-template <class S>
-struct SinCos {
-  S sin = {};
-  S cos = {};
-};
+/// By more than a constant torque.
+template <class Rotor>
+inline constexpr bool is_driven_otherwise =
+    is_driven<Rotor> && !std::is_same_v<Rotor, DrivenRotor<double>>;
 
-/// Sine and cosine of reference + deviation, both relatively exact to 2u also where one of them
-/// is nearly 0: what rounding leaves of the sum is added to first order.
-template <class S>
-[[nodiscard]] SinCos<S> sin_cos(Absent /*reference*/, const S& deviation) {
-  using std::cos, std::sin;
-  return {S(sin(deviation)), S(cos(deviation))};
-}
-template <class P, class S>
-[[nodiscard]] SinCos<S> sin_cos(const P& reference, const S& deviation) {
-  using std::cos, std::sin;
-  if (all(reference == P(0))) return sin_cos(Absent{}, deviation);
-  const S sum = reference + deviation;
-  const S back = sum - reference;
-  const S rest = (reference - S(sum - back)) + S(deviation - back);
-  const S s = sin(sum);
-  const S c = cos(sum);
-  return {S(s + rest * c), S(c - rest * s)};
-}
+/// Whether the drive's torque, if it is a function, is one of numbers S.
+template <class Rotor, class S>
+inline constexpr bool drive_takes = true;
+template <class Rotor, class S>
+requires is_driven_otherwise<Rotor>
+inline constexpr bool drive_takes<Rotor, S> = requires(const Rotor& rotor, const S& x) {
+  S(rotor.torque(x, x));
+};
 
 /// u and its rate on guide axes; G and V are numbers or Absent.
 template <class G, class V>
 struct Turning {
   Components<G> u = {};
   Components<V> du = {};
-};
-
-/// Moments of inertia of a ring and, added to it, of what a symmetric rotor has without its spin.
-template <class P>
-struct RingMoments {
-  P a, b, c;
-  P c_less_ab;  ///< c - b - a
-  P a_less_c;   ///< a - c
-  P bc_less_a;  ///< b + c - a, from the ring's b - a
-
-  /// The ring's moments J, the rotor's A, and C where the rotor's speed is regulated.
-  RingMoments(const Vector3<P>& J, const P& rotor_a, const P& rotor_c)
-      : a(J.x() + rotor_a),
-        b(J.y() + rotor_a),
-        c(J.z() + rotor_c),
-        c_less_ab(c - b - a),
-        a_less_c(a - c),
-        bc_less_a(c + (J.y() - J.x())) {}
 };
 
 /// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
@@ -322,6 +192,7 @@ class CardanGyro {
   /// lambda of auto does). A guide of double gives the rate of u, which is ou, but none of ou: its
   /// part is left out.
   template <class S>
+  requires detail::drive_takes<Rotor, S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
                                              const Eigen::Matrix<S, 6, 1>& y) const {
     if constexpr (std::is_same_v<S, double>) {
@@ -331,6 +202,37 @@ class CardanGyro {
     return less_plain_rates<S>(t, y);
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
+
+  /// The Taylor series of the motion, for TaylorSteps: where the guide rests, moves steadily or
+  /// analytically, and the drive, if any, gives one torque. Formulas: scene/cardan_series.hpp.
+  [[nodiscard]] auto series() const
+      requires(std::is_same_v<Parameter, double> && !detail::is_driven_otherwise<Rotor> &&
+               (detail::never_turns<M> || SteadyGuide<M> || AnalyticGuide<M>)) {
+    const auto& [A_1, B_1, C_1] =
+        std::array{moments_.rotor[0], moments_.rotor[1], moments_.rotor[2]};
+    detail::CardanConstants gyro{
+        .moments = moments_,
+        .bearings = bearings_,
+        .ring = {moments_.inner_ring, (A_1 + B_1) / 2, regulated ? C_1 : 0},
+        .n = (A_1 - B_1) / 2,
+        .singular = singular_,
+        .regulated = regulated};
+    if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) gyro.torque = rotor_.torque;
+    if constexpr (!regulated) gyro.friction = rotor_.friction;
+    if constexpr (detail::never_turns<M> || detail::is_resting<M>) {
+      return detail::CardanSeries(gyro, detail::Absent{});
+    } else if constexpr (SteadyGuide<M>) {
+      return detail::CardanSeries(gyro, detail::components(detail::vector<double>(steady_)));
+    } else {
+      return detail::CardanSeries(gyro, detail::FeltSeries(guide_, detail::NoVector{},
+                                                           detail::NoVector{}, detail::NoVector{}));
+    }
+  }
+
+  /// Whether anything takes energy out of the motion, so that it may be stiff.
+  [[nodiscard]] bool is_damped() const {
+    return bearings_.outer.damping != 0 || bearings_.inner.damping != 0 || rotor_.friction != 0;
+  }
 
   /// The moments in the bearings.
   ///
@@ -345,7 +247,7 @@ class CardanGyro {
         detail::RingMoments<double>(moments_.inner_ring, 0, 0),
         {state.alpha_rate, state.beta_rate, state.phi_rate, dy[3], dy[4]});
     const double friction = rotor_.friction * state.phi_rate;
-    const double on_rotor = regulated ? moments_.rotor.z() * (k.dz_2 + dy[5]) + k.twist
+    const double on_rotor = regulated ? moments_.rotor.z() * k.dz_2 + k.twist  // phi'' = 0
                                       : spin_torque<double>(t, state.phi_rate);
     const double N_a = k.rotor_a + k.inner_a;
     const double N_c = on_rotor + k.inner_c;
@@ -773,18 +675,21 @@ class CardanGyro {
     const S across = A_3 + carried_ * S(sb * sb);
     const S cc = cb * cb;
     using detail::any;  // lanes of a pack stop together
+    const auto stop = [&] {
+      detail::stop_where_singular(moments_, regulated, bearings_.inner.reference, y[1]);
+    };
     S dda;
     S ddb;
     if constexpr (round) {
       const S M_aa = across + cc * inner.a;
-      if (any(M_aa <= singular_)) stop(y[1]);
+      if (any(M_aa <= singular_)) stop();
       dda = -left_a / M_aa;
       ddb = -left_b / inner.b;
     } else {
       const S M_aa = across + cc * S(inner.a + P);
       const S M_bb = inner.b + Q;
       const S det = across * M_bb + cc * S(inner.a * M_bb + inner.b * P + A_1 * B_1);
-      if (any(det <= singular_)) stop(y[1]);
+      if (any(det <= singular_)) stop();
       const S M_ab = R * cb;
       dda = (M_ab * left_b - M_bb * left_a) / det;
       ddb = (M_ab * left_a - M_aa * left_b) / det;
@@ -809,7 +714,7 @@ class CardanGyro {
     constexpr double eps = std::numeric_limits<double>::epsilon();
     const auto& [rotor, inner, outer] = moments_;
     const double most = std::max(rotor.x(), rotor.y());
-    const double about_a = outer.x() + inner.x() + carried() + most;
+    const double about_a = outer.x() + inner.x() + most;  // C_2 <= A_2 + B_2
     return 64 * eps * eps * about_a * (symmetric_ ? 1 : inner.y() + most);
   }
 
@@ -817,23 +722,6 @@ class CardanGyro {
   [[nodiscard]] Parameter carried() const {
     if constexpr (regulated) return moments_.inner_ring.z() + moments_.rotor.z();
     return moments_.inner_ring.z();
-  }
-
-  template <class S>
-  [[noreturn]] EIGEN_DONT_INLINE void stop(const S& beta) const {
-    using detail::any;
-    std::ostringstream text;
-    text.precision(17);
-    text << "Cardan gyro: at beta = "
-         << detail::number_in(bearings_.inner.reference) +
-                static_cast<double>(detail::number_in(beta))
-         << " rad the mass matrix is singular: ";
-    const bool light = any(moments_.outer_ring.x() == Parameter(0)) &&
-                       any(moments_.inner_ring.z() == Parameter(0)) && !regulated;
-    text << (light ? "nothing resists the rotation alpha of the outer ring (A_3 + C_2 sin^2 beta = "
-                     "0 and cos beta = 0: gimbal lock of rings without mass)"
-                   : "nothing resists the rotation beta of the inner ring (B_2 + Q = 0)");
-    throw ComputationFailed(text.str());
   }
 
   BasicCardanMoments<Parameter> moments_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <dynamics/body/rotor_forces.hpp>
 #include <dynamics/decompositions.hpp>
 #include <dynamics/scene/body_system.hpp>
 

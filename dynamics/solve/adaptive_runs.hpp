@@ -7,39 +7,72 @@
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/accuracy.hpp>
 
+/// Runs as solve() sets them, AdaptiveRuns and FixedRuns (fixed_runs.hpp): each kind has one setting,
+/// an accuracy or a step, which can be made finer by ten or thirty times in the error, and
+///   method()
+///   first()                the setting to begin with
+///   finer(x)               of the run beside
+///   between(x, part)       of more runs, where rounding is all that is left: other steps than of both
+///   tightened(x, ratio)    a setting whose error is `ratio` < 1 of this one's
+///   finest(), last(x)      the setting beyond which rounding leaves nothing to gain; whether x is it
+///   falls(x, y)            what the error of steps at y is of that at x
+///   may_be_rounding(x)     whether what steps at x err by, after others that erred by too much, may be
+///                          rounding that has grown
+///   begins_near_rounding() whether the first setting errs by little more than rounding
+///   rounding()             of one step where nothing grows, in units of 2^-53
+///   finer_by(x)            how many times finer that is
+///   goes_on(x)             whether the finer run may become the coarser one of the next pair
+///   digits_lost(x, n)      what rounding in n steps does to the state, in units of its last digit: a
+///                          random walk; 0 where the method errs by more
+
 namespace kreisel::detail {
 
 /// The settings of steps that adapt themselves: an accuracy.
 class AdaptiveRuns {
  public:
-  static constexpr bool begins_near_rounding = false;
+  /// Of verner98, taylor or radau13.
+  explicit AdaptiveRuns(const Task& task, Method method = Method::verner98)
+      : task_(task), method_(method) {}
 
-  /// Ten times finer for 1.29 times the steps of an explicit method of order 9. What the coarser errs
-  /// by is 10/9 of what the two are apart, times 0.84 to 1.23 in 95 % of 835 runs at 1e-6 to 1e-2, and
-  /// 0.94 to 1.07 at finer ones.
-  ///
-  /// finest : beyond which rounding leaves nothing to gain, even over a long way
-  explicit AdaptiveRuns(const Task& task, double finer_by = 10, double finest = 1e-16)
-      : task_(task), finer_by_(finer_by), finest_(finest) {}
+  [[nodiscard]] Method method() const { return method_; }
 
-  [[nodiscard]] double first() const { return allowed(task_.tolerance / 10); }
+  /// Of radau13 also where Newton's iterations stop, and of stiff springs.
+  [[nodiscard]] double rounding() const { return method_ == Method::radau13 ? 24 : 2.5; }
+
+  [[nodiscard]] static bool begins_near_rounding() { return false; }
+
+  /// Of taylor finer than of the others: a tenth more of steps, where a second try would double them.
+  [[nodiscard]] double first() const {
+    const double first = allowed(task_.tolerance / 10);
+    return method_ == Method::taylor ? allowed(first / 3) : first;
+  }
   [[nodiscard]] double finer(double accuracy) const {
-    return std::max(accuracy / finer_by_, finest() / 4);
+    return std::max(accuracy / beside(), finest() / 4);
   }
   [[nodiscard]] double between(double accuracy, double part) const {
     return accuracy * std::pow(finer(accuracy) / accuracy, part);
   }
   [[nodiscard]] double finer_by(double accuracy) const { return accuracy / finer(accuracy); }
   [[nodiscard]] bool goes_on(double accuracy) const { return finer(accuracy) > near_rounding; }
-  [[nodiscard]] static double digits_lost(double accuracy, double steps) {
-    return accuracy <= 1e-13 ? 0.02 * std::sqrt(steps) : 0;
+
+  /// Longer steps round more.
+  [[nodiscard]] double digits_lost(double accuracy, double steps) const {
+    const double more = method_ == Method::radau13 ? 4 : method_ == Method::taylor ? 2.5 : 1;
+    return accuracy <= 1e-13 ? more * (0.02 * std::sqrt(steps)) : 0;
   }
-  [[nodiscard]] double finest() const { return finest_; }
+
+  /// Beyond which rounding leaves nothing to gain, even over a long way. To go down to 1e-18 costs
+  /// taylor a tenth more than 4e-16, and over 1e5 s it errs by up to 200 times less.
+  [[nodiscard]] double finest() const {
+    return method_ == Method::radau13 ? 4e-16 : method_ == Method::taylor ? 1e-18 : 1e-16;
+  }
   [[nodiscard]] bool last(double accuracy) const { return accuracy <= finest(); }
 
   /// Where steps have to be so much finer than the tolerance, the motion makes much of what they err
-  /// by, and as much of rounding.
+  /// by, and as much of rounding. Of radau13 a third run to finer tolerances would tell ten times too
+  /// great an error of stiff bearings.
   [[nodiscard]] bool may_be_rounding(double accuracy) const {
+    if (method_ == Method::radau13 && digits_off(task_) == 0) return false;
     return accuracy <= 5e-14 && accuracy < task_.tolerance / 50;
   }
 
@@ -52,20 +85,21 @@ class AdaptiveRuns {
     return {relative, task_.smallest, task_.most_evaluations};
   }
 
- protected:
-  [[nodiscard]] const Task& task() const { return task_; }
+ private:
+  static constexpr double near_rounding = 4e-16;
+
+  /// Of an explicit method of order 9 ten times, for 1.29 times the steps. What the coarser errs by is
+  /// 10/9 of what the two are apart, times 0.84 to 1.23 in 95 % of 835 runs at 1e-6 to 1e-2, and 0.94
+  /// to 1.07 at finer ones.
+  [[nodiscard]] double beside() const { return method_ == Method::verner98 ? 10 : times_finer; }
 
   /// Where a pair of runs would differ by little more than rounding, the finest is taken at once.
   [[nodiscard]] double allowed(double accuracy) const {
     return accuracy > near_rounding ? accuracy : finest();
   }
 
- private:
-  static constexpr double near_rounding = 4e-16;
-
   const Task& task_;
-  double finer_by_;
-  double finest_;
+  Method method_;
 };
 
 }  // namespace kreisel::detail

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <cmath>
-#include <limits>
 #include <optional>
 
-#include <dynamics/exact/free_top.hpp>
-#include <dynamics/exact/gyrostat.hpp>
-#include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/compiled.hpp>
 #include <dynamics/scene/closed_form.hpp>
 #include <dynamics/scene/euler_top.hpp>
 
@@ -18,45 +14,11 @@ namespace kreisel {
 /// Error  : the estimate is the rounding of two quaternions, the answer and what it is compared with,
 ///          2^-63 of each radian turned through, and 2^-60 of those that Lagrange's top takes off
 ///                               (tests/dynamics/solve/solve, tests/dynamics/exact/lagrange_top)
-[[nodiscard]] inline std::optional<ClosedForm<EulerTop::State>> closed_form(
-    const EulerTop& top, double begin, const EulerTop::State& start) {
-  const Vector3<double>& I = top.moments();
-  const Vector3<double>& k = top.weight_moment();
-  const Vector3<double>& h = top.rotor_momentum();
-  const Eigen::Quaterniond& q = start.attitude;
-  const Vector3<double>& w = start.angular_velocity;
-  const bool free = k.isZero(0);
-  const bool rotor = !h.isZero(0);
-  const bool symmetric = I.x() == I.y();
-  const auto along_z = [](const Vector3<double>& v) { return v.x() == 0 && v.y() == 0; };
-
-  const auto made = [&](const char* name, const auto& motion, double taken_off = 0) {
-    // The angle of the momentum's turn: rate times time, in the inertia's least direction.
-    const double rate =
-        (I.cwiseProduct(w) + h).norm() / I.minCoeff() + std::sqrt(k.norm() / I.minCoeff());
-    return ClosedForm<EulerTop::State>{
-        name,
-        [motion, begin](double t) {
-          const exact::TopMotion m = motion.at(t - begin);
-          return EulerTop::State{m.attitude, m.angular_velocity};
-        },
-        [rate, begin, taken_off](double t, double /*smallest*/) {
-          constexpr double u = std::numeric_limits<double>::epsilon() / 2;
-          const double angle = rate * std::abs(t - begin) + taken_off;
-          return 3 * u + double(std::numeric_limits<exact::Real>::epsilon()) * angle;
-        }};
-  };
-  if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));
-  const bool rotor_on_an_axis = (h.array() != 0).count() == 1;
-  if (free && rotor_on_an_axis) {
-    return made("gyrostat, elliptic functions", exact::Gyrostat(I, h, w, q));
-  }
-  if (!rotor && symmetric && along_z(k) && k.z() > 0) {
-    const exact::LagrangeTop motion(I.x(), I.z(), k.z(), w, q);
-    const double taken_off = 0x1p-60 / 0x1p-63 * motion.starting_angle();
-    return made("Lagrange's top, elliptic functions", motion, taken_off);
-  }
-  return std::nullopt;
-}
+KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<EulerTop::State>> closed_form(
+    const EulerTop& top, double begin, const EulerTop::State& start);
 
 }  // namespace kreisel
+
+#ifndef KREISEL_COMPILED
+#include <dynamics/solve/closed_form_defined.hpp>
+#endif

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include <dynamics/compiled.hpp>
 #include <dynamics/step/advance.hpp>
 
 namespace kreisel::detail {
@@ -36,13 +39,32 @@ template <class Scene>
                                                        const typename Scene::State& state,
                                                        double by) {
   typename Scene::Vector y = scene.to_vector(state);
-  move_last_digits<double>(y, by);
+  move_last_digits(y, by);
   return scene.from_vector(y);
 }
 
 /// The distance of two states in the measure of RunReport::error_estimate.
 ///
 /// Attitudes (blocks of four) by the angle between them, whatever their norms; q and -q are one.
+class BlockDistance {
+ public:
+  BlockDistance(std::vector<int> blocks, double smallest)
+      : blocks_(std::move(blocks)), size_(blocks_.size(), smallest) {}
+
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(size_);
+  }
+
+  KREISEL_DECLARED double operator()(std::span<const double> a, std::span<const double> b);
+
+ private:
+  std::vector<int> blocks_;
+  std::vector<double> size_;
+  Eigen::VectorXd difference_;
+};
+
+/// The same of states of a scene.
 template <class Scene>
 class ErrorMeasure {
   using Vector = typename Scene::Vector;
@@ -53,46 +75,20 @@ class ErrorMeasure {
   /// For scenes that all have the same blocks.
   explicit ErrorMeasure(double smallest) : ErrorMeasure(Scene::blocks, smallest) {}
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(size_);
-  }
-
   double operator()(const Vector& a, const Vector& b) {
-    double worst = 0;
-    int begin = 0;
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const int n = blocks_[i];
-      const bool attitude = n == 4;
-      if (attitude) {
-        const Eigen::Vector4d p = attitude_at(a, begin);
-        const Eigen::Vector4d q = attitude_at(b, begin);
-        // |p -+ q| / 2 of unit quaternions is the sine of a quarter of the angle between.
-        const Eigen::Vector4d unit_p = p.stableNormalized();
-        Eigen::Vector4d unit_q = q.stableNormalized();
-        if (unit_p.dot(unit_q) < 0) unit_q = -unit_q;
-        worst = worse(worst, 4 * std::asin(std::min(1.0, (unit_p - unit_q).norm() / 2)));
-      } else {
-        const double off = norm(Vector(a - b), begin, n);
-        size_[i] = std::max(size_[i], norm(b, begin, n));
-        worst = worse(worst, off == 0 ? 0 : off / size_[i]);
-      }
-      begin += n;
-    }
-    return worst;
+    return distance_({a.data(), std::size_t(a.size())}, {b.data(), std::size_t(b.size())});
   }
 
  private:
   template <class Blocks>
   ErrorMeasure(const Blocks& blocks, double smallest)
-      : blocks_(blocks.begin(), blocks.end()), size_(blocks_.size(), smallest) {}
+      : distance_({blocks.begin(), blocks.end()}, smallest) {}
 
-  [[nodiscard]] static Eigen::Vector4d attitude_at(const Vector& v, int begin) {
-    return {v[begin], v[begin + 1], v[begin + 2], v[begin + 3]};
-  }
-
-  std::vector<int> blocks_;
-  std::vector<double> size_;
+  BlockDistance distance_;
 };
 
 }  // namespace kreisel::detail
+
+#ifndef KREISEL_COMPILED
+#include <dynamics/solve/error_measure_defined.hpp>
+#endif

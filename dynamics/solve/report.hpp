@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/step/explicit.hpp>
+#include <dynamics/step/accuracy.hpp>
 
 namespace kreisel {
 

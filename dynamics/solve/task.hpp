@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <functional>
 #include <sstream>
 #include <vector>
 
+#include <dynamics/compiled.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -12,7 +12,7 @@ namespace kreisel {
 /// How a run is computed.
 enum class Method {
   /// The closed form where the scene has one; splitting for a fast top; taylor where the scene knows
-  /// its series; else verner98, which gives way to radau13 where the field proves stiff. To gauss16
+  /// its series; else verner98. Both give way to radau13 where the field proves stiff, and to gauss16
   /// where a long run asks for it.
   automatic,
   closed_form,  ///< of the scene; see closed_form.hpp
@@ -79,33 +79,12 @@ template <class... Words>
 /// result takes those of the start for exact.
 [[nodiscard]] inline double digits_off(const Task& task) { return task.tolerance > 1e-11 ? 1 : 0; }
 
-inline void check(const Task& task) {
-  if (!(task.tolerance >= 1e-15 && task.tolerance <= 1e-2)) {
-    refuse_task("tolerance = ", task.tolerance,
-                " lies outside [1e-15, 1e-2], what double precision can promise");
-  }
-  if (!(task.smallest >= 0 && std::isfinite(task.smallest))) {
-    refuse_task("smallest = ", task.smallest, " must be finite, 0 or above");
-  }
-  for (const double jump : task.jumps) {
-    if (!std::isfinite(jump)) refuse_task("the time of a jump, ", jump, ", is not finite");
-  }
-  if (!(task.most_evaluations > 0)) {
-    refuse_task("most_evaluations = ", task.most_evaluations, " must be above 0");
-  }
-  if (task.times.empty()) refuse_task("no output times are given");
-  const double direction = task.times.back() < task.begin ? -1 : 1;
-  double before = task.begin;
-  if (!std::isfinite(before)) refuse_task("the time of the beginning is not finite");
-  for (const double t : task.times) {
-    if (!std::isfinite(t)) refuse_task("an output time is not finite");
-    if (direction * (t - before) < 0) {
-      refuse_task("output times turn round: t = ", t, " s comes after ", before, " s");
-    }
-    before = t;
-  }
-}
+KREISEL_DECLARED void check(const Task& task);
 
 }  // namespace detail
 
 }  // namespace kreisel
+
+#ifndef KREISEL_COMPILED
+#include <dynamics/solve/task_defined.hpp>
+#endif

@@ -55,49 +55,45 @@ inline void check(const Accuracy& accuracy, double least = 1e-16) {
 
 /// |v| of the components from `begin` on, also where their squares would leave the range; of each
 /// lane, if v holds those of packs.
-template <class Number, class Vector>
-[[nodiscard]] Number norm(const Vector& v, int begin, int components) {
+template <class Vector>
+[[nodiscard]] typename Vector::Scalar norm(const Vector& v, int begin, int components) {
   using std::abs;
   using std::sqrt;
-  using Limits = std::numeric_limits<typename Vector::Scalar>;
-  const auto at = [&v](int i) { return component<Number>(v, i); };
-  if (components == 1) return abs(at(begin));
+  using Number = typename Vector::Scalar;
+  using Limits = std::numeric_limits<ScalarOf<Number>>;
+  if (components == 1) return abs(v[begin]);
   Number sum(0);  // a loop, because g++ 12 sees v.segment().norm() read past the end of v
-  for (int i = begin; i < begin + components; ++i) sum += at(i) * at(i);
+  for (int i = begin; i < begin + components; ++i) sum += v[i] * v[i];
   const Number smallest(Limits::min() / Limits::epsilon());
   const Number most(Limits::max());
   if (all(sum > smallest && sum < most)) return sqrt(sum);
   Number largest(0);
   for (int i = begin; i < begin + components; ++i) {
-    const Number size = abs(at(i));
+    const Number size = abs(v[i]);
     largest = select(size <= largest, largest, size);  // a NaN stays
   }
   sum = Number(0);
   for (int i = begin; i < begin + components; ++i) {
-    sum += (at(i) / largest) * (at(i) / largest);
+    sum += (v[i] / largest) * (v[i] / largest);
   }
   return select(largest > Number(0) && largest <= most, Number(largest * sqrt(sum)), largest);
-}
-
-template <class Vector>
-[[nodiscard]] typename Vector::Scalar norm(const Vector& v, int begin, int components) {
-  return norm<typename Vector::Scalar>(v, begin, components);
 }
 
 /// The parts of a state that share unit and size, and how large each has been so far: what an error
 /// in it is measured by.
 ///
-/// Number : the vector's scalar, or a pack: then each component stands there as often as the pack
-///          has lanes, and each lane is measured by its own sizes
-template <class Vector, class Number = typename Vector::Scalar>
+/// Vector : of numbers, or of packs: then each lane is measured by its own sizes, and the worst counts
+template <class Vector>
 class BlockSizes {
+  using Number = typename Vector::Scalar;
+
  public:
-  using Scalar = typename Vector::Scalar;
+  using Scalar = ScalarOf<Number>;
 
   /// Without any blocks all of y is one.
   BlockSizes(std::span<const int> blocks, const Scalar& smallest, const Vector& y)
       : smallest_(smallest) {
-    const int all = static_cast<int>(y.size()) / lanes_of<Number>;
+    const int all = static_cast<int>(y.size());
     if (blocks.empty()) blocks = {&all, 1};
     require_blocks(blocks, all);
     int begin = 0;
@@ -111,6 +107,13 @@ class BlockSizes {
   /// To be called with every state that stands.
   void note(const Vector& y) {
     for (Block& block : blocks_) block.size = larger(block.size, norm(y, block));
+  }
+
+  /// Writes to each component the size of its block.
+  void put(Vector& sizes) const {
+    for (const Block& block : blocks_) {
+      for (int i = 0; i < block.components; ++i) sizes[block.begin + i] = scale(block);
+    }
   }
 
   template <class Bookmark>
@@ -142,7 +145,8 @@ class BlockSizes {
   /// The largest of the blocks' |error|, each in proportion to its size, which is |change| where
   /// the step has made that. What `span` of noise in the rate makes is no error of the step. The
   /// worst lane decides. A NaN stays.
-  [[nodiscard]] Scalar relative(const Vector& error, const Vector& change,
+  template <class Error, class Change>
+  [[nodiscard]] Scalar relative(const Error& error, const Change& change,
                                 const Scalar& span = Scalar(0)) const {
     Number worst(0);
     for (const Block& block : blocks_) {
@@ -190,8 +194,9 @@ class BlockSizes {
     Number wander;  ///< squared
   };
 
-  [[nodiscard]] static Number norm(const Vector& v, const Block& block) {
-    return detail::norm<Number>(v, block.begin, block.components);
+  template <class Components>
+  [[nodiscard]] static Number norm(const Components& v, const Block& block) {
+    return detail::norm(v, block.begin, block.components);
   }
 
   /// As std::max: of a NaN behind nothing stays.

@@ -15,7 +15,7 @@ struct SceneField {
 
   template <class S, class Vector>
   [[nodiscard]] Vector operator()(const S& t, const Vector& y) const {
-    return scene->rates(t, y);
+    return scene->rates(typename Vector::Scalar(t), y);
   }
 };
 

@@ -31,24 +31,22 @@ namespace kreisel {
 /// more.
 ///
 /// Vector : Eigen::Matrix<S, n, 1>; n may be Eigen::Dynamic, and then all memory is asked for when
-///          the steps are made, none while they go on
+///          the steps are made, none while they go on. Or Eigen::Matrix<Pack, n, 1>, for as many
+///          solutions as a pack has lanes, which share time and steps, both double: the solution that
+///          errs the most in proportion to its own size decides
 /// Field  : callable (S t, Vector y) -> Vector, or (S t, Vector y, Vector& rate), which writes into
 ///          a rate that has its size already
 /// Blocks : how many components, in turn, share a unit and a size, e.g. {4, 3} for a quaternion and
 ///          an angular velocity; one block by default
-/// Number : the scalar; or a pack, for as many solutions as it has lanes, which share the steps:
-///          each component stands in the state as often, and the solution that errs the most in
-///          proportion to its own size decides
 /// Source : Verner's tableau; step control (PI): E. Hairer, G. Wanner, Solving Ordinary
 ///          Differential Equations II, IV.2
 /// Cost   : 16 evaluations a step
 /// Throws : InvalidInput for an accuracy out of range or a start that is not finite;
 ///          ComputationFailed naming the time where steps become too short or too many
-template <class Vector, class Field, class Tableau = Verner98,
-          class Number = typename Vector::Scalar>
+template <class Vector, class Field, class Tableau = Verner98>
 class ExplicitSteps {
  public:
-  using Scalar = typename Vector::Scalar;
+  using Scalar = detail::ScalarOf<typename Vector::Scalar>;
 
   ExplicitSteps(Field field, const Scalar& t, const Vector& y, const Accuracy& accuracy = {},
                 std::span<const int> blocks = {})
@@ -64,7 +62,7 @@ class ExplicitSteps {
     detail::check(accuracy, detail::least_over_long_ways);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
-    if (!(y - y).isZero(Scalar(0))) detail::refuse_steps("the state at the start is not finite");
+    if (!detail::finite(y)) detail::refuse_steps("the state at the start is not finite");
   }
 
   [[nodiscard]] const Scalar& t() const { return time_.value; }
@@ -97,8 +95,7 @@ class ExplicitSteps {
     if (end == t()) return;
     const Scalar goal = detail::next_stop(t(), end, jumps_);
     fill_stage(0, detail::on_this_side(t(), goal, jumps_), y());
-    if (!(stage_[0] - stage_[0]).isZero(Scalar(0)))
-      detail::stop_integration(t(), "the field is not finite");
+    if (!detail::finite(stage_[0])) detail::stop_integration(t(), "the field is not finite");
     before_.time = time_;
     before_.state = state_;
     before_.rate = Memory::own(stage_[0]);
@@ -175,6 +172,8 @@ class ExplicitSteps {
   }
 
  private:
+  using Number = typename Vector::Scalar;
+
   template <class T>
   using Compensated = detail::Compensated<T>;
 
@@ -211,8 +210,7 @@ class ExplicitSteps {
   void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
     if constexpr (Memory::fixed) {
       effort_.evaluations += 1;
-      alignas(detail::Four) alignas(Vector) const Vector rate = detail::rate_of(field_, t, y);
-      stage_.keep(k, rate);
+      stage_.keep(k, [&] { return detail::rate_of(field_, t, y); });
     } else {
       evaluate(t, y, stage_.rate(k));
     }
@@ -298,12 +296,12 @@ class ExplicitSteps {
   template <std::size_t... i>
   void fill_stages(const Scalar& h, std::index_sequence<i...>) {
     const auto fill = [&]<std::size_t k>() {
-      // Only the last stage is waited for.
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
       alignas(detail::Four) alignas(Vector) typename Memory::Passing point = stage_.point();
-      point = state_.value + (h * Memory::own(combined<row<k>, 1>()) + state_.rest);
-      point += weight * Memory::own(stage_[last]);
+      // Only the last stage is waited for.
+      point = state_.value + (h * Memory::own(combined<row<k>, 1>()) + state_.rest) +
+              weight * Memory::own(stage_[last]);
       fill_stage(k, stage_time(time_, h, Tableau::node[k]), point);
     };
     (fill.template operator()<i + 1>(), ...);
@@ -330,7 +328,7 @@ class ExplicitSteps {
       point = y() + ahead * before_.rate;
       evaluate(h < most ? t() + ahead : detail::on_this_side(goal, t(), jumps_), point, bend);
       bend -= before_.rate;
-      if (!(bend - bend).isZero(Scalar(0))) return h;
+      if (!detail::finite(bend)) return h;
       const Scalar found = part * sizes_.bending_time(before_.rate, bend, h);
       if (h == most || found <= farther * h) return std::clamp(found, h, most);
       h = std::min(farther * h, most);
@@ -358,7 +356,7 @@ class ExplicitSteps {
     error = h * Memory::own(combined<Tableau::difference>());
     // In units of what is allowed.
     const Scalar worst = sizes_.relative(error, change, Scalar(4) * abs(h)) / allowed_;
-    const bool finite = isfinite(static_cast<double>(worst)) && (change - change).isZero(Scalar(0));
+    const bool finite = isfinite(static_cast<double>(worst)) && detail::finite(change);
     if (!finite || worst > Scalar(1)) {
       const Scalar aim =
           finite ? Scalar(0.9) * pow(worst, Scalar(-1) / Tableau::order) : Scalar(0.125);
@@ -389,10 +387,11 @@ class ExplicitSteps {
   }
 
   void look_for_stiffness() {
+    using detail::any;
     constexpr std::size_t last = Tableau::stages - 1;
-    const Scalar apart = (combined<row<last>>() - combined<row<last - 1>>()).norm();
-    const Scalar rate = (stage_[last] - stage_[last - 1]).norm();
-    const bool at_the_limit = rate > Scalar(0.6 * Tableau::stable) * apart;
+    const Number apart = (combined<row<last>>() - combined<row<last - 1>>()).norm();
+    const Number rate = (stage_[last] - stage_[last - 1]).norm();
+    const bool at_the_limit = any(rate > Number(0.6 * Tableau::stable) * apart);
     short_steps_ = at_the_limit ? short_steps_ + 1 : 0;
   }
 
@@ -420,10 +419,10 @@ class ExplicitSteps {
     typename Memory::Passing moved = stage_.point();
     typename Memory::Passing rate = stage_.error();
     moved = before_.state.value;
-    detail::move_last_digits<Number>(moved, 1);
+    detail::move_last_digits(moved, 1);
     evaluate(before_.time.value, moved, rate);
     rate -= before_.rate;
-    if (!(rate - rate).isZero(Scalar(0))) return;
+    if (!detail::finite(rate)) return;
     sizes_.note_noise(rate, squares_);
     squares_ = 0;
   }
@@ -513,7 +512,7 @@ class ExplicitSteps {
   Rejected rejected_;
   Scalar allowed_;  ///< accuracy_.relative, or what rounding leaves of it
   Memory stage_;
-  detail::BlockSizes<Vector, Number> sizes_;
+  detail::BlockSizes<Vector> sizes_;
   std::vector<Scalar> jumps_;
   Scalar last_stage_time_ = Scalar(0);  ///< none is later, on the way of the step
   Begin before_;

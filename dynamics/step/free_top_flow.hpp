@@ -62,7 +62,7 @@ inline void require_start(const Eigen::Quaterniond& q, const Vector3<double>& w)
   if (!(q.norm() > 0) || !std::isfinite(q.norm())) {
     refuse_steps("the attitude at the start is 0 or not finite");
   }
-  if (!(w - w).isZero(0)) refuse_steps("the angular velocity at the start is not finite");
+  if (!finite(w)) refuse_steps("the angular velocity at the start is not finite");
 }
 
 }  // namespace detail

@@ -132,7 +132,7 @@ class GaussSteps {
     detail::require_step(step);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
-    if (!finite(y)) detail::refuse_steps("the state at the start is not finite");
+    if (!detail::finite(y)) detail::refuse_steps("the state at the start is not finite");
     if (blocks.empty()) block_sizes_ = {int(y.size())};
     const GaussCoefficients<stages>& exact = coefficients();
     for (int i = 0; i < stages; ++i) {
@@ -210,11 +210,6 @@ class GaussSteps {
     return exact;
   }
 
-  template <class M>
-  [[nodiscard]] static bool finite(const M& m) {
-    return (m - m).isZero(Scalar(0));
-  }
-
   [[nodiscard]] Vector evaluate(const Scalar& t, const Vector& y) {
     effort_.evaluations += 1;
     return detail::rate_of(field_, t, y);
@@ -249,7 +244,7 @@ class GaussSteps {
         change = change.cwiseMax((z - stage_.col(i)).cwiseAbs());
         stage_.col(i) = z;  // the stages after this one take the new value already
       }
-      if (!finite(stage_)) break;
+      if (!detail::finite(stage_)) break;
       // Rounding makes no halves any more; but a slow start must not be taken for it.
       const bool shrinks = (change.array() < least.array() / Scalar(2)).any();
       if (!shrinks && at_rest(change)) {
@@ -266,9 +261,9 @@ class GaussSteps {
 
   void note_noise() {
     Vector moved = y();
-    detail::move_last_digits<Scalar>(moved, 1);
+    detail::move_last_digits(moved, 1);
     const Vector off = evaluate(t(), moved) - evaluate(t(), y());
-    if (!finite(off)) return;
+    if (!detail::finite(off)) return;
     sizes_.note_noise(off, squares_);
     squares_ = Scalar(0);
   }

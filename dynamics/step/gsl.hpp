@@ -24,9 +24,6 @@ namespace kreisel {
 /// rule, msbdf where 1e-4 will do.
 enum class GslMethod { rkf45, rk8pd, msadams, msbdf, bsimp };
 
-/// Stands for the Jacobian where the method needs none.
-struct NoJacobian {};
-
 namespace detail {
 
 [[nodiscard]] inline const gsl_odeiv2_step_type* gsl_type(GslMethod method) {
@@ -154,7 +151,7 @@ class GslSteps {
         evolve_(gsl_odeiv2_evolve_alloc(dimension), &gsl_odeiv2_evolve_free) {
     detail::check(accuracy);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
-    if (!finite(y)) detail::refuse_steps("the state at the start is not finite");
+    if (!detail::finite(y)) detail::refuse_steps("the state at the start is not finite");
     const bool implicit = method == GslMethod::msbdf || method == GslMethod::bsimp;
     if (implicit && std::is_same_v<J, NoJacobian>) {
       detail::refuse_steps("GSL ", gsl_odeiv2_step_name(step_.get()),
@@ -191,8 +188,6 @@ class GslSteps {
  private:
   static constexpr int dimension = Vector::RowsAtCompileTime;
 
-  [[nodiscard]] static bool finite(const Vector& v) { return (v - v).isZero(0); }
-
   /// The steppers' memory of the steps before.
   void forget() {
     gsl_odeiv2_step_reset(step_.get());
@@ -206,7 +201,7 @@ class GslSteps {
     const int status = gsl_odeiv2_evolve_apply(evolve_.get(), &gsl_control_, step_.get(), &system_,
                                                &t, end, &length_, y.data());
     effort_.rejected += static_cast<double>(evolve_->failed_steps - rejected);
-    if (status != GSL_SUCCESS || !finite(y)) {
+    if (status != GSL_SUCCESS || !detail::finite(y)) {
       forget();
       length_ = 0;
       if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
@@ -223,7 +218,7 @@ class GslSteps {
   [[nodiscard]] double first_length() {
     effort_.evaluations += 1;
     const Vector rate = field_(t_, y_);
-    if (!finite(rate)) detail::stop_integration(t_, "the field is not finite");
+    if (!detail::finite(rate)) detail::stop_integration(t_, "the field is not finite");
     const double worst = control_.ratio(rate.data()) * accuracy_.relative;
     return worst > 0 ? 0.01 / worst : 1.0;
   }
@@ -248,7 +243,7 @@ class GslSteps {
       steps.effort_.evaluations += 1;
       const Vector f = steps.field_(t, Vector(Eigen::Map<const Vector>(y)));
       Eigen::Map<Vector>{rate} = f;
-      return finite(f);
+      return detail::finite(f);
     });
   }
 
@@ -263,7 +258,7 @@ class GslSteps {
         constexpr auto rows = dimension == 1 ? Eigen::ColMajor : Eigen::RowMajor;
         Eigen::Map<Eigen::Matrix<double, dimension, dimension, rows>>{of_state} = j.of_state;
         Eigen::Map<Vector>{of_time} = j.of_time;
-        return (j.of_state - j.of_state).isZero(0) && finite(j.of_time);
+        return detail::finite(j.of_state) && detail::finite(j.of_time);
       });
     }
   }

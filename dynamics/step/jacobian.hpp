@@ -19,6 +19,9 @@ struct Jacobian {
   Eigen::Matrix<double, n, 1> of_time;   ///< df_i/dt
 };
 
+/// Stands for the Jacobian where a method needs none.
+struct NoJacobian {};
+
 /// (t, y) -> Jacobian of a field that is a template on the number type, by forward differentiation:
 /// exact, and one evaluation of the field in dual numbers.
 ///

@@ -35,13 +35,18 @@ template <class N>
 requires is_pack<N>
 inline constexpr int lanes_of<N> = N::lanes;
 
-/// Component i of a vector of numbers, lane after lane of each component, read as an N.
-template <class N, class Vector>
-[[nodiscard]] N component(const Vector& v, int i) {
+/// What lanes share, like the time: of a pack double, else the number itself.
+template <class N>
+using ScalarOf = std::conditional_t<is_pack<N>, double, N>;
+
+/// Whether all components of a vector are finite, in all lanes.
+template <class Vector>
+[[nodiscard]] bool finite(const Vector& v) {
+  using N = typename Vector::Scalar;
   if constexpr (is_pack<N>) {
-    return N::load(v.data() + static_cast<std::ptrdiff_t>(i) * N::lanes);
+    return all((v - v).sum() == N(0));
   } else {
-    return v[i];
+    return (v - v).isZero(N(0));
   }
 }
 

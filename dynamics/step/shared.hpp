@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -84,6 +85,15 @@ template <class Field, class S, class Vector>
   }
 }
 
+/// A state as a vector of another kind.
+template <class To, class From>
+[[nodiscard]] To vector_of(const From& y) {
+  const auto components = static_cast<std::ptrdiff_t>(y.size());
+  To result(components);
+  std::copy_n(y.data(), components, result.data());
+  return result;
+}
+
 /// A time just on this side of t where the field jumps at t, as seen from `side`; else t.
 template <class S>
 [[nodiscard]] S on_this_side(const S& t, const S& side, const std::vector<S>& jumps) {
@@ -92,15 +102,15 @@ template <class S>
   return jumps_here ? S(nextafter(t, side)) : t;
 }
 
-/// Moves the components of a state by so much in the last digit, up and down in turn; all lanes of
-/// one alike.
-template <class Number, class Vector>
+/// Moves the components of a state by so much in the last digit, up and down in turn.
+template <class Vector>
 void move_last_digits(Vector& y, double by) {
-  using Scalar = typename Vector::Scalar;
+  using Number = typename Vector::Scalar;
+  using Scalar = ScalarOf<Number>;
   const Scalar part = Scalar(by) * std::numeric_limits<Scalar>::epsilon();
   for (int i = 0; i < int(y.size()); ++i) {
-    const Scalar moved = part * y[i];
-    y[i] += i / lanes_of<Number> % 2 == 0 ? moved : Scalar(-moved);
+    const Number moved = part * y[i];
+    y[i] += i % 2 == 0 ? moved : Number(-moved);
   }
 }
 

@@ -172,7 +172,7 @@ class SplittingSteps {
       const Vector3<double> torque =
           torque_(t() + (static_cast<double>(passed * h) + time_.rest), attitude());
       effort_.evaluations += 1;
-      if (!(torque - torque).isZero(0)) return false;
+      if (!detail::finite(torque)) return false;
       flow_.kick(state_, static_cast<double>(Scheme::kick[i] * h) * torque);
     }
     return true;

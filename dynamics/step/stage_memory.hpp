@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstddef>
+#include <new>
 #include <type_traits>
 #include <utility>
 
+#include <dynamics/step/lanes.hpp>
 #include <motor/four.hpp>
 
 namespace kreisel::detail {
@@ -19,7 +21,7 @@ namespace kreisel::detail {
 template <class Vector, std::size_t stages, int components = int(Vector::RowsAtCompileTime)>
 class StageMemory {
   using Scalar = typename Vector::Scalar;
-  // Longer ones are mostly packs of gyros side by side, stored as long as they are read.
+  // Longer ones are filled by loops, which store as much at once as is read.
   static constexpr bool by_fours = std::is_same_v<Scalar, double> && components <= 16;
 
  public:
@@ -32,7 +34,10 @@ class StageMemory {
 
   [[nodiscard]] const Stage& operator[](std::size_t k) const { return stage_[k]; }
 
-  void keep(std::size_t k, const Vector& rate) {
+  /// Puts what `make` returns into stage k.
+  template <class Make>
+  [[gnu::always_inline]] void keep(std::size_t k, const Make& make) {
+    alignas(Four) alignas(Vector) const Vector rate = make();
     if constexpr (by_fours) {
       const auto number = [&rate](int i) { return i < components ? rate[i] : 0.0; };
       [&]<int... i>(std::integer_sequence<int, i...>) {
@@ -73,6 +78,49 @@ class StageMemory {
 
  private:
   std::array<Stage, stages> stage_;
+};
+
+/// Of packs. A field writes its rates where they will be read: copies are no wider than the compiler
+/// likes, and the processor waits where two of its stores make one pack. For the same reason a sum
+/// of stages is computed component by component where it is used, and never stored as a vector.
+template <class Vector, std::size_t stages, int components>
+requires is_pack<typename Vector::Scalar>
+class StageMemory<Vector, stages, components> {
+  using Pack = typename Vector::Scalar;
+
+ public:
+  static constexpr bool fixed = true;
+  using Passing = Vector;
+
+  explicit StageMemory(const Vector& /*y*/) { stage_.fill(Vector::Zero()); }
+
+  [[nodiscard]] const Vector& operator[](std::size_t k) const { return stage_[k]; }
+
+  template <class Make>
+  [[gnu::always_inline]] void keep(std::size_t k, const Make& make) {
+    ::new (&stage_[k]) Vector(make());
+  }
+
+  [[nodiscard]] static Vector point() { return {}; }
+  [[nodiscard]] static Vector change() { return {}; }
+  [[nodiscard]] static Vector error() { return {}; }
+
+  [[nodiscard]] static auto nothing() { return Vector::Zero(); }
+
+  template <class Terms>
+  [[nodiscard]] static auto sum(const Terms& terms) {
+    return Vector::NullaryExpr([terms](Eigen::Index i) -> Pack {
+      return terms([i](const Vector& stage) -> const Pack& { return stage[i]; });
+    });
+  }
+
+  template <class Terms>
+  [[nodiscard]] static const Terms& own(const Terms& terms) {
+    return terms;
+  }
+
+ private:
+  std::array<Vector, stages> stage_;
 };
 
 /// Of a size known at run time: all are kept from the beginning, so that no step asks for memory,

@@ -47,7 +47,7 @@ class TaylorSteps {
         before_{time_, state_} {
     detail::check(accuracy, detail::least_over_long_ways);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
-    if (!(y - y).isZero(0)) detail::refuse_steps("the state at the start is not finite");
+    if (!detail::finite(y)) detail::refuse_steps("the state at the start is not finite");
     order_ = order_for(accuracy.relative);
     coefficient_.setZero();
   }
@@ -80,7 +80,7 @@ class TaylorSteps {
     }
     before_ = {time_, state_};
     state_.add(change(h / scale_));
-    if (!(y() - y()).isZero(0)) {
+    if (!detail::finite(y())) {
       state_ = before_.state;
       detail::stop_integration(t(), "the field is not finite");
     }
@@ -88,6 +88,8 @@ class TaylorSteps {
     if (last) time_ = {goal, 0};
     sizes_.note(y());
     effort_.steps += 1;
+    squares_ += h * h;
+    if (std::fmod(effort_.steps, 4) == 1) note_noise();
     next_scale_ = reach < std::numeric_limits<double>::max() ? reach : std::abs(h);
   }
 
@@ -119,11 +121,17 @@ class TaylorSteps {
     before_ = {time_, state_};
   }
 
+  /// The length of the last step.
+  [[nodiscard]] double length() const { return std::abs(t() - before_.time.value); }
+
+  /// As ExplicitSteps::noise().
+  [[nodiscard]] double noise() const { return 0.5 * sizes_.wander(squares_); }
+
   /// What the steps go on from, outputs within the last step included.
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
-    bookmark(time_, state_, before_.time, before_.state, scale_, next_scale_, sizes_, coefficient_,
-             effort_);
+    bookmark(time_, state_, before_.time, before_.state, scale_, next_scale_, sizes_, squares_,
+             coefficient_, effort_);
   }
 
  private:
@@ -155,7 +163,7 @@ class TaylorSteps {
       series_(t(), scale_, order_, coefficient_);
       effort_.evaluations += order_;
       const Vector last = coefficient_.col(order_);
-      if ((last - last).isZero(0)) return;
+      if (detail::finite(last)) return;
       next_scale_ *= 1e-8;
     }
     detail::stop_integration(t(), "the field is not finite");
@@ -166,7 +174,7 @@ class TaylorSteps {
     series_(t(), 1, 1, coefficient_);
     effort_.evaluations += 1;
     const Vector rate = coefficient_.col(1);
-    if (!(rate - rate).isZero(0)) detail::stop_integration(t(), "the field is not finite");
+    if (!detail::finite(rate)) detail::stop_integration(t(), "the field is not finite");
     return 100 * sizes_.first_step(rate);
   }
 
@@ -180,13 +188,13 @@ class TaylorSteps {
   /// To where the last two terms are what a step of about `length` may err by. Two, for of an even or
   /// odd solution one of them vanishes.
   [[nodiscard]] double reached(double length) const {
-    double reach = std::numeric_limits<double>::infinity();
     const Vector change = length * coefficient_.col(1);
+    double steepest = -std::numeric_limits<double>::infinity();
     for (int k = order_ - 1; k <= order_; ++k) {
       const double size = sizes_.relative(coefficient_.col(k), change) / accuracy_.relative;
-      if (size > 0) reach = std::min(reach, std::pow(size, -1.0 / k));
+      steepest = std::max(steepest, std::log(size) / k);
     }
-    return reach;
+    return std::exp(-steepest);
   }
 
   /// What the series makes of the state in s of its units of time, from the smallest terms on.
@@ -194,6 +202,20 @@ class TaylorSteps {
     Vector sum = coefficient_.col(order_);
     for (int k = order_ - 1; k > 0; --k) sum = s * sum + coefficient_.col(k);
     return s * sum;
+  }
+
+  /// How the rate at the step's begin answers a change of the state in its last digits.
+  void note_noise() {
+    Coefficients moved;
+    Vector start = before_.state.value;
+    detail::move_last_digits(start, 1);
+    moved.col(0) = start;
+    series_(before_.time.value, scale_, 1, moved);
+    effort_.evaluations += 1;
+    const Vector apart = (moved.col(1) - coefficient_.col(1)) / scale_;
+    if (!detail::finite(apart)) return;
+    sizes_.note_noise(apart, squares_);
+    squares_ = 0;
   }
 
   Series series_;
@@ -207,6 +229,7 @@ class TaylorSteps {
   Coefficients coefficient_;  ///< of the last step, in powers of its time over scale_
   double scale_ = 1;
   double next_scale_ = 0;
+  double squares_ = 0;  ///< of steps, summed since noise was looked at
   Effort effort_;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/body/reaction.hpp>
+#include <dynamics/body/tree.hpp>
 #include <dynamics/file/scene_file.hpp>
 
 /// What precession equations are good for in a scene.

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include <dynamics/body/reaction.hpp>
+#include <dynamics/body/tree.hpp>
 #include <dynamics/file/scene_file.hpp>
 
 /// Coordinates and rates of all joints, as BodySystem counts them.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/law/relative.hpp>
 #include <dynamics/scene/terms.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/task.hpp>

@@ -54,6 +54,7 @@ class Kreisel(ConanFile):
         toolchain.cache_variables.update({
             "KREISEL_WITH_GEOGRAPHICLIB": bool(self.options.earth),
             "KREISEL_WITH_GSL": bool(self.options.exact),
+            "KREISEL_WITH_SUNDIALS": False,
             "KREISEL_WITH_SCENE_FILES": False,
             "KREISEL_BUILD_TESTS": False,
             "KREISEL_BUILD_EXAMPLES": False,

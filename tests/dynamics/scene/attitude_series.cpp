@@ -1,8 +1,11 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <dynamics/guide/analytic.hpp>
 #include <dynamics/guide/harmonic.hpp>
@@ -13,51 +16,15 @@
 #include <dynamics/scene/held_body.hpp>
 #include <motor/attitude.hpp>
 
+#include <support/near.hpp>
 #include <support/sample.hpp>
-#include <support/worst.hpp>
+#include <support/series.hpp>
 
 using namespace kreisel;
+using test::hold_samples;
+using test::near;
 
 namespace {
-
-/// Holds a scene's series against its field, which knows nothing of it: at a part s of the unit of
-/// time  sum k c_k s^(k-1) = h rates(t + s h, sum c_k s^k).  Of order 24 and with s = 1/4 what the
-/// series leaves out is below rounding.
-template <class Scene>
-void hold(const std::string& what, const Scene& scene, const typename Scene::Vector& y) {
-  using Vector = typename Scene::Vector;
-  auto series = scene.series();
-  constexpr int order = decltype(scene.series())::most_order;
-  Eigen::Matrix<double, Vector::RowsAtCompileTime, order + 1> c;
-  const double t = 0.7;
-  const double h = 0.25;
-  c.setConstant(1e300);
-  c.col(0) = y;
-  series(t, h, order, c);
-  double worst = 0;
-  for (const double s : {0.0, -0.25, 0.125, 0.25}) {
-    Vector state = Vector::Zero();
-    Vector slope = Vector::Zero();
-    for (int k = order; k >= 0; --k) {
-      slope = slope * s + state;
-      state = state * s + c.col(k);
-    }
-    const Vector rate = h * scene.rates(t + s * h, state);
-    worst = test::worst_of(worst, (slope - rate).norm() / (rate.norm() + h));
-  }
-  BOOST_TEST_MESSAGE(what << ": " << worst);
-  BOOST_TEST(worst <= 2e-15);
-}
-
-template <class Scene>
-void hold_samples(const std::string& what, const Scene& scene) {
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    test::Sample sample(seed);
-    typename Scene::Vector y;
-    for (int i = 0; i < y.size(); ++i) y[i] = sample.uniform(-1.5, 1.5);
-    hold(what, scene, y);
-  }
-}
 
 const Vector3<double> point(0.3, 0.1, -0.2);
 const UniformGravity<Guide> in_guide{{0.5, 1, -9}};
@@ -133,6 +100,54 @@ BOOST_AUTO_TEST_CASE(follows_a_guide_beyond_the_reach_of_its_series) {
     auto anew = followed;
     body.series()(h * step, h, order, anew);
     BOOST_TEST_REQUIRE((followed - anew).norm() <= 1e-14 * anew.norm(), "at " << h * step << " s");
+  }
+}
+
+// The same from the motion of the guide itself: at whatever times in whatever order, with steps that
+// are nearly as long as the series reaches, and where every other coefficient vanishes.
+BOOST_AUTO_TEST_CASE(knows_what_a_guide_makes_felt_wherever_it_is_asked) {
+  const HarmonicSeries<> heave{{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, std::numbers::pi / 2}}};
+  const HarmonicFrame<> even({{0.1, -0.2, 0.3}, {}}, heave, -60, 60);
+  const HarmonicFrame<> uneven({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}}, heave, -60, 60);
+  for (const HarmonicFrame<>& guide : {even, uneven}) {
+    const auto anew = [&guide] {
+      return detail::FeltSeries(guide, detail::components(point), detail::components(in_guide.g),
+                                detail::NoVector{});
+    };
+    const auto hold = [&guide](auto& felt, double t, double h) {
+      const GuideSeries series = felt.at(t, h, most_series_order);
+      for (const double s : {-1.0, 0.0, 0.5, 1.25}) {
+        Motor<> sum;
+        for (std::size_t k = most_series_order + 1; k-- > 0;) {
+          sum = Motor<>{detail::vector(series.u[k]), detail::vector(series.g[k])} + s * sum;
+        }
+        const auto now = guide(t + s * h);
+        const auto& [u, v] = now.V.value;
+        const Vector3<double> du = now.dV.value.resultant;
+        const Vector3<double> g =
+            in_guide.g - now.origin_acceleration() - du.cross(point) - u.cross(u.cross(point));
+        // Angles to 13 rad are rounded in both, 25 terms summed up.
+        BOOST_TEST(near(sum.resultant, u, 1.0, 64));
+        BOOST_TEST(near(sum.moment, g, 20.0, 64));
+      }
+    };
+    auto felt = anew();
+    constexpr double longest = 0.9;
+    for (const auto& [t, h] : {std::pair(0.0, 0.125),
+                               {10.0, 0.125},
+                               {-10.0, 0.125},
+                               {-0.5, 0.125},
+                               {0.0, longest},
+                               {longest, longest},
+                               {2 * longest, longest},
+                               {3 * longest, -longest}}) {
+      hold(felt, t, h);
+    }
+    for (int i = 1; i <= 20; ++i) {
+      auto once = anew();
+      hold(once, 0, longest);
+      hold(once, 0.1 * i, longest);
+    }
   }
 }
 

@@ -467,6 +467,9 @@ BOOST_AUTO_TEST_CASE(belongs_to_states_and_workspaces_of_its_size) {
   Eigen::VectorXd result;
   BOOST_CHECK_THROW(two.rates(0, Eigen::VectorXd::Zero(4), result, w), InvalidInput);
   BOOST_CHECK_THROW(one.rates(0, Eigen::VectorXd::Zero(3), result, w), InvalidInput);
+  BOOST_TEST(
+      contains(message_of<InvalidInput>([&] { two.rates(0, Eigen::VectorXd::Zero(3), result, w); }),
+               "a state of 3 components, not 4"));
   BOOST_CHECK_THROW(
       one.accelerations(0, Eigen::VectorXd::Zero(2), Eigen::VectorXd::Zero(2), result, w),
       InvalidInput);

@@ -597,7 +597,7 @@ BOOST_AUTO_TEST_CASE(splits_its_reactions_by_cause) {
 }
 
 // Actio = reactio: what a body gets from its joints and loads is what its motion takes, (26), and
-// drives give what inverse dynamics asks for.
+// drives give what inverse dynamics asks for, where there are any.
 BOOST_AUTO_TEST_CASE(balances_every_body) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
@@ -632,6 +632,17 @@ BOOST_AUTO_TEST_CASE(balances_every_body) {
         const ForceParts<Body> terms = system.terms(0, random.y, i, w);
         const Motor<> rest = terms.total().value - given[std::size_t(i)];
         BOOST_TEST(rest.resultant.norm() + rest.moment.norm() <= 1e-12 * size);
+      }
+
+      Eigen::VectorXd dv;
+      Eigen::VectorXd asked;
+      system.accelerations(0, random.y, {}, dv, w);
+      system.joint_forces(0, random.y, dv, asked, w);
+      for (std::size_t i = 0; i < random.bodies.size(); ++i) {
+        const bool driven = random.bodies[i].rule != JointRule::forces;
+        for (int k = joints.v[i]; k < joints.v[i] + joints.dof[i]; ++k) {
+          BOOST_TEST(r.drive[k] == (driven ? asked[k] : 0));
+        }
       }
     }
   }

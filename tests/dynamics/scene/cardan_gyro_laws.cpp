@@ -96,6 +96,21 @@ BOOST_AUTO_TEST_CASE(drifts_by_the_law_to_second_order) {
   }
 }
 
+// Both momenta are the gyro's own, with alpha' in them, so that along a motion the tilt stays.
+BOOST_AUTO_TEST_CASE(tilts_as_momenta_of_the_gyro_say) {
+  const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
+  for (const auto& start : {CardanGyro<RestingFrame<>>::State{0, 0.5, 0, 7, 1, 50},
+                            {0, -0.9, 0.3, 5, -2, 60},
+                            {0, 0.2, 0, -6, 0, -40}}) {
+    const CardanBalance exact = gyro.balance(0, start);
+    const GimbalDrift law =
+        gimbal_drift(symmetric, start.beta, start.alpha_rate, start.beta_rate, start.phi_rate);
+    BOOST_TEST(close(law.rotor_momentum, exact.rotor_momentum, 1e-15));
+    // J is a sum of four products, p of two: 8 roundings of terms no larger than p and H.
+    BOOST_TEST(near(std::sin(law.tilt), exact.alpha_momentum / exact.rotor_momentum, 1.0, 8));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(has_no_drift_without_mass_in_the_rings) {
   const CardanMoments bare{symmetric.rotor};
   BOOST_TEST(gimbal_drift(bare, 0.5, 0, 1, 50).drift == 0);

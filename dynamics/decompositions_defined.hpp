@@ -9,14 +9,6 @@
 
 #include <dynamics/decompositions.hpp>
 
-// What <dynamics/decompositions.hpp> declares: included by it, or compiled once.
-
-#ifdef KREISEL_DECOMPOSITIONS_COMPILED
-#define KREISEL_IF_CALLED
-#else
-#define KREISEL_IF_CALLED template <int>
-#endif
-
 namespace kreisel::detail {
 
 inline void check_convergence(Eigen::ComputationInfo info) {
@@ -24,7 +16,7 @@ inline void check_convergence(Eigen::ComputationInfo info) {
   throw ComputationFailed("the QR iteration for eigenvalues does not converge");
 }
 
-KREISEL_IF_CALLED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
+KREISEL_DEFINED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
@@ -32,7 +24,7 @@ KREISEL_IF_CALLED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
 
 // As Eigen::EigenSolver has it, which takes the compiler twice as long: it also compiles what makes
 // vectors.
-KREISEL_IF_CALLED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
+KREISEL_DEFINED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   if (!A.allFinite()) check_convergence(Eigen::NoConvergence);
   const Eigen::Index n = A.rows();
   const double scale = A.isZero(0) ? 1 : A.cwiseAbs().maxCoeff();  // lest anything overflow
@@ -58,38 +50,36 @@ KREISEL_IF_CALLED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   return values;
 }
 
-KREISEL_IF_CALLED RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {
+KREISEL_DEFINED RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-KREISEL_IF_CALLED RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(const Eigen::MatrixXcd& A) {
+KREISEL_DEFINED RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(const Eigen::MatrixXcd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-KREISEL_IF_CALLED SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A) {
+KREISEL_DEFINED SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
-KREISEL_IF_CALLED SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::MatrixXcd& A) {
+KREISEL_DEFINED SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::MatrixXcd& A) {
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
-KREISEL_IF_CALLED std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A) {
+KREISEL_DEFINED std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A) {
   const Eigen::FullPivLU<Eigen::MatrixXcd> factors(A);
   if (!factors.isInvertible()) return std::nullopt;
   return Eigen::MatrixXcd(factors.inverse());
 }
 
-KREISEL_IF_CALLED Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
+KREISEL_DEFINED Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
   return A.fullPivLu().solve(b);
 }
 
 }  // namespace kreisel::detail
-
-#undef KREISEL_IF_CALLED

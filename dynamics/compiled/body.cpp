@@ -1,0 +1,2 @@
+#include <dynamics/body/evaluation_defined.hpp>
+#include <dynamics/body/tree_defined.hpp>

@@ -1,0 +1,1 @@
+#include <dynamics/solve/closed_form_defined.hpp>

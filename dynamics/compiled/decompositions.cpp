@@ -1,0 +1,1 @@
+#include <dynamics/decompositions_defined.hpp>

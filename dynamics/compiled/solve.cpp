@@ -1,0 +1,3 @@
+#include <dynamics/solve/fastest_rate_defined.hpp>
+#include <dynamics/solve/solve_defined.hpp>
+#include <dynamics/step/radau_defined.hpp>

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <dynamics/solve/error_measure.hpp>
+#include <dynamics/solve/run.hpp>
+#include <dynamics/solve/task.hpp>
+
+namespace kreisel::detail {
+
+/// The settings of fixed steps, of gauss16 or splitting, of the order given: their length.
+class FixedRuns {
+ public:
+  FixedRuns(Method method, int order, double first, double shortest)
+      : method_(method), root_(1.0 / order), first_{first}, shortest_(shortest) {}
+
+  [[nodiscard]] Method method() const { return method_; }
+  [[nodiscard]] static double rounding() { return 2.5; }
+  [[nodiscard]] bool begins_near_rounding() const { return method_ == Method::gauss16; }
+
+  [[nodiscard]] EqualLength first() const { return first_; }
+  [[nodiscard]] EqualLength finer(const EqualLength& step) const {
+    return {step.longest * std::pow(times_finer, -root_), step.longest};
+  }
+  [[nodiscard]] EqualLength between(const EqualLength& step, double part) const {
+    return {step.longest * std::pow(times_finer, -root_ * part), step.longest};
+  }
+
+  /// Where the shortest steps still err, it is by rounding or by a jump that nobody declared: neither
+  /// falls with the method's order.
+  [[nodiscard]] double finer_by(const EqualLength& step) const {
+    return last(step) ? 2 : times_finer;
+  }
+
+  [[nodiscard]] static bool goes_on(const EqualLength& /*step*/) { return false; }
+  [[nodiscard]] static double digits_lost(const EqualLength& /*step*/, double steps) {
+    return 0.02 * std::sqrt(steps);
+  }
+  [[nodiscard]] EqualLength finest() const { return {shortest_}; }
+  [[nodiscard]] static bool may_be_rounding(const EqualLength& /*step*/) { return false; }
+  [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
+  [[nodiscard]] double falls(const EqualLength& from, const EqualLength& to) const {
+    return std::pow(to.longest / from.longest, 1 / root_);
+  }
+  [[nodiscard]] EqualLength tightened(const EqualLength& step, double ratio) const {
+    return {std::max(step.longest * std::clamp(std::pow(ratio, root_), 0.2, 0.9), shortest_)};
+  }
+
+ private:
+  Method method_;
+  double root_;
+  EqualLength first_;
+  double shortest_;
+};
+
+}  // namespace kreisel::detail

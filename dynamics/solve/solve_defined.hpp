@@ -1,0 +1,585 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <dynamics/scene/closed_form.hpp>
+#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/solve/adaptive_runs.hpp>
+#include <dynamics/solve/error_measure_defined.hpp>
+#include <dynamics/solve/fastest_rate.hpp>
+#include <dynamics/solve/fixed_runs.hpp>
+#include <dynamics/solve/missed.hpp>
+#include <dynamics/solve/run.hpp>
+#include <dynamics/solve/splitting_runs.hpp>
+#include <dynamics/solve/task_defined.hpp>
+#include <dynamics/step/bookmark.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel::detail {
+
+[[nodiscard]] inline std::span<const double> components_of(const Eigen::VectorXd& y) {
+  return {y.data(), static_cast<std::size_t>(y.size())};
+}
+
+/// What is fastest in a field; 0 where the Jacobian is not finite, for whether a field is stiff cannot
+/// end a run that goes on without knowing.
+KREISEL_DECLARED [[nodiscard]] std::complex<double> fastest_rate(const SteppedScene& scene,
+                                                                 bool other, double t,
+                                                                 std::span<const double> y) {
+  const auto state = vector_of<Eigen::VectorXd>(y);
+  Eigen::MatrixXd J(state.size(), state.size());
+  scene.stiff_field(other)->jacobian(t, state, J);
+  return fastest_rate(J);
+}
+
+/// Whether what is fastest in a field says that it is stiff: something that is damped away soon, or
+/// that is damped at all where it keeps the steps short. What is fast and not damped has to be
+/// resolved by any method.
+KREISEL_DECLARED [[nodiscard]] bool is_stiff(const std::complex<double>& fastest, double time_left,
+                                             bool keeps_steps_short) {
+  constexpr double soon = 1e-3;  // of the time left
+  const double speed = std::abs(fastest);
+  const bool dies_soon = fastest.real() < -0.5 * speed && speed * time_left > 1 / soon;
+  return dies_soon || (keeps_steps_short && fastest.real() < -0.05 * speed);
+}
+
+// A series of order 20 to rounding follows what oscillates in steps of 2 radians, and becomes
+// unstable in steps of 7 times a damped one's time.
+KREISEL_DEFINED bool ExplicitRun::proves_stiff(double t, std::span<const double> y, double end,
+                                               bool short_steps, double length) {
+  const std::complex<double> rate = fastest_rate(scene_, other_, t, y);
+  stiff_ = is_stiff(rate, std::abs(end - t), short_steps || std::abs(rate) * length > 4);
+  return stiff_;
+}
+
+/// A run of radau13.
+class RadauRun final : public Run {
+ public:
+  RadauRun(std::unique_ptr<StiffField> field, RadauIntegrator steps)
+      : field_(std::move(field)), steps_(std::move(steps)) {}
+
+  void on_the_way(double t, double end, double* y) override {
+    while (!steps_.covers(t)) steps_.step_towards(*field_, end);
+    const Eigen::VectorXd there = steps_.at(*field_, t);
+    std::copy_n(there.data(), there.size(), y);
+  }
+
+  [[nodiscard]] const Effort& effort() const override { return steps_.effort(); }
+  [[nodiscard]] double noise() const override { return steps_.noise(); }
+  void pass(Bookmark& bookmark) override { bookmark(steps_); }
+
+ private:
+  std::unique_ptr<StiffField> field_;
+  RadauIntegrator steps_;
+};
+
+/// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
+KREISEL_DECLARED [[nodiscard]] double pace(const SteppedScene& scene, const Task& task,
+                                           const Eigen::VectorXd& start) {
+  const auto steps = scene.explicit_run(task, start, {1e-14, task.smallest}, false);
+  const double end = task.times.back();
+  double t = task.begin;
+  const auto go = [&] {
+    const double from = t;
+    const double before = steps->effort().steps;
+    for (int i = 0; i < 20 && t != end; ++i) t = steps->step_towards(end);
+    const double taken = steps->effort().steps - before;
+    return taken > 0 ? std::abs(t - from) / taken : 0;
+  };
+  double pace = go();
+  for (int i = 0; i < 30; ++i) {
+    const double next = go();
+    if (next < 1.2 * pace) break;
+    pace = next;
+  }
+  return std::max(pace, std::numeric_limits<double>::min());
+}
+
+KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(const SteppedScene& scene, const Task& task,
+                                                    const Eigen::VectorXd& start) {
+  // 16 Gauss points carry about twice as far as Verner98's stages do at 1e-14.
+  const double once = pace(scene, task, start);
+  return {Method::gauss16, 16, 2 * once, once / 2};
+}
+
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs, double setting,
+                                                        const SteppedScene& scene, const Task& task,
+                                                        const Eigen::VectorXd& start, bool other) {
+  const Accuracy accuracy = runs.accuracy(setting);
+  if (runs.method() == Method::taylor) return scene.taylor_run(task, start, accuracy, other);
+  if (runs.method() != Method::radau13) return scene.explicit_run(task, start, accuracy, other);
+  RadauIntegrator steps(radau_coefficients<7>(), task.begin, start, accuracy, scene.blocks());
+  steps.stop_at(task.jumps);
+  return std::make_unique<RadauRun>(scene.stiff_field(other), std::move(steps));
+}
+
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs,
+                                                        const EqualLength& length,
+                                                        const SteppedScene& scene, const Task& task,
+                                                        const Eigen::VectorXd& start, bool other) {
+  if (runs.method() == Method::gauss16) return scene.gauss_run(task, start, length, other);
+  return std::make_unique<SplittingRun>(
+      *scene.top(), task, EulerTop::from_vector(vector_of<EulerTop::Vector>(start)), length);
+}
+
+/// Keeps the largest drift of what a scene says is conserved.
+class InvariantWatch {
+ public:
+  explicit InvariantWatch(const SteppedScene& scene) : scene_(scene) {}
+
+  void note(double t, std::span<const double> y) { scene_.note_invariants(t, y, drifts_); }
+
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    for (InvariantDrift& drift : drifts_) bookmark(drift.start, drift.largest);
+  }
+
+  [[nodiscard]] const std::vector<InvariantDrift>& drifts() const { return drifts_; }
+
+ private:
+  const SteppedScene& scene_;
+  std::vector<InvariantDrift> drifts_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+KREISEL_DECLARED [[nodiscard]] double seconds_since(const Clock::time_point& begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Notes a state and its error for the output time t; says whether the run is to go on.
+KREISEL_DECLARED [[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch,
+                                           const Task& task, double t,
+                                           std::span<const double> state, double error) {
+  result.times.push_back(t);
+  result.states.insert(result.states.end(), state.begin(), state.end());
+  result.errors.push_back(error);
+  watch.note(t, state);
+  if (!task.progress || task.progress(t)) return true;
+  result.report.status = RunStatus::cancelled;
+  return false;
+}
+
+KREISEL_DEFINED Trajectory<double> solve_closed(const SteppedScene& scene,
+                                                const Eigen::VectorXd& start, const Task& task,
+                                                const ClosedForm<Eigen::VectorXd>& motion) {
+  const Clock::time_point clock = Clock::now();
+  Trajectory<double> result;
+  RunReport& report = result.report;
+  InvariantWatch watch(scene);
+  watch.note(task.begin, components_of(start));
+  for (const double t : task.times) {
+    const double error = motion.error(t, task.smallest);
+    report.error_estimate = worse(report.error_estimate, error);
+    const Eigen::VectorXd state = motion.at(t);
+    if (!output(result, watch, task, t, components_of(state), error)) break;
+  }
+  report.method = motion.name;
+  report.tolerance = task.tolerance;
+  report.tolerance_kept = report.error_estimate <= task.tolerance;
+  report.invariants = watch.drifts();
+  report.run_time = seconds_since(clock);
+  return result;
+}
+
+/// A run with what it has given so far, so that it can be asked again.
+class RunSoFar {
+ public:
+  RunSoFar(std::unique_ptr<Run> run, Eigen::Index components, double moved)
+      : run_(std::move(run)), components_(static_cast<std::size_t>(components)), moved_(moved) {}
+
+  /// The state at the i-th output, to be read before the next one is asked for; they are asked for in
+  /// turn, each time from the first one on.
+  [[nodiscard]] std::span<const double> at_output(std::size_t i, double t, double end) {
+    if (i == first_ + known_) run_->on_the_way(t, end, next_state());
+    return {states_.data() + (i - first_) * components_, components_};
+  }
+
+  /// By how many last digits its start is moved.
+  [[nodiscard]] double moved() const { return moved_; }
+
+  /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
+  [[nodiscard]] bool knows_all() const { return first_ == 0; }
+
+  [[nodiscard]] bool stiff() const { return run_->stiff(); }
+  [[nodiscard]] const Effort& effort() const { return run_->effort(); }
+  [[nodiscard]] double noise() const { return run_->noise(); }
+
+  /// What it goes on from behind the first `done` outputs.
+  void pass(std::size_t done, Bookmark& bookmark) {
+    if (known_ == 0) first_ = done;
+    run_->pass(bookmark);
+    std::size_t ahead = first_ + known_ - done;
+    bookmark(ahead);
+    for (std::size_t i = done; i < done + ahead; ++i) {
+      double* const y =
+          i == first_ + known_ ? next_state() : states_.data() + (i - first_) * components_;
+      for (std::size_t k = 0; k < components_; ++k) bookmark(y[k]);
+    }
+  }
+
+ private:
+  [[nodiscard]] double* next_state() {
+    known_ += 1;
+    states_.resize(known_ * components_);
+    return states_.data() + (known_ - 1) * components_;
+  }
+
+  std::unique_ptr<Run> run_;
+  std::size_t components_;
+  double moved_;
+  std::size_t first_ = 0;       ///< output it knows
+  std::size_t known_ = 0;       ///< from that one on
+  std::vector<double> states_;  ///< one after another
+};
+
+/// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
+/// tenfold.
+KREISEL_DECLARED [[nodiscard]] double forecast(const Task& task, double t, double error) {
+  const double ahead = (task.times.back() - task.begin) / (t - task.begin);
+  return error * (ahead < 10 ? ahead : 10);
+}
+
+/// What runs of one task after another have cost, and what of the last one's error is rounding in the
+/// field.
+struct Account {
+  double spent = 0;  ///< evaluations
+  double noise = 0;
+};
+
+/// Two integrations run side by side, the steps of one held many times more exact than the other's;
+/// the coarser one is returned, with the error that the pair tells of. One of them starts a last
+/// digit away, or as many as rounding has taken by the end, so that the pair also tells what that
+/// grows to: near a separatrix steps of any length round the same digits away. Where the error
+/// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
+/// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
+/// are tried until two agree by chance would tell nothing: a third is held beside them where, after a
+/// miss, steps are so fine that what they err by may be rounding; and where the error does not fall as
+/// the steps do, the finest are taken at once, and four of them; or six, where rounding grows to more
+/// than the tolerance.
+///
+/// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
+///
+/// Throws : InvalidInput for a bookmark that is none of these runs; an empty one is of their begin
+template <class Runs>
+[[nodiscard]] std::optional<Trajectory<double>> solve_in_pairs(
+    const SteppedScene& scene, const Runs& runs, const Eigen::VectorXd& start, const Task& task,
+    const std::vector<double>& bookmark, Account& account) {
+  const Clock::time_point clock = Clock::now();
+
+  Trajectory<double> result;
+  const double end = task.times.back();
+  double digits = digits_off(task);
+  double known = 0;  // of the error at this setting, from a try with fewer digits
+  auto setting = runs.first();
+  Missed<decltype(setting)> missed{setting};
+  const auto run_with = [&](const auto& s, double moved) {
+    Eigen::VectorXd from = start;
+    if (moved != 0) move_last_digits(from, moved);
+    return RunSoFar(run(runs, s, scene, task, from, moved != 0 && scene.has_other()), start.size(),
+                    moved);
+  };
+  // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
+  // somewhere else than the others, beside which it may go on.
+  const auto better_at_output = [&](RunSoFar& fine, std::size_t i) {
+    const double t = task.times[i];
+    const double part = fine.moved() > 0 ? 1.0 / 2 : fine.moved() < 0 ? 2.0 / 5 : 1.0 / 3;
+    const double stop = task.begin + part * (end - task.begin);
+    return fine.at_output(i, t, (t < stop) == (end > task.begin) ? stop : end);
+  };
+  std::optional<Bookmark> from;
+  if (!bookmark.empty()) from.emplace(bookmark);
+  bool coarse_starts_off = false;
+  const bool has_bookmarks = runs.method() != Method::splitting;
+  const auto kind = static_cast<double>(runs.method());
+  const auto pass_setting = [&](Bookmark& numbers) {
+    double own = kind;
+    numbers(own, setting, missed, digits, account.spent, coarse_starts_off);
+    if (own != kind) refuse_task("the bookmark is of another method");
+  };
+  if (from) pass_setting(*from);
+  std::optional coarse = run_with(setting, coarse_starts_off ? digits : 0);
+  while (true) {
+    result = {};
+    RunReport& report = result.report;
+    report.method = name(runs.method());
+    report.tolerance = task.tolerance;
+    report.error_estimate = known;
+    InvariantWatch watch(scene);
+    BlockDistance distance(scene.blocks(), task.smallest);
+    const bool last_try = runs.last(setting);
+    // Where rounding is all that is left, a start one digit away is a sample of what it does.
+    if (last_try) digits = std::max(digits, 3 * digits_off(task));
+    std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
+    // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
+    // steps of its own. Steps that begin near rounding and miss are near it in every later try.
+    const bool near_rounding = last_try || (runs.begins_near_rounding() && missed.error > 0);
+    const bool may_be_rounding =
+        runs.begins_near_rounding() || (missed.error > 0 && runs.may_be_rounding(setting));
+    const bool grown = last_try && digits_off(task) > 0;  // to far more than it is made by
+    const int more = grown ? 4 : near_rounding ? 2 : may_be_rounding ? 1 : 0;
+    // What begins near rounding and comes near the tolerance is rounding that has grown: three runs
+    // agree on that by chance more often than four.
+    const bool surprises = runs.begins_near_rounding() && !near_rounding;
+    const double enough = surprises ? task.tolerance / 10 : task.tolerance;
+    std::vector<RunSoFar> others;
+    for (int i = 1; i <= more; ++i) {
+      others.push_back(run_with(runs.between(setting, double(i) / (more + 1)), -digits));
+    }
+    watch.note(task.begin, components_of(start));
+    std::size_t done = 0;
+    const auto pass_run = [&](Bookmark& numbers) {
+      if (!has_bookmarks) return;
+      numbers(done, report.error_estimate, distance, watch);
+      coarse->pass(done, numbers);
+      fine->pass(done, numbers);
+      for (RunSoFar& other : others) other.pass(done, numbers);
+    };
+    const auto bookmark_here = [&] {
+      Bookmark numbers;
+      pass_setting(numbers);
+      pass_run(numbers);
+      return numbers.numbers();
+    };
+    if (from) {
+      pass_run(*from);
+      from->finish();
+      from.reset();
+    }
+    double expected = 0;
+    bool too_coarse = false;
+    try {
+      while (done < task.times.size()) {
+        const double t = task.times[done];
+        const std::span<const double> reached = coarse->at_output(done, t, end);
+        // One that was moved by last digits begins with others than were given.
+        const std::span<const double> state = t == task.begin ? components_of(start) : reached;
+        bool stiff = coarse->stiff();
+        double off = 0;
+        const auto hold_beside = [&](RunSoFar& run) {
+          if (stiff) return;
+          const std::span<const double> better = better_at_output(run, done);
+          stiff = run.stiff();
+          off = worse(off, distance(state, better));
+        };
+        hold_beside(*fine);
+        for (RunSoFar& other : others) hold_beside(other);
+        if (stiff) {
+          account.spent += coarse->effort().evaluations + fine->effort().evaluations;
+          for (const RunSoFar& other : others) account.spent += other.effort().evaluations;
+          return std::nullopt;
+        }
+        const double error = error_of_pair(off, runs.finer_by(setting), runs.rounding(),
+                                           coarse->effort().steps, coarse->noise());
+        report.error_estimate = worse(report.error_estimate, error);
+        missed.note(done, report.error_estimate);
+        expected = forecast(task, t, report.error_estimate);
+        too_coarse = !last_try && (report.error_estimate > enough || expected > 4 * enough);
+        if (too_coarse) break;
+        if (!output(result, watch, task, t, state, error)) break;
+        ++done;
+        const bool offers = has_bookmarks && task.offer_bookmark && done < task.times.size();
+        if (offers) task.offer_bookmark(std::cref(bookmark_here));
+      }
+    } catch (const ComputationFailed& error) {
+      report.status = RunStatus::failed;
+      // What a load or a guide throws knows no time.
+      const double last_good = done == 0 ? task.begin : task.times[done - 1];
+      std::ostringstream text;
+      text.precision(17);
+      text << error.what() << "; the last output is that of t = " << last_good << " s";
+      report.message = text.str();
+    }
+    account.spent += coarse->effort().evaluations;
+    for (const RunSoFar& other : others) account.spent += other.effort().evaluations;
+    // Rounding on a long way does more than to move the start by a digit.
+    const double lost = runs.digits_lost(setting, coarse->effort().steps);
+    const bool too_close = lost > 2 * std::max(digits, 1.0);
+    if (too_close) digits = lost;
+    const bool stays = too_coarse && missed.stays(runs, setting);
+    if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
+    const bool finer_will_do = !stays && expected < runs.finer_by(setting) * task.tolerance &&
+                               digits <= 1 && !scene.has_other();
+    if (too_coarse && finer_will_do && runs.goes_on(setting)) {
+      setting = runs.finer(setting);
+      coarse_starts_off = !coarse_starts_off;
+      known = 0;
+      if (!fine->knows_all()) {
+        fine.emplace(run_with(setting, coarse_starts_off ? digits : 0));
+        for (std::size_t i = 0; i <= done; ++i) better_at_output(*fine, i);
+      }
+      coarse.emplace(std::move(*fine));
+      continue;
+    }
+    account.spent += fine->effort().evaluations;
+    // What the digits grow to may hide what the steps err by.
+    if (too_coarse || (too_close && report.status == RunStatus::complete)) {
+      known = too_coarse ? 0 : report.error_estimate;
+      if (too_coarse) {
+        setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (2 * expected));
+      }
+      coarse_starts_off = false;
+      coarse.emplace(run_with(setting, 0));
+      continue;
+    }
+    report.effort = coarse->effort();
+    account.noise = coarse->noise();
+    report.all_evaluations = account.spent;
+    report.tolerance_kept =
+        report.status != RunStatus::failed && report.error_estimate <= task.tolerance;
+    report.invariants = watch.drifts();
+    report.run_time = seconds_since(clock);
+    return result;
+  }
+}
+
+/// The start as steps take it: quaternions, whose norm means nothing, brought near the norm 1, for
+/// it is by size that errors are measured.
+///
+/// Throws : where the state is so small that products of its components underflow
+KREISEL_DECLARED [[nodiscard]] Eigen::VectorXd start_of_steps(const SteppedScene& scene,
+                                                              const Eigen::VectorXd& start,
+                                                              double smallest) {
+  using Limits = std::numeric_limits<double>;
+  const double least = std::sqrt(Limits::min() / Limits::epsilon());
+  Eigen::VectorXd y = start;
+  int begin = 0;
+  for (const int components : scene.blocks()) {
+    const double size = norm(y, begin, components);
+    const bool attitude = components == 4;
+    if (attitude && std::isfinite(size) && std::abs(std::ilogb(size)) > 4) {
+      const int power = std::ilogb(size);  // of two, lest anything be rounded
+      for (int i = begin; i < begin + components; ++i) y[i] = std::ldexp(y[i], -power);
+    } else if (size > 0 && size < least && smallest < least) {
+      refuse_task("a part of the state is ", size, " at the start, and below ", least,
+                  " products of it underflow: take other units, or a `smallest` above that");
+    }
+    begin += components;
+  }
+  return y;
+}
+
+KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
+                                                  const Eigen::VectorXd& given, const Task& task) {
+  const Clock::time_point clock = Clock::now();
+  const Eigen::VectorXd start = start_of_steps(scene, given, task.smallest);
+  const bool automatic = task.method == Method::automatic;
+  Account account;
+  const auto go_on = [&](const auto& runs, const Task& asked, const std::vector<double>& bookmark) {
+    auto result = solve_in_pairs(scene, runs, start, asked, bookmark, account);
+    if (result) result->report.run_time = seconds_since(clock);
+    return result;
+  };
+  const auto with = [&](const auto& runs) { return go_on(runs, task, task.bookmark); };
+
+  if (const EulerTop* const top = scene.top()) {
+    const auto state = EulerTop::from_vector(vector_of<EulerTop::Vector>(start));
+    const bool pays = automatic && splits(*top) && is_fast(*top, state);
+    if (pays || task.method == Method::splitting) return *with(splitting_runs(*top, task, state));
+  }
+  if (task.method == Method::radau13) return *with(AdaptiveRuns(task, Method::radau13));
+  if (task.method == Method::gauss16) return *with(gauss_runs(scene, task, start));
+  const auto explicitly = [&](const Task& asked, const std::vector<double>& bookmark) {
+    const bool by_series = scene.knows_series() && asked.method != Method::verner98;
+    const Method method = by_series ? Method::taylor : Method::verner98;
+    return go_on(AdaptiveRuns(asked, method), asked, bookmark);
+  };
+  const bool was_stiff = automatic && !task.bookmark.empty() &&
+                         task.bookmark.front() == static_cast<double>(Method::radau13);
+  auto result = was_stiff ? std::nullopt : explicitly(task, task.bookmark);
+  const bool stiff = !result;
+  if (was_stiff) {
+    result = with(AdaptiveRuns(task, Method::radau13));
+  } else if (stiff) {
+    result = go_on(AdaptiveRuns(task, Method::radau13), task, {});
+  }
+  if (!automatic) return *result;
+
+  // Where the tolerance was missed, another method may come nearer to it.
+  const auto missed = [&] {
+    const RunReport& report = result->report;
+    return report.status == RunStatus::complete && !report.tolerance_kept;
+  };
+  const auto or_by = [&](Method method, const auto& run) {
+    Task alone = task;  // a bookmark would not know the other trajectory
+    alone.offer_bookmark = nullptr;
+    alone.method = method;
+    auto other = run(alone);
+    if (other->report.status == RunStatus::complete &&
+        other->report.error_estimate < result->report.error_estimate) {
+      result = std::move(other);
+    }
+  };
+  const auto by_steps = [&](const Task& asked) { return explicitly(asked, {}); };
+  if (missed() && stiff) {
+    // Of explicit steps, as many as stability asks for cost so much; their last digits are better.
+    const double rate = std::abs(fastest_rate(scene, false, task.begin, components_of(start)));
+    const double evaluations = 5 * rate * std::abs(task.times.back() - task.begin);
+    if (evaluations < 10 * account.spent) {
+      or_by(scene.knows_series() ? Method::taylor : Method::verner98, by_steps);
+    }
+  } else if (missed() && scene.knows_series() &&
+             account.noise > std::max(1e-13, task.tolerance / 30)) {
+    // What rounding in the field makes of it many stages average.
+    or_by(Method::verner98, by_steps);
+  }
+  // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
+  if (missed() && !stiff && result->report.effort.steps > 1e5 && task.jumps.empty()) {
+    or_by(Method::gauss16,
+          [&](const Task& asked) { return go_on(gauss_runs(scene, asked, start), asked, {}); });
+  }
+  return *result;
+}
+
+/// Throws where a quaternion of the start turns nothing, which no step would mend or tell.
+KREISEL_DECLARED void check_start(const SteppedScene& scene, const Eigen::VectorXd& start) {
+  int begin = 0;
+  for (const int components : scene.blocks()) {
+    if (components == 4 && norm(start, begin, components) == 0) {
+      refuse_task("the attitude at the start is a quaternion of norm 0");
+    }
+    begin += components;
+  }
+}
+
+/// Throws what is wrong with the method asked for, for this scene.
+KREISEL_DECLARED void check_method(const SteppedScene& scene, const Task& task) {
+  const auto refuse = [&](const char* why) {
+    refuse_task("method ", name(task.method), " does not apply: ", why);
+  };
+  const bool fixed_steps = task.method == Method::gauss16 || task.method == Method::splitting;
+  if (fixed_steps && !task.jumps.empty()) refuse("its equal steps cannot end at the jumps");
+  if (task.method == Method::taylor && !scene.knows_series()) {
+    refuse("this scene does not know its series");
+  }
+  if (task.method != Method::splitting) return;
+  if (scene.top() && splits(*scene.top())) return;
+  refuse("it is for an EulerTop with two equal moments, under weight and without rotor");
+}
+
+KREISEL_DEFINED void check(const SteppedScene& scene, const Eigen::VectorXd& start,
+                           const Task& task) {
+  check(task);
+  check_method(scene, task);
+  check_start(scene, start);
+}
+
+KREISEL_DEFINED void refuse_closed_form() {
+  refuse_task("method closed form does not apply: this scene has none that is known");
+}
+
+}  // namespace kreisel::detail

@@ -1,0 +1,356 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include <dynamics/step/radau.hpp>
+#include <dynamics/step/radau_coefficients_defined.hpp>
+
+namespace kreisel::detail {
+
+/// Of  shift - J.
+template <class Number>
+void factorise_shifted(const Eigen::MatrixXd& J, const Number& shift, Factors<Number>& factors) {
+  const Eigen::Index n = J.rows();
+  factors.matrix.resize(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) factors.matrix(i, j) = -J(i, j);
+    factors.matrix(j, j) += shift;
+  }
+  factors.compute();
+}
+
+/// result = sum_k weight_k columns_k
+template <class Vector>
+void combine(const Eigen::MatrixXd& columns, const Vector& weight, Vector& result) {
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) result[i] = columns(i, 0) * weight[0];
+  for (Eigen::Index k = 1; k < columns.cols(); ++k) {
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) result[i] += columns(i, k) * weight[k];
+  }
+}
+
+KREISEL_DEFINED RadauStages::RadauStages(const RadauCoefficients& coefficients, int components)
+    : value(Eigen::MatrixXd::Zero(components, coefficients.node.size())),
+      coefficients_(&coefficients),
+      residual_(value),
+      change_(value),
+      mode_(components),
+      pair_(components),
+      complex_(coefficients.pairs.size()) {}
+
+KREISEL_DEFINED void RadauStages::factorise(const Eigen::MatrixXd& J, double h) {
+  factorise_shifted(J, coefficients_->real.eigenvalue / h, real_);
+  for (std::size_t k = 0; k < complex_.size(); ++k) {
+    factorise_shifted(J, coefficients_->pairs[k].eigenvalue / h, complex_[k]);
+  }
+}
+
+KREISEL_DEFINED void RadauStages::guess(double begin, double length) {
+  // Newton's divided differences through (0, 0) and the old stages.
+  const Eigen::VectorXd& c = coefficients_->node;
+  const Eigen::Index stages = c.size();
+  Eigen::MatrixXd difference = value;
+  const auto divide = [&](Eigen::Index i, double distance) {
+    for (Eigen::Index r = 0; r < difference.rows(); ++r) {
+      difference(r, i) = (difference(r, i) - difference(r, i - 1)) / distance;
+    }
+  };
+  for (Eigen::Index i = stages - 1; i > 0; --i) divide(i, c[i] - c[i - 1]);
+  for (Eigen::Index r = 0; r < difference.rows(); ++r) difference(r, 0) /= c[0];
+  for (Eigen::Index degree = 2; degree <= stages; ++degree) {
+    for (Eigen::Index i = stages - 1; i >= degree - 1; --i) {
+      divide(i, c[i] - (i == degree - 1 ? 0 : c[i - degree]));
+    }
+  }
+  const auto at = [&](Eigen::Index r, double x) {
+    double sum = difference(r, stages - 1);
+    for (Eigen::Index i = stages - 2; i >= 0; --i) sum = difference(r, i) + (x - c[i]) * sum;
+    return x * sum;
+  };
+  for (Eigen::Index r = 0; r < difference.rows(); ++r) {
+    const double start = at(r, 1 + begin);
+    for (Eigen::Index i = 0; i < stages; ++i) {
+      value(r, i) = at(r, 1 + begin + length * c[i]) - start;
+    }
+  }
+}
+
+KREISEL_DEFINED const Eigen::MatrixXd& RadauStages::correct(const Eigen::MatrixXd& f, double h) {
+  set_residual(f, h);
+  const auto& real = coefficients_->real;
+  combine(residual_, real.covector, mode_);
+  real_.solve(mode_);
+  for (Eigen::Index j = 0; j < change_.cols(); ++j) {
+    for (Eigen::Index i = 0; i < change_.rows(); ++i) change_(i, j) = mode_[i] * real.vector[j];
+  }
+  for (std::size_t k = 0; k < complex_.size(); ++k) {
+    const auto& pair = coefficients_->pairs[k];
+    combine(residual_, pair.covector, pair_);
+    complex_[k].solve(pair_);
+    for (Eigen::Index j = 0; j < change_.cols(); ++j) {
+      const std::complex<double> v = pair.vector[j];
+      for (Eigen::Index i = 0; i < change_.rows(); ++i) {
+        change_(i, j) += 2 * (pair_[i].real() * v.real() - pair_[i].imag() * v.imag());
+      }
+    }
+  }
+  value += change_;
+  return change_;
+}
+
+KREISEL_DEFINED Eigen::VectorXd RadauStages::sum(const Eigen::VectorXd& weight) const {
+  Eigen::VectorXd result(value.rows());
+  combine(value, weight, result);
+  return result;
+}
+
+KREISEL_DEFINED void RadauStages::solve(Eigen::VectorXd& rate) const { real_.solve(rate); }
+
+KREISEL_DEFINED void RadauStages::set_residual(const Eigen::MatrixXd& f, double h) {
+  const Eigen::MatrixXd& inverse = coefficients_->inverse;
+  const Eigen::Index n = value.rows();
+  for (Eigen::Index j = 0; j < value.cols(); ++j) {
+    double* const column = residual_.col(j).data();
+    for (Eigen::Index i = 0; i < n; ++i) column[i] = inverse(j, 0) * value(i, 0);
+    for (Eigen::Index k = 1; k < value.cols(); ++k) {
+      for (Eigen::Index i = 0; i < n; ++i) column[i] += inverse(j, k) * value(i, k);
+    }
+    for (Eigen::Index i = 0; i < n; ++i) column[i] = f(i, j) - column[i] / h;
+  }
+}
+
+KREISEL_DEFINED RadauIntegrator::RadauIntegrator(const RadauCoefficients& coefficients, double t,
+                                                 const Eigen::VectorXd& y, const Accuracy& accuracy,
+                                                 std::span<const int> blocks)
+    : coefficients_(&coefficients),
+      accuracy_(accuracy),
+      sizes_(blocks, accuracy.smallest, y),
+      time_{t, 0},
+      state_{y, Eigen::VectorXd::Zero(y.size())},
+      before_{time_, state_},
+      rate_(Eigen::VectorXd::Zero(y.size())),
+      stages_(coefficients, static_cast<int>(y.size())),
+      noise_(Eigen::VectorXd::Zero(y.size())),
+      rates_(stages_.value),
+      point_(y) {
+  check(accuracy);
+  if (!std::isfinite(t)) refuse_steps("the start time is not finite");
+  if (!finite(y)) refuse_steps("the state at the start is not finite");
+  // The estimate is of order s + 1 where the step is of order 2 s: it is held against as much
+  // more as that makes.
+  const double order_of_estimate = stages() + 1.0;
+  allowed_ = std::max(0.3 * std::pow(accuracy.relative, order_of_estimate / (2 * stages())),
+                      accuracy.relative);
+}
+
+KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end) {
+  if (!std::isfinite(end)) refuse_steps("the end time is not finite");
+  if (end == t()) return;
+  const double goal = next_stop(t(), end, jumps_);
+  start_time_ = on_this_side(t(), goal, jumps_);
+  evaluate(field, start_time_, y(), rate_.data());
+  if (!finite(rate_)) stop_integration(t(), "the field is not finite");
+  if (step_ == 0) step_ = sizes_.first_step(rate_);
+  note_jacobian(field);
+  before_ = {time_, state_};
+  if (goal > t() ? t() >= rejected_.end : t() <= rejected_.end) rejected_ = {};
+  bool again = false;
+  while (true) {
+    const double left = (goal - time_.value) - time_.rest;
+    const bool last = std::abs(left) <= std::abs(step_);
+    const double wanted = step_;
+    last_stage_time_ = on_this_side(goal, t(), jumps_);
+    if (!attempt(field, last ? left : std::copysign(step_, left), again)) {
+      again = true;
+      continue;
+    }
+    if (last) {
+      time_ = {goal, 0};
+      step_ = std::max(step_, wanted);
+    }
+    return;
+  }
+}
+
+KREISEL_DEFINED bool RadauIntegrator::covers(double time) const {
+  return time >= std::min(before_.time.value, t()) && time <= std::max(before_.time.value, t());
+}
+
+KREISEL_DEFINED Eigen::VectorXd RadauIntegrator::at(StiffField& field, double time) {
+  if (!covers(time)) {
+    refuse_steps("t = ", time, " s lies outside the last step, [", before_.time.value, ", ", t(),
+                 "] s");
+  }
+  if (time == t()) return y();
+  if (time == before_.time.value) return before_.state.value;
+  kept_ = stages_.value;
+  const double h = (time - before_.time.value) - before_.time.rest;
+  stages_.factorise(tangent_, h);
+  stages_.guess(-1, h / h_before_);
+  const bool done = solve_stages(field, before_.time, before_.state, h);
+  Eigen::VectorXd there =
+      before_.state.value + (stages_.value.col(stages() - 1) + before_.state.rest);
+  stages_.value = kept_;
+  if (!done) stop_integration(time, "the stages of a part of a step do not converge");
+  return there;
+}
+
+KREISEL_DEFINED void RadauIntegrator::back_to(StiffField& field, double time) {
+  const Eigen::VectorXd there = at(field, time);
+  time_ = {time, 0};
+  state_ = {there, Eigen::VectorXd::Zero(there.size())};
+  before_ = {time_, state_};
+  h_before_ = 0;
+}
+
+KREISEL_DEFINED double RadauIntegrator::noise() const {
+  return sizes_.relative(noise_.cwiseSqrt(), Eigen::VectorXd::Zero(noise_.size()));
+}
+
+KREISEL_DEFINED void RadauIntegrator::evaluate(StiffField& field, double t,
+                                               const Eigen::VectorXd& y, double* result) {
+  effort_.evaluations += 1;
+  field.rate(t, y, result);
+}
+
+KREISEL_DEFINED void RadauIntegrator::note_jacobian(StiffField& field) {
+  effort_.jacobians += 1;
+  tangent_.resize(y().size(), y().size());
+  field.jacobian(start_time_, y(), tangent_);
+  if (!finite(tangent_)) stop_integration(t(), "the Jacobian of the field is not finite");
+}
+
+KREISEL_DEFINED bool RadauIntegrator::solve_stages(StiffField& field,
+                                                   const Compensated<double>& time,
+                                                   const Compensated<Eigen::VectorXd>& state,
+                                                   double h) {
+  constexpr int most_iterations = 12;
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  // What is left errs to the same side in every step: it has to stay below what rounding makes.
+  const double enough = std::max(accuracy_.relative / 20, rounding / 64);
+  // Rounding in a stiff field ends the descent before rounding of the state would.
+  const double stalled = 1e3 * std::max(accuracy_.relative / 20, rounding);
+  double change_before = std::numeric_limits<double>::infinity();
+  for (int iteration = 1; iteration <= most_iterations; ++iteration) {
+    for (int i = 0; i < stages(); ++i) {
+      const double at = time.value + (coefficients_->node[i] * h + time.rest);
+      const bool late = h > 0 ? at > last_stage_time_ : at < last_stage_time_;
+      point_ = state.value + (stages_.value.col(i) + state.rest);
+      evaluate(field, late ? last_stage_time_ : at, point_, rates_.col(i).data());
+    }
+    if (!finite(rates_)) return false;
+    const Eigen::MatrixXd& correction = stages_.correct(rates_, h);
+    double change = 0;
+    for (int i = 0; i < stages(); ++i) {
+      change = std::max(change, sizes_.relative(correction.col(i), stages_.value.col(i)));
+    }
+    if (!std::isfinite(change)) return false;
+    if (change <= std::min(enough, rounding) || change_before <= rounding) return true;
+    if (iteration > 1) {
+      const double shrinks = change / change_before;
+      if (shrinks >= 1) return change <= stalled;
+      if (shrinks / (1 - shrinks) * change <= enough) return true;
+      const double at_the_end = std::pow(shrinks, most_iterations - iteration) * change;
+      if (at_the_end > enough && change > stalled) return false;
+    }
+    change_before = change;
+  }
+  return change_before <= stalled;
+}
+
+KREISEL_DEFINED bool RadauIntegrator::jumps_within(double h, double worst) const {
+  if (rejected_.step == 0) return false;
+  const double shortened = std::abs(h) / rejected_.step;
+  return worst > rejected_.worst * shortened * shortened;
+}
+
+KREISEL_DEFINED double RadauIntegrator::least_allowed() const {
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+  return std::min(1.0, std::max(accuracy_.relative, rounding) / allowed_);
+}
+
+KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, bool again) {
+  if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t()) || h == 0) {
+    stop_integration(t(), "the step has become too short to move time on");
+  }
+  if (effort_.evaluations > accuracy_.most_evaluations) {
+    stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
+  }
+  kept_ = stages_.value;
+  stages_.factorise(tangent_, h);
+  if (h_before_ == 0) {
+    stages_.value.setZero();
+  } else {
+    stages_.guess(0, h / h_before_);
+  }
+  if (!solve_stages(field, time_, state_, h)) {
+    stages_.value = kept_;
+    effort_.rejected += 1;
+    step_ = std::abs(h) / 4;
+    return false;
+  }
+  change_ = stages_.value.col(stages() - 1);
+  from_stages_ = stages_.sum(coefficients_->error) / h;
+  error_ = rate_ + from_stages_;
+  stages_.solve(error_);
+  double worst = sizes_.relative(error_, change_) / allowed_;
+  if (worst >= 1 && (again || effort_.steps == 0)) {
+    // What a stiff field makes of a start off its slow motion is not the step's error.
+    point_ = y() + error_;
+    evaluate(field, start_time_, point_, error_.data());
+    error_ += from_stages_;
+    stages_.solve(error_);
+    worst = sizes_.relative(error_, change_) / allowed_;
+  }
+  const double root = 1.0 / (stages() + 1);
+  const double most = jumps_within(h, worst) ? least_allowed() : 1;
+  if (!(worst < most)) {
+    stages_.value = kept_;
+    effort_.rejected += 1;
+    const double aim = std::isfinite(worst) ? 0.9 * std::pow(worst / most, -root) : 0.125;
+    step_ = std::abs(h) * std::clamp(aim, 0.125, 0.9);
+    rejected_ = {t() + h, std::abs(h), worst};
+    return false;
+  }
+  worst = std::max(worst, 1e-8);
+  double aim = 0.9 * std::pow(worst, -root);
+  if (h_before_ != 0) {
+    aim = std::min(aim, aim * std::abs(h / h_before_) * std::pow(worst_before_ / worst, root));
+  }
+  step_ = std::abs(h) * std::clamp(aim, 0.2, again ? 1.0 : 8.0);
+  worst_before_ = std::max(worst, 1e-2);
+  h_before_ = h;
+  effort_.steps += 1;
+  note_noise();
+  state_.add(change_);
+  time_.add(h);
+  sizes_.note(y());
+  return true;
+}
+
+KREISEL_DEFINED void RadauIntegrator::note_noise() {
+  constexpr double half_digit = std::numeric_limits<double>::epsilon() / 2;
+  const double eigenvalue = coefficients_->real.eigenvalue;
+  const double part = half_digit * eigenvalue / std::sqrt(double(stages()));
+  const Eigen::Index n = y().size();
+  added_.setZero(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    point_ = part * std::abs(y()[j]) * tangent_.col(j);
+    stages_.solve(point_);
+    added_ += point_.cwiseAbs2();
+    point_.setZero();
+    point_[j] = 1;
+    stages_.solve(point_);
+    const double stays = point_[j] * eigenvalue / h_before_;
+    noise_[j] *= std::min(1.0, stays * stays);
+  }
+  noise_ += added_;
+}
+
+}  // namespace kreisel::detail
