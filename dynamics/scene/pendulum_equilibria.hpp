@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <dynamics/scene/pendulum.hpp>
@@ -19,6 +21,29 @@ struct Equilibrium {
 };
 
 namespace detail {
+
+/// The root of a function in a bracket, by Newton's method: bisected where that leaves the bracket, or
+/// takes no step half as long as the one before.
+///
+/// look  : says of x whether the root lies below it, and where Newton's method goes from there
+/// least : steps may be this long besides what x is rounded by
+template <class S, class Look>
+[[nodiscard]] S root_in_bracket(S low, S high, S x, const S& least, const Look& look) {
+  using std::abs;
+  constexpr int most_steps = 2 * std::numeric_limits<S>::digits + 100;
+  S last_step = std::numeric_limits<S>::max();
+  for (int i = 0; i < most_steps; ++i) {
+    const auto [below, newton] = look(x);
+    (below ? high : low) = x;
+    const S half = (low + high) / S(2);
+    const bool good = newton >= low && newton <= high && abs(S(newton - x)) <= last_step / S(2);
+    const S next = good ? newton : half;
+    last_step = abs(S(next - x));
+    x = next;
+    if (last_step <= least + std::numeric_limits<S>::epsilon() * abs(x)) break;
+  }
+  return x;
+}
 
 /// Isolates and polishes the roots of  m(x) = E sin x + F cos x + H cos 2x + K sin 2x  on one turn.
 ///
@@ -168,51 +193,37 @@ class EquilibriumSearch {
   [[nodiscard]] std::vector<Equilibrium<S>> merged() const {
     using std::abs;
     std::vector<Equilibrium<S>> result;
-    for (std::size_t i = 0; i < found_.size();) {
-      std::size_t last = i;
-      while (last + 1 < found_.size() && found_[last + 1].x - found_[last].x < S(0.1) &&
-             abs(moment(extremum(found_[last].x, found_[last + 1].x))) <= noise_) {
-        ++last;
+    for (auto first = found_.begin(); first != found_.end();) {
+      auto last = first;
+      auto next = std::next(last);
+      while (next != found_.end() && next->x - last->x < S(0.1) &&
+             abs(moment(extremum(last->x, next->x))) <= noise_) {
+        last = next++;
       }
-      const bool degenerate = found_[i].degenerate || last > i;
-      const bool stable = !positive(found_[i].low) && positive(found_[last].high);
-      S angle = last > i ? S((found_[i].x + found_[last].x) / S(2)) : found_[i].x;
+      const bool degenerate = first->degenerate || last != first;
+      const bool stable = !positive(first->low) && positive(last->high);
+      S angle = last != first ? S((first->x + last->x) / S(2)) : first->x;
       if (angle <= -pi_) {
         angle += S(2) * pi_;
         if (!degenerate) angle = std::min(S(angle - moment(angle) / jet(angle).d1), pi_);
       }
       result.push_back({angle, jet(angle).d1, stable, degenerate});
-      i = last + 1;
+      first = next;
     }
     std::sort(result.begin(), result.end(),
               [](const auto& a, const auto& b) { return a.angle < b.angle; });
     return result;
   }
 
-  /// The root in a bracket: Newton, bisection where Newton leaves the bracket or is slow. A root
-  /// near 0 comes with full relative accuracy.
-  [[nodiscard]] S solve(S low, S high) const {
-    using std::abs;
+  /// The root in a bracket; one near 0 comes with full relative accuracy.
+  [[nodiscard]] S solve(const S& low, const S& high) const {
     if (c_.f + c_.h == S(0) && low <= S(0) && S(0) <= high) return S(0);
     if (c_.f == c_.h && low <= -pi_ && -pi_ <= high) return -pi_;
     const bool rising = positive(high);
-    S x = (low + high) / S(2);
-    S last_step = high - low;
-    for (int i = 0; i < 2 * std::numeric_limits<S>::digits + 100; ++i) {
+    return root_in_bracket(low, high, S((low + high) / S(2)), S(0), [&](const S& x) {
       const S m = moment(x);
-      if ((m >= S(0)) == rising) {
-        high = x;
-      } else {
-        low = x;
-      }
-      S next = x - m / jet(x).d1;
-      const bool good = next >= low && next <= high && abs(S(next - x)) <= last_step / S(2);
-      if (!good) next = (low + high) / S(2);
-      last_step = abs(S(next - x));
-      x = next;
-      if (last_step <= std::numeric_limits<S>::epsilon() * abs(x)) break;
-    }
-    return x;
+      return std::pair((m >= S(0)) == rising, S(x - m / jet(x).d1));
+    });
   }
 
   PendulumCoefficients<S> c_;

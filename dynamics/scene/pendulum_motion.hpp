@@ -256,28 +256,17 @@ class SteadyPendulumMotion {
     return {pace_ * theta + sum.time, pace_ + sum.pace};
   }
 
-  /// Newton's method in a bracket: t(theta) rises, and differs from its mean by less than a period.
+  /// t(theta) rises, and differs from its mean by less than a period.
   [[nodiscard]] S phase_at(const S& time) const {
-    using std::abs;
-    const S epsilon = std::numeric_limits<S>::epsilon();
-    S theta = time / pace_;
-    S low = theta - S(2) * pi();
-    S high = theta + S(2) * pi();
-    for (int i = 0; i < 2 * std::numeric_limits<S>::digits; ++i) {
-      const Phase phase = at_phase(theta);
-      const S off = phase.time - time;
-      if (off > S(0)) {
-        high = theta;
-      } else {
-        low = theta;
-      }
-      S next = theta - off / phase.pace;
-      if (!(next >= low && next <= high)) next = (low + high) / S(2);
-      const S step = abs(S(next - theta));
-      theta = next;
-      if (step <= S(4) * epsilon * pi()) break;
-    }
-    return theta;
+    const S mean = time / pace_;
+    const S turn = S(2) * pi();
+    return detail::root_in_bracket(S(mean - turn), S(mean + turn), mean,
+                                   S(S(4) * std::numeric_limits<S>::epsilon() * pi()),
+                                   [&](const S& theta) {
+                                     const Phase phase = at_phase(theta);
+                                     const S off = phase.time - time;
+                                     return std::pair(off > S(0), S(theta - off / phase.pace));
+                                   });
   }
 
   S theta_c_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include <dynamics/scene/pendulum_equilibria.hpp>
@@ -170,7 +171,7 @@ template <class S>
 }
 
 /// Where a pendulum that goes from `start` towards smaller x, with so much kinetic energy, comes to
-/// rest; nothing if it turns over.
+/// rest; nothing if it turns over, which it does not without any.
 ///
 /// `stops` are the equilibria below `start`, descending, over at least one turn: U is monotone
 /// between.
@@ -188,39 +189,33 @@ template <class S>
   S high = start;
   S low = start;
   S at_low(0);
+  S barrier(0);
   for (const S& stop : stops) {
     high = low;
     low = stop;
     at_low = left(stop);
+    barrier = phi_0 + sense * stop;
     const S way = start - stop;
     if (abs(at_low) <= S(4) * epsilon * (kinetic / way + moment.size() * way)) {
-      fail_at_separatrix(S(phi_0 + sense * stop));
+      fail_at_separatrix(barrier);
     }
     if (at_low < S(0)) break;
   }
-  if (!(at_low < S(0))) return {};
-  // Newton's method, kept in the bracket, from where a spring of the stiffness at x = 0 would stop:
-  // from afar it takes a step for each factor 2 that the swing is small.
+  if (!(at_low < S(0))) {
+    if (kinetic == S(0)) fail_at_separatrix(barrier);  // what is left there is rounding
+    return {};
+  }
+  // From where a spring of the stiffness at x = 0 would stop: from afar Newton's method takes a step
+  // for each factor 2 that the swing is small.
   const S stiffness = moment.e + S(2) * moment.k;
   const S spring =
       kinetic == S(0) ? S(-abs(start)) : S(-sqrt(S(start * start + S(2) * kinetic / stiffness)));
-  S x = spring > low && spring <= high ? spring : S((low + high) / S(2));
-  S last_step = high - low;
-  for (int i = 0; i < 2 * std::numeric_limits<S>::digits + 100; ++i) {
-    const S slope = left(x);
-    if (slope > S(0)) {
-      high = x;
-    } else {
-      low = x;
-    }
-    S next = x + (start - x) * slope / moment.moment(x);
-    const bool good = next >= low && next <= high && abs(S(next - x)) <= last_step / S(2);
-    if (!good) next = (low + high) / S(2);
-    last_step = abs(S(next - x));
-    x = next;
-    if (last_step <= epsilon * abs(x)) break;
-  }
-  return x;
+  const bool inside = spring > low && spring <= high;
+  return root_in_bracket(
+      low, high, inside ? spring : S((low + high) / S(2)), S(0), [&](const S& x) {
+        const S slope = left(x);
+        return std::pair(slope > S(0), S(x + (start - x) * slope / moment.moment(x)));
+      });
 }
 
 }  // namespace detail
@@ -282,11 +277,7 @@ template <class S>
     }
   }
   std::sort(stops.begin(), stops.end(), [](const S& a, const S& b) { return a > b; });
-  const std::optional<S> climbed =
-      detail::climb(moment, release, S(0), stops, sense, equilibrium.angle);
-  // At rest it does not turn over: what is left at the barrier is rounding.
-  if (!climbed) detail::fail_at_separatrix(S(equilibrium.angle + sense * stops.back()));
-  const S other = *climbed;
+  const S other = *detail::climb(moment, release, S(0), stops, sense, equilibrium.angle);
 
   const detail::Swing<S> swing{moment, other, release, body.theta_c};
   S worst_condition(1);

@@ -572,6 +572,19 @@ BOOST_AUTO_TEST_CASE(of_a_guide_at_rest) {
   BOOST_TEST(!std::signbit(answer.equilibrium.formula_24.value));
 }
 
+BOOST_AUTO_TEST_CASE(of_a_great_swing_tells_the_error_of_the_quadrature) {
+  const auto rod = PendulumBody<double>::thin_rod(0.75);
+  const auto answer = deviation(rod, refused::hanging);
+  for (const double amplitude : {0.5, 2.0, 3.0, 3.14, 3.1415}) {
+    const auto swing = period_at_amplitude(rod, answer.coefficients, answer.equilibria,
+                                           nearest_stable(answer.equilibria), amplitude);
+    const auto told = deviation(rod, refused::hanging, amplitude).period.at_amplitude;
+    BOOST_TEST_REQUIRE(told.has_value());
+    BOOST_TEST(told->error >= swing.quadrature_error);
+    BOOST_TEST(told->error > 0);
+  }
+}
+
 // (24) says 0 where E + 2K = 0 and nothing is linear any more.
 BOOST_AUTO_TEST_CASE(at_the_bifurcation_there_is_no_small_period) {
   const auto rod = PendulumBody<double>::thin_rod(1.5);                // theta 0.75, a 0.75

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <utility>
 
 #include <dynamics/scene/pendulum_cases.hpp>
 #include <dynamics/scene/pendulum_equilibria.hpp>
@@ -140,6 +141,29 @@ BOOST_DATA_TEST_CASE(a_merged_pair_is_reported_once_and_unstable, data::xrange(2
   BOOST_TEST(found.size() == 3u);
 }
 
+// m = cos 2(x - 0.9): the search cuts the circle at 0.9, and where it halves it there are all roots.
+BOOST_AUTO_TEST_CASE(are_no_clusters_where_the_circle_is_halved) {
+  const double at = 0.9;
+  const auto found =
+      equilibria(PendulumCoefficients<double>{0, 0, 0, std::cos(2 * at), std::sin(2 * at)});
+  BOOST_TEST_REQUIRE(found.size() == 4u);
+  const double turn = 4 * std::acos(0.0);
+  for (int i = 0; i < 4; ++i) {
+    BOOST_TEST(test::near(found[std::size_t(i)].angle, at + turn * (2 * i - 5) / 8, 1.0, 4));
+    BOOST_TEST(!found[std::size_t(i)].degenerate);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_one_coefficient_alone) {
+  const auto count = [](double e, double f, double h, double k) {
+    return equilibria(PendulumCoefficients<double>{e, 0, f, h, k}).size();
+  };
+  BOOST_TEST(count(1, 0, 0, 0) == 2u);
+  BOOST_TEST(count(0, 1, 0, 0) == 2u);
+  BOOST_TEST(count(0, 0, 1, 0) == 4u);
+  BOOST_TEST(count(0, 0, 0, 1) == 4u);
+}
+
 // E sin x + K sin 2x with E = -2K: the hanging position loses its stability (case P9's pitchfork).
 BOOST_AUTO_TEST_CASE(the_pitchfork_point_itself) {
   const auto at = [](double k) { return equilibria(PendulumCoefficients<double>{1, 0, 0, 0, k}); };
@@ -180,6 +204,49 @@ BOOST_AUTO_TEST_CASE(tiny_angles_keep_their_digits) {
     BOOST_TEST_REQUIRE(found.size() == 2u);
     BOOST_TEST(near(nearest_stable(found).angle, std::atan(f), f, 4));
   }
+}
+
+BOOST_AUTO_TEST_CASE(of_terms_that_cancel_at_0_one_is_0) {
+  for (const double f : {0.3, -0.7, 1e-10}) {
+    const auto found = equilibria(PendulumCoefficients<double>{1, 0, f, -f, 0.2});
+    BOOST_TEST(nearest_stable(found).angle == 0);
+  }
+}
+
+// F = H: they cancel at pi, not at 0, beside which the root lies.
+BOOST_AUTO_TEST_CASE(of_terms_that_cancel_at_pi_one_is_pi) {
+  for (const double f : {1e-3, -1e-3, 1e-10}) {
+    const PendulumCoefficients<double> c{1, 0, f, f, 0};
+    const auto found = equilibria(c);
+    BOOST_TEST_REQUIRE(found.size() == 2u);
+    BOOST_TEST(test::near(nearest_stable(found).angle, -2 * f, std::abs(f), 16 + 12 * f * f / u));
+    BOOST_TEST(found.back().angle == std::acos(-1.0));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_root_takes_as_few_looks_as_newtons_method) {
+  int looks = 0;
+  const auto look = [&looks](double x) {
+    ++looks;
+    return std::pair(std::cos(x) < 0, x + std::cos(x) / std::sin(x));
+  };
+  const double root = detail::root_in_bracket(0.0, 3.0, 1.0, 0.0, look);
+  BOOST_TEST(test::near(root, std::acos(0.0), 1.0, 1));
+  BOOST_TEST(looks <= 6);
+  // From where Newton's method leaves the bracket, or goes to and fro.
+  BOOST_TEST(
+      test::near(detail::root_in_bracket(-1.0, 3.1, 3.1, 0.0, look), std::acos(0.0), 1.0, 1));
+  looks = 0;
+  const auto to_and_fro = [&looks](double x) {
+    ++looks;
+    return std::pair(x > 0.3, 0.6 - x);
+  };
+  BOOST_TEST(test::near(detail::root_in_bracket(-1.0, 1.0, 0.9, 0.0, to_and_fro), 0.3, 0.3, 4));
+  BOOST_TEST(looks <= 120);
+  // As near as is asked.
+  looks = 0;
+  BOOST_TEST(std::abs(detail::root_in_bracket(0.0, 3.0, 1.0, 1e-3, look) - std::acos(0.0)) < 1e-6);
+  BOOST_TEST(looks <= 4);
 }
 
 BOOST_AUTO_TEST_CASE(no_moment_at_all_is_refused) {

@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -112,6 +113,23 @@ BOOST_AUTO_TEST_CASE(infinite_periods_are_refused) {
   }
 }
 
+// Also where nothing is as far to the other side.
+BOOST_AUTO_TEST_CASE(a_release_at_another_equilibrium_is_refused) {
+  const PendulumCoefficients<double> c{1, 0, 0.2, 0.3, 0.7};
+  const auto all = equilibria(c);
+  const auto rest = nearest_stable(all);
+  int others = 0;
+  for (const auto& other : all) {
+    if (other.angle == rest.angle) continue;
+    const double amplitude = std::remainder(other.angle - rest.angle, 4 * std::acos(0.0));
+    BOOST_TEST(message_of([&] {
+                 (void)period_at_amplitude(rod, c, all, rest, amplitude);
+               }).ends_with("it stays there"));
+    ++others;
+  }
+  BOOST_TEST(others == 3);
+}
+
 // The slope is  m (E' + 2 K') + F' (3 m^2 + d^2)/2  next to the equilibrium: where m and d are off by
 // a part delta, it is off by no more than  delta (|m| |E' + 2 K'| + |F'| (3 m^2 + d^2)).
 BOOST_DATA_TEST_CASE(rounding_is_magnified_as_foretold, data::xrange(100u), seed) {
@@ -133,6 +151,27 @@ BOOST_DATA_TEST_CASE(rounding_is_magnified_as_foretold, data::xrange(100u), seed
   if (third) BOOST_TEST(worst >= 0.4 * foretold);
 }
 
+BOOST_AUTO_TEST_CASE(size_bounds_the_moment) {
+  Sample sample(7);
+  for (const auto& moment :
+       {detail::ShiftedMoment<double>{-1, 0, 0}, {0, 0, -1}, {1, -1, 0}, {0, 1, 1}, {0, -1, -1}}) {
+    for (int i = 0; i < 1000; ++i) {
+      const double m = sample.uniform(-3.2, 3.2);
+      BOOST_TEST_REQUIRE(std::abs(moment.slope(m, sample.uniform(-3.2, 3.2))) <= moment.size());
+      BOOST_TEST_REQUIRE(std::abs(moment.moment(m)) <= moment.size());
+    }
+  }
+}
+
+// Two equal barriers of K alone: E and F have no part in what counts as equally high.
+BOOST_AUTO_TEST_CASE(so_near_two_equal_barriers_that_they_are_as_high) {
+  BOOST_CHECK_EXCEPTION((void)swing({0, 0, 0, 0, 1}, std::acos(0.0) - 1e-9), ComputationFailed,
+                        [](const auto& error) {
+                          BOOST_TEST_MESSAGE(error.what());
+                          return std::string(error.what()).starts_with("the period is infinite");
+                        });
+}
+
 BOOST_AUTO_TEST_CASE(near_a_barrier_the_error_reached_is_named) {
   const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
   const double rest = nearest_stable(equilibria(wells)).angle;
@@ -142,6 +181,25 @@ BOOST_AUTO_TEST_CASE(near_a_barrier_the_error_reached_is_named) {
         return std::string(error.what()).find("leave an error of") != std::string::npos;
       });
   BOOST_CHECK_NO_THROW((void)swing(wells, std::acos(0.0) + 1e-6 - rest));
+}
+
+// So near a barrier that rounding outgrows what a doubling of the nodes still changes.
+BOOST_AUTO_TEST_CASE(ends_where_rounding_hides_what_is_left) {
+  const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
+  const auto all = equilibria(wells);
+  const auto rest = nearest_stable(all);
+  const double amplitude = std::acos(0.0) + 1e-8 - rest.angle;
+  const auto found = period_at_amplitude(rod, wells, all, rest, amplitude);
+  BOOST_TEST_MESSAGE(found.nodes << " nodes, error " << found.quadrature_error << " of "
+                                 << found.period);
+  BOOST_TEST(std::has_single_bit(unsigned(found.nodes - 1)));
+  BOOST_TEST(found.nodes > 1000);
+  BOOST_TEST(found.quadrature_error > 0);
+  BOOST_TEST(found.quadrature_error < 1e-6 * found.period);
+}
+
+BOOST_AUTO_TEST_CASE(a_small_swing_takes_few_nodes) {
+  BOOST_TEST(swing({1, 0, 0, 0, 0}, 1e-9).nodes == 17);  // 8 intervals and twice as many
 }
 
 // By the arithmetic-geometric mean, T = 2 pi/agm(1, cos(amplitude/2)): sums of many terms are not

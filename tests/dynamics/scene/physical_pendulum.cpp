@@ -15,6 +15,7 @@
 #include <dynamics/scene/physical_pendulum.hpp>
 #include <dynamics/solve/solve.hpp>
 
+#include <support/near.hpp>
 #include <support/reference_file.hpp>
 #include <support/worst.hpp>
 
@@ -107,6 +108,29 @@ BOOST_AUTO_TEST_CASE(on_the_earth_reaches_the_reference) {
                                                           << run.report.error_estimate);
   BOOST_REQUIRE(run.report.invariants.size() == 1U);
   BOOST_TEST(run.report.invariants[0].largest <= 16 * u * run.report.invariants[0].start);
+}
+
+BOOST_AUTO_TEST_CASE(errs_at_the_start_by_what_its_numbers_are_rounded) {
+  const PhysicalPendulum pendulum(rod, room);
+  const SteadyPendulumMotion<exact::Real> motion(rod.cast<exact::Real>(),
+                                                 pendulum.coefficients<exact::Real>(), 0.1, 0.1);
+  const double told = detail::SteadyPendulumMotionError(motion, 3)(3, 0);
+  // Half a last digit of each, twice, and what the phase is off at time 0.
+  const auto per_phase = std::max(motion.angle_per_phase(), motion.rate_per_phase()) / 0.1L;
+  BOOST_TEST(test::near(told, 2 * u + double(motion.phase_error(0) * per_phase), told, 4));
+  BOOST_TEST(told < 2.2 * u);
+}
+
+BOOST_AUTO_TEST_CASE(begins_when_it_is_told_to) {
+  const PhysicalPendulum pendulum(rod, room);
+  const auto start = decltype(pendulum)::State{1.5, 0.5};
+  const auto now = solve(pendulum, start, {.times = {0.25, 7}, .tolerance = 1e-13});
+  const auto later = solve(pendulum, start, {.begin = 3, .times = {3.25, 10}, .tolerance = 1e-13});
+  BOOST_TEST(later.report.method == "energy integral, Fourier series");
+  for (std::size_t i = 0; i < 2; ++i) {
+    BOOST_TEST(std::abs(later.states[i].angle - now.states[i].angle) <= 16 * u);
+    BOOST_TEST(std::abs(later.states[i].rate - now.states[i].rate) <= 64 * u);
+  }
 }
 
 // Elliptic functions, which know nothing of phases and series: swings of 1e-9 to 3 rad, and turning over.

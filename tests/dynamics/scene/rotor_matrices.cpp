@@ -60,6 +60,24 @@ Eigen::VectorXd turning_along(const Eigen::VectorXd& u, bool free) {
 
 BOOST_AUTO_TEST_SUITE(the_matrices_of_rotors)
 
+BOOST_AUTO_TEST_CASE(take_springs_for_forces) {
+  const Json& reference = test::rotors_reference();
+  const auto system = resting(
+      test::model_bodies("cmgsat", Root::free,
+                         reference["trajectories"]["T3_cmgsat_regulated"]["springs_dampers_const"],
+                         RotorMode::regulated));
+  BodyWorkspace w = system.workspace();
+  const Json& snapshot = reference["snapshots"]["cmgsat_regulated"];
+  const Eigen::VectorXd y = state(system, snapshot);
+  const RotorMatrices m = rotor_matrices(system, 0, y, w);
+  BOOST_TEST(!m.Q.isZero(0));
+  Eigen::VectorXd dv;
+  system.accelerations(0, y, {}, dv, w);
+  const Eigen::VectorXd solved =
+      m.A_eff.ldlt().solve(Eigen::VectorXd(m.Q - m.c - m.G_R * numbers(snapshot["u"])));
+  BOOST_TEST(off(solved, dv(m.rates)) <= 1e-13);
+}
+
 BOOST_AUTO_TEST_CASE(are_those_of_the_reference) {
   for (const char* name :
        {"platform_regulated", "platform_free", "pivsat_regulated", "cmgsat_regulated"}) {
