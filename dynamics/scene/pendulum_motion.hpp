@@ -152,10 +152,11 @@ class SteadyPendulumMotion {
     for (const Equilibrium<S>& other : all) {
       const S at = other.angle - origin_;
       const S first = at + turn * floor(S((start_ - at) / turn));
-      for (const S& stop : {first, S(first - turn)}) {
+      for (int turns = -1; turns <= 2; ++turns) {
+        const S stop = first + S(turns) * turn;
         if (stop < start_) below.push_back(stop);
+        if (stop > start_) above.push_back(-stop);
       }
-      for (const S& stop : {S(first + turn), S(first + S(2) * turn)}) above.push_back(-stop);
     }
     const auto descending = [](const S& a, const S& b) { return a > b; };
     std::sort(below.begin(), below.end(), descending);

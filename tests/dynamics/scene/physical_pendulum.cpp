@@ -216,6 +216,21 @@ BOOST_AUTO_TEST_CASE(swings_in_the_well_that_it_is_in) {
   }
 }
 
+// After eight turns either way it swings as before them; 16 pi is rounded by 7e-15.
+BOOST_AUTO_TEST_CASE(swings_alike_many_turns_away) {
+  const PendulumCoefficients<> c{1, 0, 0.1, -0.2, -0.9};
+  const double turns = 32 * std::acos(0.0);
+  for (const double angle : {2.5, -0.4, 0.3}) {
+    const SteadyPendulumMotion<double> here({.arm = 1, .theta_c = 1}, c, angle, 0);
+    for (const double away : {turns, -turns}) {
+      const SteadyPendulumMotion<double> there({.arm = 1, .theta_c = 1}, c, angle + away, 0);
+      BOOST_TEST(std::abs(there.period() - here.period()) <= 1e-13);
+      BOOST_TEST(std::abs(there.at(2).angle - away - here.at(2).angle) <= 1e-13);
+      BOOST_TEST(std::abs(there.at(2).rate - here.at(2).rate) <= 1e-13);
+    }
+  }
+}
+
 // Hardly over the barrier its phase runs so unevenly that Newton's steps for it leave their bracket.
 BOOST_AUTO_TEST_CASE(nearly_stands_as_elliptic_functions_say) {
   const PhysicalPendulum pendulum(rod, room);
