@@ -147,7 +147,3 @@ KREISEL_DECLARED [[nodiscard]] Trajectory<double> solve_closed(
 KREISEL_DECLARED [[noreturn]] void refuse_closed_form();
 
 }  // namespace kreisel::detail
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/solve/solve_defined.hpp>
-#endif
