@@ -234,6 +234,19 @@ class CardanGyro {
     return bearings_.outer.damping != 0 || bearings_.inner.damping != 0 || rotor_.friction != 0;
   }
 
+  /// The same gyro with its springs off by a last digit, if it has any: what the sums of moments
+  /// round that stand against them grows with each radian of their oscillation. For estimates of
+  /// what rounding does.
+  [[nodiscard]] std::optional<CardanGyro> off_by_last_digits() const
+      requires(std::is_same_v<Parameter, double>) {
+    if (bearings_.outer.stiffness == 0 && bearings_.inner.stiffness == 0) return std::nullopt;
+    CardanGyro other = *this;
+    for (CardanBearing* bearing : {&other.bearings_.outer, &other.bearings_.inner}) {
+      bearing->stiffness *= 1 + std::numeric_limits<double>::epsilon();
+    }
+    return other;
+  }
+
   /// The moments in the bearings.
   ///
   /// Error  : <= 1e-13 of the largest; those about the bearings' axes are exact, the sum of spring,
