@@ -234,9 +234,9 @@ class CardanGyro {
     return bearings_.outer.damping != 0 || bearings_.inner.damping != 0 || rotor_.friction != 0;
   }
 
-  /// The same gyro with its springs off by a last digit, if it has any: what the sums of moments
-  /// round that stand against them grows with each radian of their oscillation. For estimates of
-  /// what rounding does.
+  /// The same gyro with its springs off by a last digit, if it has any: as much as the sums of
+  /// moments that stand against them may be rounded by, which grows with each radian of their
+  /// oscillation. For estimates of what rounding does.
   [[nodiscard]] std::optional<CardanGyro> off_by_last_digits() const
       requires(std::is_same_v<Parameter, double>) {
     if (bearings_.outer.stiffness == 0 && bearings_.inner.stiffness == 0) return std::nullopt;
