@@ -207,7 +207,10 @@ class ExplicitSteps {
     }
   }
 
-  void fill_stage(std::size_t k, const Scalar& t, const Vector& y) {
+  void fill_stage(std::size_t k, const Scalar& t, const Vector& y) { fill_stage_here(k, t, y); }
+
+  /// The same without a call.
+  [[gnu::always_inline]] void fill_stage_here(std::size_t k, const Scalar& t, const Vector& y) {
     if constexpr (Memory::fixed) {
       effort_.evaluations += 1;
       stage_.keep(k, [&] { return detail::rate_of(field_, t, y); });
@@ -229,21 +232,22 @@ class ExplicitSteps {
     return places;
   }();
 
-  /// sum of c_j k_j over the stages, in one pass over the components and without what is 0; without
-  /// the last term or with it.
-  template <const auto& row, std::size_t without_last = 0>
-  [[nodiscard]] auto combined() const {
+  /// sum of c_j k_j over the stages by what part() takes of each, without what is 0; without the last
+  /// term or with it.
+  template <const auto& row, std::size_t without_last = 0, class Part>
+  [[nodiscard, gnu::always_inline]] auto combined(const Part& part) const {
     constexpr auto& places = occupied<row>;
-    if constexpr (places.size() == without_last) {
-      return stage_.nothing();
-    } else {
-      return [this]<std::size_t... k>(std::index_sequence<k...>) {
-        return Memory::sum([this](const auto& part) {
-          return (... + (static_cast<Scalar>(row[places[k]]) * part(stage_[places[k]])));
-        });
-      }
-      (std::make_index_sequence<places.size() - without_last>());
-    }
+    return added<row, 1>(static_cast<Scalar>(row[places[0]]) * part(stage_[places[0]]), part,
+                         std::make_index_sequence<places.size() - without_last - 1>());
+  }
+
+  /// The same, added to a sum from the row's term number `first` on.
+  template <const auto& row, std::size_t first, class Sum, class Part, std::size_t... k>
+  [[nodiscard, gnu::always_inline]] auto added(const Sum& sum, const Part& part,
+                                               std::index_sequence<k...> /*terms*/) const {
+    constexpr auto& places = occupied<row>;
+    return (sum + ... +
+            (static_cast<Scalar>(row[places[first + k]]) * part(stage_[places[first + k]])));
   }
 
   template <std::size_t i>
@@ -272,16 +276,11 @@ class ExplicitSteps {
   }();
 
   /// sum of b_j k_j. The rest of the weights comes first: at the end it would be rounded away.
-  [[nodiscard]] auto mean_rate() const {
-    constexpr auto& places = occupied<Tableau::b>;
-    return [this]<std::size_t... k>(std::index_sequence<k...>) {
-      return Memory::sum([this](const auto& part) {
-        return ((rest_of_weights.first * part(stage_[0]) +
-                 rest_of_weights.last * part(stage_[Tableau::stages - 1])) +
-                ... + (static_cast<Scalar>(Tableau::b[places[k]]) * part(stage_[places[k]])));
-      });
-    }
-    (std::make_index_sequence<places.size()>());
+  template <class Part>
+  [[nodiscard, gnu::always_inline]] auto mean_rate(const Part& part) const {
+    return added<Tableau::b, 0>(rest_of_weights.first * part(stage_[0]) +
+                                    rest_of_weights.last * part(stage_[Tableau::stages - 1]),
+                                part, std::make_index_sequence<occupied<Tableau::b>.size()>());
   }
 
   /// The time of a stage in a step from `time` on, not past where the step sees the field.
@@ -300,9 +299,21 @@ class ExplicitSteps {
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
       alignas(detail::Four) alignas(Vector) typename Memory::Passing point = stage_.point();
       // Only the last stage is waited for.
-      point = state_.value + (h * Memory::own(combined<row<k>, 1>()) + state_.rest) +
-              weight * Memory::own(stage_[last]);
-      fill_stage(k, stage_time(time_, h, Tableau::node[k]), point);
+      Memory::put(
+          point, [&](const auto& part) __attribute__((always_inline)) {
+            if constexpr (occupied<row<k>>.size() == 1) {
+              return part(state_.value) + part(state_.rest) + weight * part(stage_[last]);
+            } else {
+              return part(state_.value) + (h * combined<row<k>, 1>(part) + part(state_.rest)) +
+                     weight * part(stage_[last]);
+            }
+          });
+      const Scalar time = stage_time(time_, h, Tableau::node[k]);
+      if constexpr (Memory::few) {
+        fill_stage_here(k, time, point);
+      } else {
+        fill_stage(k, time, point);
+      }
     };
     (fill.template operator()<i + 1>(), ...);
   }
@@ -352,8 +363,8 @@ class ExplicitSteps {
     fill_stages(h, std::make_index_sequence<Tableau::stages - 1>());
     typename Memory::Passing change = stage_.change();
     typename Memory::Passing error = stage_.error();
-    change = h * Memory::own(mean_rate());
-    error = h * Memory::own(combined<Tableau::difference>());
+    Memory::put(change, [&](const auto& part) { return h * mean_rate(part); });
+    Memory::put(error, [&](const auto& part) { return h * combined<Tableau::difference>(part); });
     // In units of what is allowed.
     const Scalar worst = sizes_.relative(error, change, Scalar(4) * abs(h)) / allowed_;
     const bool finite = isfinite(static_cast<double>(worst)) && detail::finite(change);
@@ -389,7 +400,11 @@ class ExplicitSteps {
   void look_for_stiffness() {
     using detail::any;
     constexpr std::size_t last = Tableau::stages - 1;
-    const Number apart = (combined<row<last>>() - combined<row<last - 1>>()).norm();
+    typename Memory::Passing between = stage_.error();
+    Memory::put(between, [&](const auto& part) {
+      return combined<row<last>>(part) - combined<row<last - 1>>(part);
+    });
+    const Number apart = between.norm();
     const Number rate = (stage_[last] - stage_[last - 1]).norm();
     const bool at_the_limit = any(rate > Number(0.6 * Tableau::stable) * apart);
     short_steps_ = at_the_limit ? short_steps_ + 1 : 0;
@@ -486,7 +501,8 @@ class ExplicitSteps {
       }
     }
     const Scalar ninth = Scalar(Tableau::order) * before_.length;
-    coefficient_[rates + 1] = ninth * Memory::own(combined<Tableau::ninth>());
+    Memory::put(coefficient_[rates + 1],
+                [&](const auto& part) { return ninth * combined<Tableau::ninth>(part); });
     Vector& last = coefficient_[rates];
     last = (state_.value - before_.state.value) + (state_.rest - before_.state.rest);
     for (std::size_t m = 0; m < coefficients; ++m) {

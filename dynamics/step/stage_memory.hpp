@@ -26,7 +26,9 @@ class StageMemory {
 
  public:
   static constexpr bool fixed = true;
-  static constexpr int padded = components < 3 && !by_fours ? components : (components + 3) / 4 * 4;
+  /// So few that to call their field as a function costs as much as what it does.
+  static constexpr bool few = components < 4;
+  static constexpr int padded = few && !by_fours ? components : (components + 3) / 4 * 4;
   using Stage = Eigen::Matrix<Scalar, padded, 1>;
   using Passing = Vector;
 
@@ -37,15 +39,9 @@ class StageMemory {
   /// Puts what `make` returns into stage k.
   template <class Make>
   [[gnu::always_inline]] void keep(std::size_t k, const Make& make) {
-    alignas(Four) alignas(Vector) const Vector rate = make();
+    alignas(few ? 1 : alignof(Four)) alignas(Vector) const Vector rate = make();
     if constexpr (by_fours) {
-      const auto number = [&rate](int i) { return i < components ? rate[i] : 0.0; };
-      [&]<int... i>(std::integer_sequence<int, i...>) {
-        (Four(number(4 * i), number(4 * i + 1), number(4 * i + 2), number(4 * i + 3))
-             .to(stage_[k].data() + 4 * i),
-         ...);
-      }
-      (std::make_integer_sequence<int, padded / 4>());
+      keep_fours(stage_[k], rate, std::make_integer_sequence<int, padded / 4>());
     } else {
       for (int i = 0; i < components; ++i) stage_[k][i] = rate[i];
     }
@@ -55,28 +51,57 @@ class StageMemory {
   [[nodiscard]] static Vector change() { return {}; }
   [[nodiscard]] static Vector error() { return {}; }
 
-  [[nodiscard]] static Stage nothing() { return Stage::Zero(); }
-
-  /// A sum of multiples of stages: terms(part) sums up what part(stage) takes of each.
+  /// result = a sum of multiples of stages and states: terms(part) sums up what part() takes of each.
+  /// By fours it stays in registers, also where the compiler has so much to inline that it calls
+  /// assignments of Eigen's as functions.
   template <class Terms>
-  [[nodiscard]] static Stage sum(const Terms& terms) {
+  [[gnu::always_inline]] static void put(Vector& result, const Terms& terms) {
     if constexpr (by_fours) {
-      Stage total;
-      for (int i = 0; i < padded; i += 4) {
-        terms([i](const Stage& stage) {
-          return Four::from(stage.data() + i);
-        }).to(total.data() + i);
-      }
-      return total;
+      put_fours(result, terms, std::make_integer_sequence<int, padded / 4>());
     } else {
-      return terms([](const Stage& stage) -> const Stage& { return stage; });
+      result = terms([](const auto& v) { return own(v); });
     }
   }
 
   /// The part of a stage that is the state's own.
-  [[nodiscard]] static auto own(const Stage& v) { return v.template head<components>(); }
+  template <class V>
+  [[nodiscard]] static auto own(const V& v) {
+    return v.template head<components>();
+  }
 
  private:
+  /// Four numbers of a vector, or what it has of them and zeros.
+  template <int first, class V>
+  [[nodiscard, gnu::always_inline]] static Four four_of(const V& v) {
+    constexpr int left = int(V::RowsAtCompileTime) - first;
+    if constexpr (left >= 4) {
+      return Four::from(v.data() + first);
+    } else {
+      return {v[first], left > 1 ? v[first + 1] : 0, left > 2 ? v[first + 2] : 0, 0};
+    }
+  }
+
+  template <int... group>
+  [[gnu::always_inline]] static void keep_fours(Stage& stage, const Vector& rate,
+                                                std::integer_sequence<int, group...> /*all*/) {
+    (four_of<4 * group>(rate).to(stage.data() + 4 * group), ...);
+  }
+
+  template <class Terms, int... group>
+  [[gnu::always_inline]] static void put_fours(Vector& result, const Terms& terms,
+                                               std::integer_sequence<int, group...> /*all*/) {
+    (put_four<4 * group>(result, terms), ...);
+  }
+  template <int first, class Terms>
+  [[gnu::always_inline]] static void put_four(Vector& result, const Terms& terms) {
+    const Four sum = terms([](const auto& v) { return four_of<first>(v); });
+    if constexpr (components - first >= 4) {
+      sum.to(result.data() + first);
+    } else {
+      for (int i = 0; first + i < components; ++i) result[first + i] = sum[i];
+    }
+  }
+
   std::array<Stage, stages> stage_;
 };
 
@@ -90,6 +115,7 @@ class StageMemory<Vector, stages, components> {
 
  public:
   static constexpr bool fixed = true;
+  static constexpr bool few = false;
   using Passing = Vector;
 
   explicit StageMemory(const Vector& /*y*/) { stage_.fill(Vector::Zero()); }
@@ -105,19 +131,14 @@ class StageMemory<Vector, stages, components> {
   [[nodiscard]] static Vector change() { return {}; }
   [[nodiscard]] static Vector error() { return {}; }
 
-  [[nodiscard]] static auto nothing() { return Vector::Zero(); }
-
   template <class Terms>
-  [[nodiscard]] static auto sum(const Terms& terms) {
-    return Vector::NullaryExpr([terms](Eigen::Index i) -> Pack {
-      return terms([i](const Vector& stage) -> const Pack& { return stage[i]; });
-    });
+  static void put(Vector& result, const Terms& terms) {
+    for (int i = 0; i < components; ++i) {
+      result[i] = terms([i](const Vector& v) -> const Pack& { return v[i]; });
+    }
   }
 
-  template <class Terms>
-  [[nodiscard]] static const Terms& own(const Terms& terms) {
-    return terms;
-  }
+  [[nodiscard]] static const Vector& own(const Vector& stage) { return stage; }
 
  private:
   std::array<Vector, stages> stage_;
@@ -129,6 +150,7 @@ template <class Vector, std::size_t stages>
 class StageMemory<Vector, stages, Eigen::Dynamic> {
  public:
   static constexpr bool fixed = false;
+  static constexpr bool few = false;
   using Passing = Vector&;
 
   explicit StageMemory(const Vector& y) : point_(y), change_(y), error_(y) { stage_.fill(y); }
@@ -141,17 +163,12 @@ class StageMemory<Vector, stages, Eigen::Dynamic> {
   [[nodiscard]] Vector& change() { return change_; }
   [[nodiscard]] Vector& error() { return error_; }
 
-  [[nodiscard]] auto nothing() const { return Vector::Zero(point_.size()); }
-
   template <class Terms>
-  [[nodiscard]] static auto sum(const Terms& terms) {
-    return terms([](const Vector& stage) -> const Vector& { return stage; });
+  static void put(Vector& result, const Terms& terms) {
+    result = terms([](const Vector& v) -> const Vector& { return v; });
   }
 
-  template <class Terms>
-  [[nodiscard]] static const Terms& own(const Terms& terms) {
-    return terms;
-  }
+  [[nodiscard]] static const Vector& own(const Vector& stage) { return stage; }
 
  private:
   std::array<Vector, stages> stage_;
