@@ -181,8 +181,9 @@ class TaylorSteps {
   /// How far the series carries, in units of its time.
   [[nodiscard]] double reached_from_here() const {
     const double reach = reached(1);
-    // The first unit is a guess, which the change in a step is not to be judged by.
-    return effort_.steps == 0 ? reached(std::min(reach, 1.0)) : reach;
+    // What a unit that is none, the first one or that of a long rest, would change is no measure.
+    const bool misjudged = effort_.steps == 0 || reach < 0.5;
+    return misjudged ? reached(std::min(reach, 1.0)) : reach;
   }
 
   /// To where the last two terms are what a step of about `length` may err by. Two, for of an even or

@@ -59,6 +59,21 @@ struct Switched {
   }
 };
 
+/// y'' = 1 - y from t = 0 on, and nothing before.
+struct Late {
+  static constexpr int most_order = 24;
+
+  template <class Coefficients>
+  void operator()(double t, double h, int order, Coefficients& c) const {
+    c.middleCols(1, order).setZero();
+    if (t < 0) return;
+    for (int k = 0; k < order; ++k) {
+      c(0, k + 1) = h * c(1, k) / (k + 1);
+      c(1, k + 1) = h * ((k == 0 ? 1 : 0) - c(0, k)) / (k + 1);
+    }
+  }
+};
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(taylor)
@@ -177,6 +192,15 @@ BOOST_AUTO_TEST_CASE(goes_on_from_a_bookmark_to_the_last_bit) {
   BOOST_TEST(resumed.at(resumed.t() - 0.01) == whole.at(whole.t() - 0.01));
   BOOST_TEST(resumed.advance_to(100) == whole.advance_to(100));
   BOOST_TEST(resumed.effort().steps == whole.effort().steps);
+}
+
+// Its series is in units of the last step, powers of which may leave the range.
+BOOST_AUTO_TEST_CASE(takes_another_unit_where_a_motion_sets_in_after_a_long_rest) {
+  TaylorSteps steps(Late{}, -1e21, Vector(0, 0), {.relative = 1e-15});
+  steps.stop_at({0});
+  steps.advance_to(10);
+  BOOST_TEST(near(steps.y()[0], 1 - std::cos(10.0), 1.0, 40));
+  BOOST_TEST(near(steps.y()[1], std::sin(10.0), 1.0, 40));
 }
 
 BOOST_AUTO_TEST_CASE(refuses_what_is_none) {
