@@ -102,6 +102,21 @@ BOOST_AUTO_TEST_CASE(has_its_moment_to_ten_digits) {
   BOOST_TEST(outcome.angles < 1e-10);
 }
 
+// Whichever bearing it is in, or friction of the rotor alone.
+BOOST_AUTO_TEST_CASE(is_looked_at_for_stiffness_wherever_it_is_damped) {
+  const auto taken = [](const CardanBearings& bearings, double friction) {
+    const CardanGyro gyro(moments, bearings, RestingFrame<>{}, FreeRotor{friction});
+    BOOST_TEST(gyro.is_damped() ==
+               (friction != 0 || bearings.outer.damping != 0 || bearings.inner.damping != 0));
+    return solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500}, {.times = {1}, .tolerance = 1e-8})
+        .report.method;
+  };
+  BOOST_TEST(taken({{}, {1e9, 2e6, reference_angle}}, 0) == "radau13");
+  BOOST_TEST(taken({{1e9, 2e6}, {0, 0, reference_angle}}, 0) == "radau13");
+  BOOST_TEST(taken({{}, {0, 0, reference_angle}}, 1e3) == "radau13");
+  BOOST_TEST(taken({{}, {0, 0, reference_angle}}, 0) == "taylor");
+}
+
 // Half a last digit that a sum of moments is rounded by is 2.4e-12 rad after 7e4 rad of a spring's
 // oscillation, in every run alike.
 BOOST_AUTO_TEST_CASE(without_damping_knows_what_rounding_makes_of_its_phase) {

@@ -360,6 +360,24 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
   BOOST_TEST(std::abs(angle_at_5(0.3) - (5.2 - 0.15 * 25)) <= 1e-11);
 }
 
+// Without gravity, on a guide that turns about an axis across, twice its angle is a pendulum's.
+BOOST_AUTO_TEST_CASE(swings_about_across_the_axis_that_its_guide_turns_about) {
+  constexpr double u = 2;
+  const exact::PendulumMotion truth(u * u, 0.8, 0);  // Theta_B = Theta_C, Theta_A = 0
+  for (const double axis : {std::acos(0.0), std::acos(0.0) / 2}) {
+    const PhysicalPendulum weightless(
+        rod, PendulumGuide<>{.angular_velocity = {u * std::cos(axis), u * std::sin(axis), 0}});
+    const double middle = axis - std::acos(0.0);
+    const auto run =
+        solve(weightless, {.angle = middle + 0.4}, {.times = {1, 20}, .tolerance = 1e-12});
+    BOOST_TEST(run.report.method == "energy integral, Fourier series");
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double found = 2 * (run.states[i].angle - middle);
+      BOOST_TEST(std::abs(found - truth.at(run.times[i]).angle) <= 4e-15);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
   BOOST_CHECK_THROW(PhysicalPendulum({.arm = -1}, room), InvalidInput);
   BOOST_CHECK_THROW(PhysicalPendulum({.arm = 1, .theta_c = 0.5}, room), InvalidInput);
