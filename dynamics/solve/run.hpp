@@ -46,13 +46,10 @@ class Run {
 
 class SteppedScene;
 
-/// Of explicit steps, for which a field may prove stiff.
-class ExplicitRun : public Run {
+/// Of steps for which a field may prove stiff.
+class LookingRun : public Run {
  public:
-  ExplicitRun(const SteppedScene& scene, bool other) : scene_(scene), other_(other) {}
-
-  /// One step towards `end`; the time reached.
-  virtual double step_towards(double end) = 0;
+  LookingRun(const SteppedScene& scene, bool other) : scene_(scene), other_(other) {}
 
   [[nodiscard]] bool stiff() const override { return stiff_; }
 
@@ -68,6 +65,15 @@ class ExplicitRun : public Run {
   const SteppedScene& scene_;
   bool other_;
   bool stiff_ = false;
+};
+
+/// Of explicit steps.
+class ExplicitRun : public LookingRun {
+ public:
+  using LookingRun::LookingRun;
+
+  /// One step towards `end`; the time reached.
+  virtual double step_towards(double end) = 0;
 };
 
 /// The length of equal steps, all of which end at the output times.

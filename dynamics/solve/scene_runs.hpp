@@ -85,10 +85,10 @@ class RunOfExplicitSteps final : public ExplicitRun {
 };
 
 template <class Steps>
-class RunOfTaylorSteps final : public ExplicitRun {
+class RunOfTaylorSteps final : public LookingRun {
  public:
   RunOfTaylorSteps(const SteppedScene& scene, bool other, bool looks, Steps steps)
-      : ExplicitRun(scene, other), looks_(looks), steps_(std::move(steps)) {}
+      : LookingRun(scene, other), looks_(looks), steps_(std::move(steps)) {}
 
   void on_the_way(double t, double end, double* y) override {
     while (!steps_.covers(t)) {
@@ -100,11 +100,6 @@ class RunOfTaylorSteps final : public ExplicitRun {
       if (proves_stiff(steps_.t(), {y, components}, end, false, steps_.length())) return;
     }
     write(y, steps_.at(t));
-  }
-
-  double step_towards(double end) override {
-    steps_.step_towards(end);
-    return steps_.t();
   }
 
   [[nodiscard]] const Effort& effort() const override { return steps_.effort(); }

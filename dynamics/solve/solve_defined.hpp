@@ -59,8 +59,8 @@ KREISEL_DECLARED [[nodiscard]] bool is_stiff(const std::complex<double>& fastest
 
 // A series of order 20 to rounding follows what oscillates in steps of 2 radians, and becomes
 // unstable in steps of 7 times a damped one's time.
-KREISEL_DEFINED bool ExplicitRun::proves_stiff(double t, std::span<const double> y, double end,
-                                               bool short_steps, double length) {
+KREISEL_DEFINED bool LookingRun::proves_stiff(double t, std::span<const double> y, double end,
+                                              bool short_steps, double length) {
   const std::complex<double> rate = fastest_rate(scene_, other_, t, y);
   stiff_ = is_stiff(rate, std::abs(end - t), short_steps || std::abs(rate) * length > 4);
   return stiff_;
