@@ -100,7 +100,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     const auto run = [&](double relative, double digits) {
       auto from = starts;
       for (auto& start : from) start = off_by_last_digits(scene, start, digits);
-      PackedAdvance<Scene, N> made(scene, task.begin, from, runs.accuracy(relative));
+      PackedAdvance<Scene, N> made(scene, task.begin, from, runs.accuracy(relative, digits != 0));
       made.stop_at(task.jumps);
       return made;
     };
@@ -160,8 +160,9 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     }
     spent += coarse.effort().evaluations;
     for (const Beside& other : others) spent += other.steps.effort().evaluations;
-    if (worst > task.tolerance && !last_try) {
-      const bool stays = missed.stays(runs, setting);
+    const bool by_chance = worst <= task.tolerance && missed.falls_by_chance(runs, setting);
+    if ((worst > task.tolerance || by_chance) && !last_try) {
+      const bool stays = by_chance || missed.stays(runs, setting);
       if (missed.error == 0) missed = {setting, output, worst};
       setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (3 * worst));
       continue;

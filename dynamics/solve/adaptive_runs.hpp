@@ -81,8 +81,13 @@ class AdaptiveRuns {
     return allowed(accuracy * std::clamp(ratio, 1e-4, 0.2));
   }
 
-  [[nodiscard]] Accuracy accuracy(double relative) const {
-    return {relative, task_.smallest, task_.most_evaluations};
+  /// Of a run, or of one beside it that starts some last digits away: that one is shaken too, for two
+  /// that are no more than rounded agree by chance where rounding grows to about the tolerance. Not
+  /// at the finest, where what rounding makes is what is asked.
+  [[nodiscard]] Accuracy accuracy(double relative, bool moved) const {
+    constexpr double digits = 10;
+    return {relative, task_.smallest, task_.most_evaluations,
+            moved && !last(relative) ? digits : 0};
   }
 
  private:

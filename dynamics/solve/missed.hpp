@@ -25,6 +25,12 @@ struct Missed {
     return error > 0 && now < 0.1 && now > 10 * error * runs.falls(setting, at);
   }
 
+  /// Whether they seem to err by much less: then it was rounding too, and two runs agree by chance.
+  template <class Runs>
+  [[nodiscard]] bool falls_by_chance(const Runs& runs, const Setting& at) const {
+    return error > 0 && now < 0.1 * error * runs.falls(setting, at);
+  }
+
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
     bookmark(setting, output, error, now);

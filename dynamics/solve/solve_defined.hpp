@@ -118,8 +118,9 @@ KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(const SteppedScene& scene, c
 
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs, double setting,
                                                         const SteppedScene& scene, const Task& task,
-                                                        const Eigen::VectorXd& start, bool other) {
-  const Accuracy accuracy = runs.accuracy(setting);
+                                                        const Eigen::VectorXd& start, bool moved) {
+  const bool other = moved && scene.has_other();
+  const Accuracy accuracy = runs.accuracy(setting, moved);
   if (runs.method() == Method::taylor) return scene.taylor_run(task, start, accuracy, other);
   if (runs.method() != Method::radau13) return scene.explicit_run(task, start, accuracy, other);
   RadauIntegrator steps(radau_coefficients<7>(), task.begin, start, accuracy, scene.blocks());
@@ -130,7 +131,8 @@ KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs,
                                                         const EqualLength& length,
                                                         const SteppedScene& scene, const Task& task,
-                                                        const Eigen::VectorXd& start, bool other) {
+                                                        const Eigen::VectorXd& start, bool moved) {
+  const bool other = moved && scene.has_other();
   if (runs.method() == Method::gauss16) return scene.gauss_run(task, start, length, other);
   return std::make_unique<SplittingRun>(
       *scene.top(), task, EulerTop::from_vector(vector_of<EulerTop::Vector>(start)), length);
@@ -263,8 +265,8 @@ struct Account {
 
 /// Two integrations run side by side, the steps of one held many times more exact than the other's;
 /// the coarser one is returned, with the error that the pair tells of. One of them starts a last
-/// digit away, or as many as rounding has taken by the end, so that the pair also tells what that
-/// grows to: near a separatrix steps of any length round the same digits away. Where the error
+/// digit away, or as many as rounding has taken by the end, and is shaken on its way, so that the
+/// pair also tells what that grows to: near a separatrix steps of any length round the same digits away. Where the error
 /// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
 /// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
 /// are tried until two agree by chance would tell nothing: a third is held beside them where, after a
@@ -290,8 +292,7 @@ template <class Runs>
   const auto run_with = [&](const auto& s, double moved) {
     Eigen::VectorXd from = start;
     if (moved != 0) move_last_digits(from, moved);
-    return RunSoFar(run(runs, s, scene, task, from, moved != 0 && scene.has_other()), start.size(),
-                    moved);
+    return RunSoFar(run(runs, s, scene, task, from, moved != 0), start.size(), moved);
   };
   // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
   // somewhere else than the others, beside which it may go on.
@@ -410,7 +411,9 @@ template <class Runs>
     const double lost = runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
     if (too_close) digits = lost;
-    const bool stays = too_coarse && missed.stays(runs, setting);
+    const bool by_chance = !too_coarse && !last_try && report.status == RunStatus::complete &&
+                           missed.falls_by_chance(runs, setting);
+    const bool stays = by_chance || (too_coarse && missed.stays(runs, setting));
     if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
     const bool finer_will_do = !stays && expected < runs.finer_by(setting) * task.tolerance &&
                                digits <= 1 && !scene.has_other();
@@ -427,9 +430,9 @@ template <class Runs>
     }
     account.spent += fine->effort().evaluations;
     // What the digits grow to may hide what the steps err by.
-    if (too_coarse || (too_close && report.status == RunStatus::complete)) {
-      known = too_coarse ? 0 : report.error_estimate;
-      if (too_coarse) {
+    if (too_coarse || by_chance || (too_close && report.status == RunStatus::complete)) {
+      known = too_coarse || by_chance ? 0 : report.error_estimate;
+      if (too_coarse || by_chance) {
         setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (2 * expected));
       }
       coarse_starts_off = false;

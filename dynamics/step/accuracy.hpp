@@ -25,6 +25,11 @@ struct Accuracy {
 
   /// Evaluations of the field after which the integration gives up.
   double most_evaluations = 1e8;
+
+  /// By how many of its last digits the change in each step is made wrong, up or down at random
+  /// (ExplicitSteps, TaylorSteps). Beside a run that is not shaken, one that is tells what rounding
+  /// grows to.
+  double shaken = 0;
 };
 
 /// What an integration has cost so far.
@@ -50,6 +55,9 @@ inline void check(const Accuracy& accuracy, double least = 1e-16) {
   }
   if (!(accuracy.most_evaluations > 0)) {
     refuse_steps("accuracy.most_evaluations = ", accuracy.most_evaluations, " must be above 0");
+  }
+  if (!(accuracy.shaken >= 0 && std::isfinite(accuracy.shaken))) {
+    refuse_steps("accuracy.shaken = ", accuracy.shaken, " must be a finite number of 0 or above");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -111,6 +112,27 @@ void move_last_digits(Vector& y, double by) {
   for (int i = 0; i < int(y.size()); ++i) {
     const Number moved = part * y[i];
     y[i] += i % 2 == 0 ? moved : Number(-moved);
+  }
+}
+
+/// Makes the change in a step wrong by so many of its last digits, each component up or down at
+/// random. The same step goes the same way again.
+///
+/// Source : the random bits: G. Steele, D. Lea, C. Flood, Fast splittable pseudorandom number
+///          generators, OOPSLA 2014 (SplitMix64)
+template <class Vector>
+void shake(Vector& change, double digits, double step) {
+  using Number = typename Vector::Scalar;
+  using Scalar = ScalarOf<Number>;
+  if (digits == 0) return;
+  std::uint64_t bits = (static_cast<std::uint64_t>(step) + 1) * 0x9E3779B97F4A7C15U;
+  bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
+  bits ^= bits >> 31U;
+  const Scalar part = Scalar(digits) * std::numeric_limits<Scalar>::epsilon();
+  for (int i = 0; i < int(change.size()); ++i) {
+    const bool up = ((bits >> (static_cast<unsigned>(i) % 64U)) & 1U) != 0;
+    change[i] += Number(up ? part : -part) * change[i];
   }
 }
 

@@ -79,7 +79,9 @@ class TaylorSteps {
       detail::stop_integration(t(), "the step has become too short to move time on");
     }
     before_ = {time_, state_};
-    state_.add(change(h / scale_));
+    Vector all = change(h / scale_);
+    detail::shake(all, accuracy_.shaken, effort_.steps);
+    state_.add(all);
     if (!detail::finite(y())) {
       state_ = before_.state;
       detail::stop_integration(t(), "the field is not finite");

@@ -203,8 +203,30 @@ BOOST_AUTO_TEST_CASE(takes_another_unit_where_a_motion_sets_in_after_a_long_rest
   BOOST_TEST(near(steps.y()[1], std::sin(10.0), 1.0, 40));
 }
 
+// 10 digits of the change in each step, up or down, are a random walk.
+BOOST_AUTO_TEST_CASE(goes_off_by_the_digits_that_it_is_shaken_by) {
+  const Vector y(1, 0);
+  const auto went = [&](double digits) {
+    TaylorSteps steps(Circle{}, 0, y, {.relative = 1e-12, .shaken = digits});
+    steps.advance_to(500);
+    return steps;
+  };
+  const auto calm = went(0);
+  const auto shaken = went(10);
+  const double step = 500 / calm.effort().steps;
+  const double walk =
+      10 * std::numeric_limits<double>::epsilon() * step * std::sqrt(calm.effort().steps);
+  const double off = (shaken.y() - calm.y()).norm();
+  BOOST_TEST_MESSAGE("off by " << off / walk << " of the walk's length");
+  BOOST_TEST(off > 0.1 * walk);
+  BOOST_TEST(off < 3 * walk);
+  BOOST_TEST(went(10).y() == shaken.y());
+}
+
 BOOST_AUTO_TEST_CASE(refuses_what_is_none) {
   const Vector y(1, 0);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.shaken = -1}), InvalidInput);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.shaken = not_a_number}), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, not_a_number, y), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, Vector(1, not_a_number)), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.relative = 1e-21}), InvalidInput);
