@@ -266,13 +266,13 @@ struct Account {
 /// Two integrations run side by side, the steps of one held many times more exact than the other's;
 /// the coarser one is returned, with the error that the pair tells of. One of them starts a last
 /// digit away, or as many as rounding has taken by the end, and is shaken on its way, so that the
-/// pair also tells what that grows to: near a separatrix steps of any length round the same digits away. Where the error
-/// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
-/// finer still; or both begin again, where that would not do; until rounding stops it. Pairs that
-/// are tried until two agree by chance would tell nothing: a third is held beside them where, after a
-/// miss, steps are so fine that what they err by may be rounding; and where the error does not fall as
-/// the steps do, the finest are taken at once, and four of them; or six, where rounding grows to more
-/// than the tolerance.
+/// pair also tells what that grows to: near a separatrix steps of any length round the same digits
+/// away. Where the error exceeds the tolerance, or is on its way to, the finer run takes the
+/// coarser's place beside one finer still; or both begin again, where that would not do; until
+/// rounding stops it. Pairs that are tried until two agree by chance would tell nothing: a third is
+/// held beside them where, after a miss, steps are so fine that what they err by may be rounding; and
+/// where the error does not fall as the steps do, or falls much faster, the finest are taken at once,
+/// and four of them; or six, where rounding grows to more than the tolerance.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///

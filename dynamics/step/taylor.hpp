@@ -79,9 +79,9 @@ class TaylorSteps {
       detail::stop_integration(t(), "the step has become too short to move time on");
     }
     before_ = {time_, state_};
-    Vector all = change(h / scale_);
-    detail::shake(all, accuracy_.shaken, effort_.steps);
-    state_.add(all);
+    Vector increment = change(h / scale_);
+    detail::shake(increment, accuracy_.shaken, effort_.steps);
+    state_.add(increment);
     if (!detail::finite(y())) {
       state_ = before_.state;
       detail::stop_integration(t(), "the field is not finite");
