@@ -127,7 +127,8 @@ BOOST_AUTO_TEST_CASE(goes_where_each_member_goes_alone) {
 }
 
 // Scenes of one kind with other moments of inertia lie side by side in a pack. Each keeps to its own
-// estimate, whether it does or not; moments mixed up between lanes would turn each another way.
+// estimate, whether it does or not, but for one in 60 of some last digits; moments mixed up between
+// lanes would turn each another way.
 BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
   static_assert(detail::lies_side_by_side<Gyro, Pack>);
   static_assert(detail::lies_side_by_side<EulerTop, Pack>);
@@ -166,11 +167,11 @@ BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
         const double error =
             distance(Scene::to_vector(states[k]), Scene::to_vector(truth.to(times[k])));
         beyond += error > report.error_estimate ? 1 : 0;
-        BOOST_TEST(error <= 2 * report.error_estimate);
+        BOOST_TEST(error <= 1.1 * report.error_estimate);
       }
       BOOST_TEST(report.error_estimate <= task.tolerance);
     }
-    BOOST_TEST(beyond <= 3);
+    BOOST_TEST(beyond <= 1);
     // A pack has one course of steps.
     BOOST_TEST(result.members[0].report.effort.evaluations ==
                result.members[Pack::lanes - 1].report.effort.evaluations);

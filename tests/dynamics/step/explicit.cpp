@@ -11,6 +11,7 @@
 #include <dynamics/step/explicit.hpp>
 
 #include <support/near.hpp>
+#include <support/shaken.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
@@ -319,26 +320,19 @@ BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
 
 // 10 digits of the change in each step, up or down, are a random walk; what rests is left at rest.
 BOOST_AUTO_TEST_CASE(go_off_by_the_digits_that_they_are_shaken_by) {
-  const auto field = [](double, const Eigen::Vector3d& y) {
-    return Eigen::Vector3d(y[1], -y[0], y[2]);
+  const auto made = [](double digits) {
+    const auto field = [](double, const Eigen::Vector3d& y) {
+      return Eigen::Vector3d(y[1], -y[0], y[2]);
+    };
+    return ExplicitSteps(field, 0.0, Eigen::Vector3d(1, 0, 0),
+                         {.relative = 1e-12, .shaken = digits});
   };
-  const auto went = [&](double digits) {
-    ExplicitSteps steps(field, 0.0, Eigen::Vector3d(1, 0, 0),
-                        {.relative = 1e-12, .shaken = digits});
-    steps.advance_to(500);
-    return steps;
-  };
-  const auto calm = went(0);
-  const auto shaken = went(10);
-  const double step = 500 / calm.effort().steps;
-  const double walk =
-      10 * std::numeric_limits<double>::epsilon() * step * std::sqrt(calm.effort().steps);
-  const double off = (shaken.y() - calm.y()).norm();
-  BOOST_TEST_MESSAGE("off by " << off / walk << " of the walk's length");
-  BOOST_TEST(off > 0.1 * walk);
-  BOOST_TEST(off < 3 * walk);
-  BOOST_TEST(shaken.y()[2] == 0);
-  BOOST_TEST((went(10).y() == shaken.y()));
+  const double off = test::shaken_off(made, 500);
+  BOOST_TEST_MESSAGE("off by " << off << " of the walk's length");
+  BOOST_TEST(off > 0.1);
+  BOOST_TEST(off < 3);
+  BOOST_TEST(test::shaken_off(made, 500) == off);
+  BOOST_TEST(made(10).advance_to(500)[2] == 0);
 }
 
 BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {

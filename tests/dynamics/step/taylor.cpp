@@ -10,6 +10,7 @@
 #include <dynamics/step/taylor.hpp>
 
 #include <support/near.hpp>
+#include <support/shaken.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -205,22 +206,14 @@ BOOST_AUTO_TEST_CASE(takes_another_unit_where_a_motion_sets_in_after_a_long_rest
 
 // 10 digits of the change in each step, up or down, are a random walk.
 BOOST_AUTO_TEST_CASE(goes_off_by_the_digits_that_it_is_shaken_by) {
-  const Vector y(1, 0);
-  const auto went = [&](double digits) {
-    TaylorSteps steps(Circle{}, 0, y, {.relative = 1e-12, .shaken = digits});
-    steps.advance_to(500);
-    return steps;
+  const auto made = [](double digits) {
+    return TaylorSteps(Circle{}, 0, Vector(1, 0), {.relative = 1e-12, .shaken = digits});
   };
-  const auto calm = went(0);
-  const auto shaken = went(10);
-  const double step = 500 / calm.effort().steps;
-  const double walk =
-      10 * std::numeric_limits<double>::epsilon() * step * std::sqrt(calm.effort().steps);
-  const double off = (shaken.y() - calm.y()).norm();
-  BOOST_TEST_MESSAGE("off by " << off / walk << " of the walk's length");
-  BOOST_TEST(off > 0.1 * walk);
-  BOOST_TEST(off < 3 * walk);
-  BOOST_TEST(went(10).y() == shaken.y());
+  const double off = test::shaken_off(made, 500);
+  BOOST_TEST_MESSAGE("off by " << off << " of the walk's length");
+  BOOST_TEST(off > 0.1);
+  BOOST_TEST(off < 3);
+  BOOST_TEST(test::shaken_off(made, 500) == off);
 }
 
 BOOST_AUTO_TEST_CASE(refuses_what_is_none) {
