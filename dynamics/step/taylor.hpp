@@ -183,7 +183,7 @@ class TaylorSteps {
   /// How far the series carries, in units of its time.
   [[nodiscard]] double reached_from_here() const {
     const double reach = reached(1);
-    // What a unit that is none, the first one or that of a long rest, would change is no measure.
+    // By a unit that is no step's length, a guess or a long rest's, the change is no measure.
     const bool misjudged = effort_.steps == 0 || reach < 0.5;
     return misjudged ? reached(std::min(reach, 1.0)) : reach;
   }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <dynamics/exact/free_top.hpp>
@@ -18,6 +19,8 @@
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/scene/held_body.hpp>
+#include <dynamics/solve/adaptive_runs.hpp>
+#include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <motor/attitude.hpp>
@@ -665,6 +668,22 @@ BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
   BOOST_TEST_MESSAGE(broken << " of " << kept << " promises broken");
   BOOST_TEST(kept > 100);
   BOOST_TEST(broken * 20 <= kept);
+}
+
+// Ten times finer steps err by a tenth. By much more it is rounding, and by much less rounding too, of
+// which two runs agree by chance; of an error as great as the motion nothing is known.
+BOOST_AUTO_TEST_CASE(takes_an_error_that_does_not_fall_as_steps_do_for_rounding) {
+  const Task task{.times = {1}, .tolerance = 1e-8};
+  const detail::AdaptiveRuns runs(task);
+  const auto judged = [&](double error, double now) {
+    const detail::Missed<double> missed{.setting = 1e-9, .error = error, .now = now};
+    return std::pair(missed.stays(runs, 1e-10), missed.falls_by_chance(runs, 1e-10));
+  };
+  BOOST_TEST((judged(1e-6, 1e-7) == std::pair(false, false)));
+  BOOST_TEST((judged(1e-6, 2e-6) == std::pair(true, false)));
+  BOOST_TEST((judged(1e-6, 5e-9) == std::pair(false, true)));
+  BOOST_TEST((judged(0.1, 0.2) == std::pair(false, false)));
+  BOOST_TEST((judged(0, 1e-12) == std::pair(false, false)));
 }
 
 // A tolerance of 1e-6 is about what rounding has grown to. Pairs that are tried until two agree do so in
