@@ -77,6 +77,50 @@ template <class Run>
   return true;
 }
 
+/// What rounding grows to in each member, told as GrownRounding of solve() does.
+template <class Scene, class N>
+class GrownRoundingOfMembers {
+ public:
+  using Values = std::array<double, std::size_t(lanes_of<N>)>;
+
+  GrownRoundingOfMembers(const Scene& scene, double smallest, PackedAdvance<Scene, N> calm,
+                         PackedAdvance<Scene, N> shaken)
+      : scene_(scene),
+        calm_(std::move(calm)),
+        shaken_(std::move(shaken)),
+        distance_(std::size_t(lanes_of<N>), {scene, smallest}) {}
+
+  /// At t, times being asked for in turn; 0 where steps so coarse come to an end, or are to stop.
+  [[nodiscard]] Values at(double t, double end, const std::atomic<bool>& stop) {
+    Values grown{};
+    if (gave_up_) return grown;
+    try {
+      if (!go_on(calm_, t, end, stop) || !go_on(shaken_, t, end, stop)) return grown;
+      const auto a = calm_.at(t);
+      const auto b = shaken_.at(t);
+      for (std::size_t k = 0; k < grown.size(); ++k) {
+        const double off = distance_[k](scene_.to_vector(a[k]), scene_.to_vector(b[k]));
+        gave_up_ = gave_up_ || !std::isfinite(off);
+        grown[k] = gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
+      }
+    } catch (...) {  // what a load or a guide throws there is no fault of the answer
+      gave_up_ = true;
+    }
+    return grown;
+  }
+
+  [[nodiscard]] double evaluations() const {
+    return calm_.effort().evaluations + shaken_.effort().evaluations;
+  }
+
+ private:
+  const Scene& scene_;
+  PackedAdvance<Scene, N> calm_;
+  PackedAdvance<Scene, N> shaken_;
+  std::vector<ErrorMeasure<Scene>> distance_;
+  bool gave_up_ = false;
+};
+
 /// Members side by side through all output times, each beside a finer one, as solve() does with
 /// one; those that are nullptr fill a pack up.
 ///
@@ -85,7 +129,6 @@ template <class N, class Scene>
 void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
             const Task& task, bool estimates_errors, const std::atomic<bool>& stop,
             const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
-  constexpr double rounding = 2.5;
   const AdaptiveRuns runs(task);
   const double end = task.times.back();
   struct Beside {
@@ -94,13 +137,15 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
   };
   double setting = runs.first();
   Missed<double> missed{setting};
+  std::array<double, std::size_t(lanes_of<N>)> grown_to{};  // by rounding, in any try
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
-    const auto run = [&](double relative, double digits) {
+    const auto run = [&](double relative, double digits, double shaken = 0) {
       auto from = starts;
       for (auto& start : from) start = off_by_last_digits(scene, start, digits);
-      PackedAdvance<Scene, N> made(scene, task.begin, from, runs.accuracy(relative, digits != 0));
+      const Accuracy accuracy{relative, task.smallest, task.most_evaluations, shaken};
+      PackedAdvance<Scene, N> made(scene, task.begin, from, accuracy);
       made.stop_at(task.jumps);
       return made;
     };
@@ -115,6 +160,12 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(task));
       put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(task));
     }
+    std::optional<GrownRoundingOfMembers<Scene, N>> rounding;
+    if (estimates_errors && runs.can_look_for_rounding(setting, missed.error > 0)) {
+      const double cheap = runs.cheap(setting);
+      rounding.emplace(scene, task.smallest, run(cheap, 0),
+                       run(cheap, 0, AdaptiveRuns::shaken_digits));
+    }
     std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, task.smallest});
     for (auto* member : members) {
       if (!member) continue;
@@ -127,6 +178,8 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       }
     }
     double worst = 0;
+    bool rounds_too_much = false;
+    bool too_coarse = false;
     std::size_t output = 0;
     for (const double t : task.times) {
       if (!go_on(coarse, t, end, stop)) return;
@@ -142,15 +195,25 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
           off[k] = worse(off[k], distance[k](y, scene.to_vector(beside[k])));
         }
       }
+      if (rounding) {
+        const auto grown = rounding->at(t, end, stop);
+        for (std::size_t k = 0; k < grown.size(); ++k) {
+          if (members[k]) grown_to[k] = worse(grown_to[k], grown[k]);
+        }
+      }
+      const double grown_most = *std::max_element(grown_to.begin(), grown_to.end());
+      rounds_too_much = runs.may_round_too_much(grown_most);
       for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
         if (!members[k]) continue;
+        const double noise = worse(coarse.noise(), grown_to[k]);
         double& estimate = members[k]->report.error_estimate;
-        estimate = worse(estimate, error_of_pair(off[k], runs.finer_by(setting), rounding,
-                                                 coarse.effort().steps, coarse.noise()));
+        estimate = worse(estimate, error_of_pair(off[k], runs.finer_by(setting), runs.rounding(),
+                                                 coarse.effort().steps, noise));
         worst = worse(worst, estimate);
       }
       missed.note(output, worst);
-      if (worst > task.tolerance && !last_try) break;
+      too_coarse = !last_try && (worst > task.tolerance || rounds_too_much);
+      if (too_coarse) break;
       ++output;
       for (std::size_t k = 0; k < members.size(); ++k) {
         if (!members[k]) continue;
@@ -160,9 +223,9 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     }
     spent += coarse.effort().evaluations;
     for (const Beside& other : others) spent += other.steps.effort().evaluations;
-    const bool by_chance = worst <= task.tolerance && missed.falls_by_chance(runs, setting);
-    if ((worst > task.tolerance || by_chance) && !last_try) {
-      const bool stays = by_chance || missed.stays(runs, setting);
+    if (rounding) spent += rounding->evaluations();
+    if (too_coarse) {
+      const bool stays = rounds_too_much || missed.stays(runs, setting);
       if (missed.error == 0) missed = {setting, output, worst};
       setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (3 * worst));
       continue;

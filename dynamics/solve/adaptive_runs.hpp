@@ -19,6 +19,9 @@
 ///   may_be_rounding(x)     whether what steps at x err by, after others that erred by too much, may be
 ///                          rounding that has grown
 ///   begins_near_rounding() whether the first setting errs by little more than rounding
+///   shakes()               whether one of a pair is shaken, by pair_digits()
+///   of_pair(r)             what it is off by for that, where rounding grows to r
+///   can_look_for_rounding(x, missed)  whether GrownRounding can tell r
 ///   rounding()             of one step where nothing grows, in units of 2^-53
 ///   finer_by(x)            how many times finer that is
 ///   goes_on(x)             whether the finer run may become the coarser one of the next pair
@@ -81,16 +84,44 @@ class AdaptiveRuns {
     return allowed(accuracy * std::clamp(ratio, 1e-4, 0.2));
   }
 
-  /// Of a run, or of one beside it that starts some last digits away: that one is shaken too, for two
-  /// that are no more than rounded agree by chance where rounding grows to about the tolerance. Not
-  /// at the finest, where what rounding makes is what is asked.
-  [[nodiscard]] Accuracy accuracy(double relative, bool moved) const {
-    constexpr double digits = 10;
-    return {relative, task_.smallest, task_.most_evaluations,
-            moved && !last(relative) ? digits : 0};
+  /// Whether pairs are shaken, and by how many digits: more than steps are rounded, so that two runs
+  /// hardly ever agree by chance where rounding grows to the tolerance; and so few that it does not
+  /// count where nothing grows.
+  [[nodiscard]] bool shakes() const { return method_ != Method::radau13 && digits_off(task_) > 0; }
+  [[nodiscard]] double pair_digits() const { return std::min(100.0, task_.tolerance / 1e-11); }
+
+  /// Whether two more runs can tell what rounding grows to, of which one is shaken. They err by some
+  /// 1e-2, so that they cost little and take about the same way. Who asks for less than 1e-7 would pay
+  /// most, and is hardly ever led astray.
+  [[nodiscard]] bool can_look_for_rounding(double accuracy, bool missed) const {
+    const bool pays = method_ != Method::radau13 && task_.tolerance <= 1e-7;
+    return pays && (missed || !last(accuracy));
+  }
+  [[nodiscard]] double cheap(double accuracy) const {
+    return std::min(1e-2 / task_.tolerance * accuracy, 1e-3);
+  }
+
+  /// By far more digits than steps are rounded, and far less than they err by.
+  static constexpr double shaken_digits = 1000;
+
+  /// What rounding, which makes a step wrong by 0.2 to 0.7 digits, grows to, of what those grow to; and
+  /// what a pair that is shaken is off by, of what rounding grows to.
+  [[nodiscard]] static double rounding_of(double off) {
+    return rounding_digits / shaken_digits * off;
+  }
+  [[nodiscard]] double of_pair(double rounding) const {
+    return pair_digits() / rounding_digits * rounding;
+  }
+
+  /// Whether that says too little of it: both are random, and one may be so many times the other.
+  [[nodiscard]] bool may_round_too_much(double grown_to) const {
+    constexpr double not_at_all = 1e-13;
+    return grown_to > not_at_all && 12 * grown_to > task_.tolerance;
   }
 
  private:
+  static constexpr double rounding_digits = 0.5;
+
   static constexpr double near_rounding = 4e-16;
 
   /// Of an explicit method of order 9 ten times, for 1.29 times the steps. What the coarser errs by is

@@ -39,6 +39,12 @@ class FixedRuns {
   }
   [[nodiscard]] EqualLength finest() const { return {shortest_}; }
   [[nodiscard]] static bool may_be_rounding(const EqualLength& /*step*/) { return false; }
+  [[nodiscard]] static bool shakes() { return false; }
+  [[nodiscard]] static double pair_digits() { return 0; }
+  [[nodiscard]] static double of_pair(double /*rounding*/) { return 0; }
+  [[nodiscard]] static bool can_look_for_rounding(const EqualLength& /*step*/, bool /*missed*/) {
+    return false;
+  }
   [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
   [[nodiscard]] double falls(const EqualLength& from, const EqualLength& to) const {
     return std::pow(to.longest / from.longest, 1 / root_);

@@ -22,11 +22,11 @@ namespace kreisel {
 ///          (tests/dynamics/solve/solve.cpp); docs/promises.md tells where that ends. Where the
 ///          tolerance cannot be reached the best is returned and RunReport::tolerance_kept is false
 /// Cost   : by steps 2.3 times the integration alone, 3.4 times by gauss16, reported as
-///          all_evaluations; 2.8 to 3.1 times where the first pair of runs errs too much, more than
-///          5 in 1 % of 1620 runs at 1e-12 and above; twice that where so many steps near the last
-///          digits are taken that rounding outgrows them. Where the tolerance is missed `automatic`
-///          may try another method. Outputs take ten evaluations in each step that has some, by
-///          series none
+///          all_evaluations; 0.3 to 0.8 more to 1e-11 and finer, or to 1e-7 where the first pair of
+///          runs does not agree to an eighth of the tolerance; 2.8 to 4.6 times where that errs too
+///          much; twice that where so many steps near the last digits are taken that rounding outgrows
+///          them. Where the tolerance is missed `automatic` may try another method. Outputs take ten
+///          evaluations in each step that has some, by series none
 /// Throws : InvalidInput for a task that is none or a method that does not fit the scene. What
 ///          fails on the way is told by the report, with the trajectory up to there
 template <class Scene>

@@ -118,9 +118,10 @@ KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(const SteppedScene& scene, c
 
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs, double setting,
                                                         const SteppedScene& scene, const Task& task,
-                                                        const Eigen::VectorXd& start, bool moved) {
+                                                        const Eigen::VectorXd& start, bool moved,
+                                                        double shaken = 0) {
   const bool other = moved && scene.has_other();
-  const Accuracy accuracy = runs.accuracy(setting, moved);
+  const Accuracy accuracy{setting, task.smallest, task.most_evaluations, shaken};
   if (runs.method() == Method::taylor) return scene.taylor_run(task, start, accuracy, other);
   if (runs.method() != Method::radau13) return scene.explicit_run(task, start, accuracy, other);
   RadauIntegrator steps(radau_coefficients<7>(), task.begin, start, accuracy, scene.blocks());
@@ -131,7 +132,8 @@ KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs,
                                                         const EqualLength& length,
                                                         const SteppedScene& scene, const Task& task,
-                                                        const Eigen::VectorXd& start, bool moved) {
+                                                        const Eigen::VectorXd& start, bool moved,
+                                                        double /*shaken*/ = 0) {
   const bool other = moved && scene.has_other();
   if (runs.method() == Method::gauss16) return scene.gauss_run(task, start, length, other);
   return std::make_unique<SplittingRun>(
@@ -249,6 +251,61 @@ class RunSoFar {
   std::vector<double> states_;  ///< one after another
 };
 
+/// What rounding grows to, told by two runs in steps that are coarse and cheap, of which one is
+/// shaken. Beside a separatrix it may be far more than what steps err by, which cancels there.
+class GrownRounding {
+ public:
+  GrownRounding(const AdaptiveRuns& runs, double setting, const SteppedScene& scene,
+                const Task& task, const Eigen::VectorXd& start)
+      : runs_(runs),
+        calm_(run(runs, runs.cheap(setting), scene, task, start, false)),
+        shaken_(
+            run(runs, runs.cheap(setting), scene, task, start, false, AdaptiveRuns::shaken_digits)),
+        calm_state_(start),
+        shaken_state_(start),
+        distance_(scene.blocks(), task.smallest) {}
+
+  /// At t, by the measure of RunReport::error_estimate; times are asked for in turn. 0 where steps so
+  /// coarse come to an end.
+  [[nodiscard]] double at(double t, double end) {
+    if (gave_up_) return 0;
+    try {
+      calm_->on_the_way(t, end, calm_state_.data());
+      shaken_->on_the_way(t, end, shaken_state_.data());
+    } catch (...) {  // what a load or a guide throws there is no fault of the answer
+      gave_up_ = true;
+      return 0;
+    }
+    const double off = distance_(components_of(calm_state_), components_of(shaken_state_));
+    gave_up_ = !std::isfinite(off);
+    return gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
+  }
+
+  [[nodiscard]] bool may_be_too_much(double grown_to) const {
+    return runs_.may_round_too_much(grown_to);
+  }
+
+  [[nodiscard]] bool stiff() const { return calm_->stiff() || shaken_->stiff(); }
+  [[nodiscard]] double evaluations() const {
+    return calm_->effort().evaluations + shaken_->effort().evaluations;
+  }
+
+  void pass(Bookmark& bookmark) {
+    bookmark(distance_, gave_up_);
+    calm_->pass(bookmark);
+    shaken_->pass(bookmark);
+  }
+
+ private:
+  const AdaptiveRuns& runs_;
+  std::unique_ptr<Run> calm_;
+  std::unique_ptr<Run> shaken_;
+  Eigen::VectorXd calm_state_;
+  Eigen::VectorXd shaken_state_;
+  BlockDistance distance_;
+  bool gave_up_ = false;
+};
+
 /// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
 /// tenfold.
 KREISEL_DECLARED [[nodiscard]] double forecast(const Task& task, double t, double error) {
@@ -265,14 +322,19 @@ struct Account {
 
 /// Two integrations run side by side, the steps of one held many times more exact than the other's;
 /// the coarser one is returned, with the error that the pair tells of. One of them starts a last
-/// digit away, or as many as rounding has taken by the end, and is shaken on its way, so that the
-/// pair also tells what that grows to: near a separatrix steps of any length round the same digits
-/// away. Where the error exceeds the tolerance, or is on its way to, the finer run takes the
-/// coarser's place beside one finer still; or both begin again, where that would not do; until
-/// rounding stops it. Pairs that are tried until two agree by chance would tell nothing: a third is
-/// held beside them where, after a miss, steps are so fine that what they err by may be rounding; and
-/// where the error does not fall as the steps do, or falls much faster, the finest are taken at once,
-/// and four of them; or six, where rounding grows to more than the tolerance.
+/// digit away, or as many as rounding has taken by the end, so that the pair also tells what that
+/// grows to: near a separatrix steps of any length round the same digits away. Where the error
+/// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
+/// finer still; or both begin again, where that would not do; until rounding stops it.
+///
+/// Where rounding grows to the tolerance two runs may agree by chance. Of explicit steps one of the
+/// first pair is shaken by more digits than are rounded; unless they agree to a part of the tolerance
+/// all the same, GrownRounding tells what rounding grows to, and both go on, the shaken one anew if it
+/// is off for that. Where rounding may exceed the tolerance, or the error does not fall as the steps
+/// do, the finest are taken at once. Of other steps pairs that are tried until two agree would tell
+/// nothing: a third is held beside them where, after a miss, steps are so fine that what they err by
+/// may be rounding; an error that falls much faster than the steps do is taken for rounding too; and
+/// the finest are four, or six where rounding grows to more than the tolerance.
 ///
 /// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
 ///
@@ -286,13 +348,18 @@ template <class Runs>
   Trajectory<double> result;
   const double end = task.times.back();
   double digits = digits_off(task);
-  double known = 0;  // of the error at this setting, from a try with fewer digits
+  double grown_to = 0;  // by rounding, in any try
+  double known = 0;     // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
   Missed<decltype(setting)> missed{setting};
+  // A scene with another one is held against that, and of stiff springs cheap steps tell nothing.
+  bool pair_is_shaken = runs.shakes() && !scene.has_other();
+  bool looks_for_rounding = !runs.shakes() && !scene.has_other();
   const auto run_with = [&](const auto& s, double moved) {
     Eigen::VectorXd from = start;
     if (moved != 0) move_last_digits(from, moved);
-    return RunSoFar(run(runs, s, scene, task, from, moved != 0), start.size(), moved);
+    const double shaken = pair_is_shaken && moved > 0 ? runs.pair_digits() : 0;
+    return RunSoFar(run(runs, s, scene, task, from, moved != 0, shaken), start.size(), moved);
   };
   // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
   // somewhere else than the others, beside which it may go on.
@@ -309,30 +376,40 @@ template <class Runs>
   const auto kind = static_cast<double>(runs.method());
   const auto pass_setting = [&](Bookmark& numbers) {
     double own = kind;
-    numbers(own, setting, missed, digits, account.spent, coarse_starts_off);
+    numbers(own, setting, missed, digits, account.spent, coarse_starts_off, pair_is_shaken,
+            looks_for_rounding);
     if (own != kind) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
-  std::optional coarse = run_with(setting, coarse_starts_off ? digits : 0);
+  std::optional<RunSoFar> coarse;
+  std::optional<RunSoFar> fine;
   while (true) {
     result = {};
+    const bool last_try = runs.last(setting);
     RunReport& report = result.report;
     report.method = name(runs.method());
     report.tolerance = task.tolerance;
     report.error_estimate = known;
     InvariantWatch watch(scene);
     BlockDistance distance(scene.blocks(), task.smallest);
-    const bool last_try = runs.last(setting);
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
     if (last_try) digits = std::max(digits, 3 * digits_off(task));
-    std::optional fine = run_with(runs.finer(setting), coarse_starts_off ? 0 : digits);
+    if (!coarse) coarse.emplace(run_with(setting, coarse_starts_off ? digits : 0));
+    if (!fine) fine.emplace(run_with(runs.finer(setting), coarse_starts_off ? 0 : digits));
+    std::optional<GrownRounding> rounding;
+    if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
+      if (looks_for_rounding && runs.can_look_for_rounding(setting, missed.error > 0)) {
+        rounding.emplace(runs, setting, scene, task, start);
+      }
+    }
     // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
     // steps of its own. Steps that begin near rounding and miss are near it in every later try.
     const bool near_rounding = last_try || (runs.begins_near_rounding() && missed.error > 0);
     const bool may_be_rounding =
         runs.begins_near_rounding() || (missed.error > 0 && runs.may_be_rounding(setting));
     const bool grown = last_try && digits_off(task) > 0;  // to far more than it is made by
-    const int more = grown ? 4 : near_rounding ? 2 : may_be_rounding ? 1 : 0;
+    const int more_alone = grown ? 4 : near_rounding ? 2 : may_be_rounding ? 1 : 0;
+    const int more = rounding ? (last_try ? 1 : 0) : more_alone;
     // What begins near rounding and comes near the tolerance is rounding that has grown: three runs
     // agree on that by chance more often than four.
     const bool surprises = runs.begins_near_rounding() && !near_rounding;
@@ -343,12 +420,17 @@ template <class Runs>
     }
     watch.note(task.begin, components_of(start));
     std::size_t done = 0;
+    const auto spend_on_others = [&] {
+      for (const RunSoFar& other : others) account.spent += other.effort().evaluations;
+      if (rounding) account.spent += rounding->evaluations();
+    };
     const auto pass_run = [&](Bookmark& numbers) {
       if (!has_bookmarks) return;
-      numbers(done, report.error_estimate, distance, watch);
+      numbers(done, report.error_estimate, grown_to, distance, watch);
       coarse->pass(done, numbers);
       fine->pass(done, numbers);
       for (RunSoFar& other : others) other.pass(done, numbers);
+      if (rounding) rounding->pass(numbers);
     };
     const auto bookmark_here = [&] {
       Bookmark numbers;
@@ -362,6 +444,7 @@ template <class Runs>
       from.reset();
     }
     double expected = 0;
+    bool rounds_too_much = false;
     bool too_coarse = false;
     try {
       while (done < task.times.size()) {
@@ -379,17 +462,26 @@ template <class Runs>
         };
         hold_beside(*fine);
         for (RunSoFar& other : others) hold_beside(other);
+        double noise = coarse->noise();
+        if (rounding && !stiff) {
+          const double now = rounding->at(t, end);
+          stiff = rounding->stiff();
+          noise = worse(noise, now);
+          grown_to = worse(grown_to, now);
+          rounds_too_much = rounding->may_be_too_much(grown_to);
+        }
         if (stiff) {
           account.spent += coarse->effort().evaluations + fine->effort().evaluations;
-          for (const RunSoFar& other : others) account.spent += other.effort().evaluations;
+          spend_on_others();
           return std::nullopt;
         }
         const double error = error_of_pair(off, runs.finer_by(setting), runs.rounding(),
-                                           coarse->effort().steps, coarse->noise());
+                                           coarse->effort().steps, noise);
         report.error_estimate = worse(report.error_estimate, error);
         missed.note(done, report.error_estimate);
         expected = forecast(task, t, report.error_estimate);
-        too_coarse = !last_try && (report.error_estimate > enough || expected > 4 * enough);
+        too_coarse = !last_try &&
+                     (report.error_estimate > enough || expected > 4 * enough || rounds_too_much);
         if (too_coarse) break;
         if (!output(result, watch, task, t, state, error)) break;
         ++done;
@@ -405,15 +497,37 @@ template <class Runs>
       text << error.what() << "; the last output is that of t = " << last_good << " s";
       report.message = text.str();
     }
+    spend_on_others();
+    const bool complete = report.status == RunStatus::complete;
+    const bool unsure = pair_is_shaken && !looks_for_rounding &&
+                        report.error_estimate > task.tolerance / 8 &&
+                        runs.can_look_for_rounding(setting, missed.error > 0);
+    // The shaken one is off by so much for having been shaken.
+    const bool shaken_too_much =
+        pair_is_shaken && !rounds_too_much && runs.of_pair(grown_to) > report.error_estimate / 3;
+    if (complete && (unsure || shaken_too_much)) {
+      looks_for_rounding = true;
+      known = 0;
+      if (shaken_too_much) {
+        pair_is_shaken = false;
+        std::optional<RunSoFar>& shaken = coarse_starts_off ? coarse : fine;
+        account.spent += shaken->effort().evaluations;
+        shaken.reset();
+      }
+      if (coarse && !coarse->knows_all()) coarse.reset();
+      if (fine && !fine->knows_all()) fine.reset();
+      continue;
+    }
     account.spent += coarse->effort().evaluations;
-    for (const RunSoFar& other : others) account.spent += other.effort().evaluations;
     // Rounding on a long way does more than to move the start by a digit.
-    const double lost = runs.digits_lost(setting, coarse->effort().steps);
+    const bool rounding_is_known = rounding && !last_try;
+    const double lost = rounding_is_known ? 0 : runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
     if (too_close) digits = lost;
-    const bool by_chance = !too_coarse && !last_try && report.status == RunStatus::complete &&
-                           missed.falls_by_chance(runs, setting);
-    const bool stays = by_chance || (too_coarse && missed.stays(runs, setting));
+    const bool by_chance =
+        !rounding && !too_coarse && !last_try && complete && missed.falls_by_chance(runs, setting);
+    const bool only_rounds = rounds_too_much || missed.stays(runs, setting);
+    const bool stays = by_chance || (too_coarse && only_rounds);
     if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
     const bool finer_will_do = !stays && expected < runs.finer_by(setting) * task.tolerance &&
                                digits <= 1 && !scene.has_other();
@@ -426,19 +540,23 @@ template <class Runs>
         for (std::size_t i = 0; i <= done; ++i) better_at_output(*fine, i);
       }
       coarse.emplace(std::move(*fine));
+      fine.reset();
       continue;
     }
     account.spent += fine->effort().evaluations;
     // What the digits grow to may hide what the steps err by.
-    if (too_coarse || by_chance || (too_close && report.status == RunStatus::complete)) {
+    if (too_coarse || by_chance || (too_close && complete)) {
       known = too_coarse || by_chance ? 0 : report.error_estimate;
       if (too_coarse || by_chance) {
         setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (2 * expected));
       }
       coarse_starts_off = false;
-      coarse.emplace(run_with(setting, 0));
+      pair_is_shaken = pair_is_shaken && !looks_for_rounding && !runs.last(setting);
+      coarse.reset();
+      fine.reset();
       continue;
     }
+    report.error_estimate = worse(report.error_estimate, grown_to);
     report.effort = coarse->effort();
     account.noise = coarse->noise();
     report.all_evaluations = account.spent;

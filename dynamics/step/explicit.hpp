@@ -390,7 +390,7 @@ class ExplicitSteps {
     squares_ += h * h;
     if (steps_taken_ % 8 == 0) look_for_stiffness();
     if (steps_taken_ % 64 == 16) note_noise();
-    detail::shake(change, accuracy_.shaken, effort_.steps);
+    detail::shake(change, accuracy_.shaken, effort_.steps, static_cast<double>(h));
     state_.set_sum(before_.state, change);
     time_.add(h);
     before_.length = h;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -116,16 +117,18 @@ void move_last_digits(Vector& y, double by) {
 }
 
 /// Makes the change in a step wrong by so many of its last digits, each component up or down at
-/// random. The same step goes the same way again.
+/// random. The same step of the same length goes the same way again, another one does not: runs of
+/// other accuracy are shaken otherwise.
 ///
 /// Source : the random bits: G. Steele, D. Lea, C. Flood, Fast splittable pseudorandom number
 ///          generators, OOPSLA 2014 (SplitMix64)
 template <class Vector>
-void shake(Vector& change, double digits, double step) {
+void shake(Vector& change, double digits, double step, double length) {
   using Number = typename Vector::Scalar;
   using Scalar = ScalarOf<Number>;
   if (digits == 0) return;
   std::uint64_t bits = (static_cast<std::uint64_t>(step) + 1) * 0x9E3779B97F4A7C15U;
+  bits += std::bit_cast<std::uint64_t>(length);
   bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
   bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
   bits ^= bits >> 31U;

@@ -80,7 +80,7 @@ class TaylorSteps {
     }
     before_ = {time_, state_};
     Vector increment = change(h / scale_);
-    detail::shake(increment, accuracy_.shaken, effort_.steps);
+    detail::shake(increment, accuracy_.shaken, effort_.steps, h);
     state_.add(increment);
     if (!detail::finite(y())) {
       state_ = before_.state;

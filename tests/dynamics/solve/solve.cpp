@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -139,8 +140,8 @@ BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
 }
 
 // A pair of runs costs 1 + 10^(1/9) = 2.29 of the coarser one, or more by a rejected step and the
-// steps that end at the middle; outputs cost ten evaluations in each step that has some, and none where
-// the steps are series.
+// steps that end at the middle, and two at 1e-3 in place of 1e-10 cost 2 10^(-7/9) = 0.33; outputs cost
+// ten evaluations in each step that has some, and none where the steps are series.
 BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   const EulerTop top({1, 1.7, 2.4});
   const EulerTop::State start{tilted, {1, 2, 3}};
@@ -151,7 +152,10 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   BOOST_TEST(with(0.01, Method::taylor).all_evaluations <=
              1.02 * with(100, Method::taylor).all_evaluations);
   const RunReport few = with(100);
-  BOOST_TEST(few.all_evaluations <= 2.35 * few.effort.evaluations);
+  BOOST_TEST(few.all_evaluations <= 2.8 * few.effort.evaluations);
+  const RunReport loose =
+      solve(top, start, {.times = {100}, .tolerance = 1e-6, .method = Method::verner98}).report;
+  BOOST_TEST(loose.all_evaluations <= 2.35 * loose.effort.evaluations);
   const RunReport many = with(0.01);
   BOOST_TEST_MESSAGE(few.all_evaluations << " evaluations for one output, " << many.all_evaluations
                                          << " for 10000");
@@ -159,7 +163,8 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
 }
 
 // Where the error comes out too great, the finer run takes over: a long way costs little more than
-// the pair that stands. This top errs by some 30 times what a step may.
+// the pair that stands, 3.07 times the answer, and 0.76 to know what rounding grows to in both. This
+// top errs by some 30 times what a step may.
 BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
   const Vector3<double> w(0, 0, 100);
@@ -169,7 +174,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(true_error(run, exact::LagrangeTop(3e-4, 1e-4, 0.04905, w, tilted)) <=
              run.report.error_estimate);
-  BOOST_TEST(run.report.all_evaluations <= 3.3 * run.report.effort.evaluations);
+  BOOST_TEST(run.report.all_evaluations <= 4 * run.report.effort.evaluations);
 }
 
 // Near the separatrix an error grows by 1e3 and more; the promise is on the whole run all the same.
@@ -399,6 +404,39 @@ BOOST_AUTO_TEST_CASE(gives_way_where_a_field_becomes_stiff_on_the_way) {
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     BOOST_TEST(std::abs(found.states[i].y - Follower::truth(1.5, found.times[i])) <= 1e-9);
   }
+}
+
+/// An oscillation about 0 that may not leave a circle.
+struct Walled {
+  using Vector = Eigen::Matrix<double, 2, 1>;
+  struct State {
+    double x, v;
+  };
+  static constexpr std::array<int, 1> blocks = {2};
+
+  double wall;
+  mutable int struck = 0;
+
+  [[nodiscard]] Vector rates(double /*t*/, const Vector& y) const {
+    if (y.norm() > wall) {
+      ++struck;
+      throw std::domain_error("behind the wall");
+    }
+    return {y[1], -y[0]};
+  }
+  [[nodiscard]] static Vector to_vector(const State& s) { return {s.x, s.v}; }
+  [[nodiscard]] static State from_vector(const Vector& y) { return {y[0], y[1]}; }
+};
+
+// The runs that tell what rounding grows to err by more than the answer, and may go where it does not:
+// what is thrown there is no fault of the answer.
+BOOST_AUTO_TEST_CASE(does_without_runs_that_go_astray) {
+  const Walled scene{.wall = 1 + 1e-4};
+  const auto found = solve(scene, {1, 0}, {.times = {5, 10}, .tolerance = 1e-11});
+  BOOST_TEST(scene.struck == 1);
+  BOOST_TEST(found.report.tolerance_kept);
+  BOOST_TEST(std::abs(found.states[1].x - std::cos(10)) <= found.report.error_estimate);
+  BOOST_CHECK_THROW((void)solve(Walled{.wall = 0.9}, {1, 0}, {.times = {10}}), std::domain_error);
 }
 
 // Moments of which one is 1e-5 of the others leave the rates fewer digits than the state has: the
@@ -631,8 +669,8 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
 }
 
 // Bodies that turn about their middle axis but for 1e-4: what rounding grows to, some 1e-8, is more than
-// what steps err by, and about the tolerance. Were the run beside not shaken, 29 of 312 promises would
-// be broken, for two runs agree by chance.
+// what steps err by, and about the tolerance. Were it not looked for, 29 of 312 promises would be
+// broken, for two runs agree by chance.
 BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
   const EulerTop top({1, 2, 3});
   const HeldBody body(
@@ -666,8 +704,8 @@ BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
     }
   }
   BOOST_TEST_MESSAGE(broken << " of " << kept << " promises broken");
-  BOOST_TEST(kept > 100);
-  BOOST_TEST(broken * 20 <= kept);
+  BOOST_TEST(kept > 150);
+  BOOST_TEST(broken * 100 <= kept);
 }
 
 // Ten times finer steps err by a tenth. By much more it is rounding, and by much less rounding too, of
