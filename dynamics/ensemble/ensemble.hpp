@@ -138,6 +138,8 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
   double setting = runs.first();
   Missed<double> missed{setting};
   std::array<double, std::size_t(lanes_of<N>)> grown_to{};  // by rounding, in any try
+  double cheap = std::numeric_limits<double>::max();
+  double suspected = 0;  // to be what rounding grows to, by cheaper steps
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
@@ -162,7 +164,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     }
     std::optional<GrownRoundingOfMembers<Scene, N>> rounding;
     if (estimates_errors && runs.can_look_for_rounding(setting, missed.error > 0)) {
-      const double cheap = runs.cheap(setting);
+      cheap = std::min(cheap, runs.cheap(setting));
       rounding.emplace(scene, task.smallest, run(cheap, 0),
                        run(cheap, 0, AdaptiveRuns::shaken_digits));
     }
@@ -178,6 +180,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       }
     }
     double worst = 0;
+    double grown_most = 0;
     bool rounds_too_much = false;
     bool too_coarse = false;
     std::size_t output = 0;
@@ -201,7 +204,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
           if (members[k]) grown_to[k] = worse(grown_to[k], grown[k]);
         }
       }
-      const double grown_most = *std::max_element(grown_to.begin(), grown_to.end());
+      grown_most = *std::max_element(grown_to.begin(), grown_to.end());
       rounds_too_much = runs.may_round_too_much(grown_most);
       for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
         if (!members[k]) continue;
@@ -224,6 +227,13 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     spent += coarse.effort().evaluations;
     for (const Beside& other : others) spent += other.steps.effort().evaluations;
     if (rounding) spent += rounding->evaluations();
+    if (rounds_too_much && !last_try && cheap > setting &&
+        AdaptiveRuns::falls_as_steps_do(grown_most, suspected)) {
+      cheap = AdaptiveRuns::less_cheap(cheap, setting);
+      suspected = grown_most;
+      grown_to = {};
+      continue;
+    }
     if (too_coarse) {
       const bool stays = rounds_too_much || missed.stays(runs, setting);
       if (missed.error == 0) missed = {setting, output, worst};

@@ -101,6 +101,15 @@ class AdaptiveRuns {
     return std::min(1e-2 / task_.tolerance * accuracy, 1e-3);
   }
 
+  /// Coarse steps that stability keeps short go ways of their own, and that is no growth: where
+  /// rounding seems to grow too much finer ones are asked, as long as those find much less.
+  [[nodiscard]] static double less_cheap(double cheap, double accuracy) {
+    return std::max(cheap * 1e-3, accuracy);
+  }
+  [[nodiscard]] static bool falls_as_steps_do(double grown, double before) {
+    return before == 0 || grown < before / 10;
+  }
+
   /// By far more digits than steps are rounded, and far less than they err by.
   static constexpr double shaken_digits = 1000;
 

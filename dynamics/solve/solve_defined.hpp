@@ -255,12 +255,11 @@ class RunSoFar {
 /// shaken. Beside a separatrix it may be far more than what steps err by, which cancels there.
 class GrownRounding {
  public:
-  GrownRounding(const AdaptiveRuns& runs, double setting, const SteppedScene& scene,
+  GrownRounding(const AdaptiveRuns& runs, double accuracy, const SteppedScene& scene,
                 const Task& task, const Eigen::VectorXd& start)
       : runs_(runs),
-        calm_(run(runs, runs.cheap(setting), scene, task, start, false)),
-        shaken_(
-            run(runs, runs.cheap(setting), scene, task, start, false, AdaptiveRuns::shaken_digits)),
+        calm_(run(runs, accuracy, scene, task, start, false)),
+        shaken_(run(runs, accuracy, scene, task, start, false, AdaptiveRuns::shaken_digits)),
         calm_state_(start),
         shaken_state_(start),
         distance_(scene.blocks(), task.smallest) {}
@@ -348,8 +347,10 @@ template <class Runs>
   Trajectory<double> result;
   const double end = task.times.back();
   double digits = digits_off(task);
-  double grown_to = 0;  // by rounding, in any try
-  double known = 0;     // of the error at this setting, from a try with fewer digits
+  double grown_to = 0;                                // by rounding, in any try
+  double cheap = std::numeric_limits<double>::max();  // steps that tell that
+  double suspected = 0;                               // to be what it grows to, by cheaper ones
+  double known = 0;  // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
   Missed<decltype(setting)> missed{setting};
   // A scene with another one is held against that, and of stiff springs cheap steps tell nothing.
@@ -377,7 +378,7 @@ template <class Runs>
   const auto pass_setting = [&](Bookmark& numbers) {
     double own = kind;
     numbers(own, setting, missed, digits, account.spent, coarse_starts_off, pair_is_shaken,
-            looks_for_rounding);
+            looks_for_rounding, cheap, suspected);
     if (own != kind) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
@@ -399,7 +400,8 @@ template <class Runs>
     std::optional<GrownRounding> rounding;
     if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
       if (looks_for_rounding && runs.can_look_for_rounding(setting, missed.error > 0)) {
-        rounding.emplace(runs, setting, scene, task, start);
+        cheap = std::min(cheap, runs.cheap(setting));
+        rounding.emplace(runs, cheap, scene, task, start);
       }
     }
     // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
@@ -505,7 +507,16 @@ template <class Runs>
     // The shaken one is off by so much for having been shaken.
     const bool shaken_too_much =
         pair_is_shaken && !rounds_too_much && runs.of_pair(grown_to) > report.error_estimate / 3;
-    if (complete && (unsure || shaken_too_much)) {
+    bool asks_again = false;
+    if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
+      asks_again = complete && rounds_too_much && !last_try && cheap > setting &&
+                   AdaptiveRuns::falls_as_steps_do(grown_to, suspected);
+      if (asks_again) {
+        cheap = AdaptiveRuns::less_cheap(cheap, setting);
+        suspected = std::exchange(grown_to, 0);
+      }
+    }
+    if (complete && (unsure || shaken_too_much || asks_again)) {
       looks_for_rounding = true;
       known = 0;
       if (shaken_too_much) {
