@@ -107,7 +107,7 @@ class AdaptiveRuns {
     return std::max(cheap * 1e-3, accuracy);
   }
   [[nodiscard]] static bool falls_as_steps_do(double grown, double before) {
-    return before == 0 || grown < before / 10;
+    return before == 0 || grown < before / 100;
   }
 
   /// By far more digits than steps are rounded, and far less than they err by.
