@@ -63,6 +63,7 @@ struct Honesty {
   int runs = 0;
   int within = 0;  ///< true / estimate in [0.1, 1]
   double greatest = 0;
+  double dearest = 0;  ///< evaluations, of those of the run that is returned, to 1e-12 and above
   bool promises_kept = true;
 
   void note(const RunReport& report, double error) {
@@ -71,6 +72,8 @@ struct Honesty {
     within += ratio >= 0.1 && ratio <= 1 ? 1 : 0;
     greatest = test::worst_of(greatest, ratio);
     if (report.tolerance_kept && error > report.tolerance) promises_kept = false;
+    if (report.tolerance < 1e-12) return;
+    dearest = test::worst_of(dearest, report.all_evaluations / report.effort.evaluations);
   }
 };
 
@@ -100,7 +103,9 @@ void tells_its_error_honestly(Method method) {
     }
   }
   BOOST_TEST_MESSAGE(name(method) << ": " << honesty.within << " of " << honesty.runs
-                                  << " in [0.1, 1], greatest " << honesty.greatest);
+                                  << " in [0.1, 1], greatest " << honesty.greatest << ", dearest "
+                                  << honesty.dearest);
+  BOOST_TEST(honesty.dearest <= 5);
   BOOST_TEST(honesty.within >= 0.95 * honesty.runs);
   BOOST_TEST(honesty.greatest <= 3);
   BOOST_TEST(honesty.promises_kept);
