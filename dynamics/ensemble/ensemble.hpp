@@ -138,8 +138,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
   double setting = runs.first();
   Missed<double> missed{setting};
   std::array<double, std::size_t(lanes_of<N>)> grown_to{};  // by rounding, in any try
-  double cheap = std::numeric_limits<double>::max();
-  double suspected = 0;  // to be what rounding grows to, by cheaper steps
+  CheapSteps cheap;                                         // that tell it
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
@@ -164,9 +163,9 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     }
     std::optional<GrownRoundingOfMembers<Scene, N>> rounding;
     if (estimates_errors && runs.can_look_for_rounding(setting, missed.error > 0)) {
-      cheap = std::min(cheap, runs.cheap(setting));
-      rounding.emplace(scene, task.smallest, run(cheap, 0),
-                       run(cheap, 0, AdaptiveRuns::shaken_digits));
+      const double accuracy = cheap.beside(runs, setting);
+      rounding.emplace(scene, task.smallest, run(accuracy, 0),
+                       run(accuracy, 0, AdaptiveRuns::shaken_digits));
     }
     std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, task.smallest});
     for (auto* member : members) {
@@ -227,10 +226,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     spent += coarse.effort().evaluations;
     for (const Beside& other : others) spent += other.steps.effort().evaluations;
     if (rounding) spent += rounding->evaluations();
-    if (rounds_too_much && !last_try && cheap > setting &&
-        AdaptiveRuns::falls_as_steps_do(grown_most, suspected)) {
-      cheap = AdaptiveRuns::less_cheap(cheap, setting);
-      suspected = grown_most;
+    if (rounds_too_much && !last_try && cheap.refine(grown_most, setting)) {
       grown_to = {};
       continue;
     }

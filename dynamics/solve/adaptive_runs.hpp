@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/task.hpp>
@@ -101,15 +102,6 @@ class AdaptiveRuns {
     return std::min(1e-2 / task_.tolerance * accuracy, 1e-3);
   }
 
-  /// Coarse steps that stability keeps short go ways of their own, and that is no growth: where
-  /// rounding seems to grow too much finer ones are asked, as long as those find much less.
-  [[nodiscard]] static double less_cheap(double cheap, double accuracy) {
-    return std::max(cheap * 1e-3, accuracy);
-  }
-  [[nodiscard]] static bool falls_as_steps_do(double grown, double before) {
-    return before == 0 || grown < before / 100;
-  }
-
   /// By far more digits than steps are rounded, and far less than they err by.
   static constexpr double shaken_digits = 1000;
 
@@ -145,6 +137,37 @@ class AdaptiveRuns {
 
   const Task& task_;
   Method method_;
+};
+
+/// The cheap steps that tell what rounding grows to, from one try to the next.
+///
+/// Coarse steps that stability keeps short go ways of their own when shaken, and that is no growth:
+/// where rounding seems to grow too much finer ones are asked, as long as those find much less.
+class CheapSteps {
+ public:
+  /// Their accuracy beside runs at `setting`; it does not become coarser again.
+  [[nodiscard]] double beside(const AdaptiveRuns& runs, double setting) {
+    accuracy_ = std::min(accuracy_, runs.cheap(setting));
+    return accuracy_;
+  }
+
+  /// Makes them finer where rounding seems to grow to `suspected`; says whether that may find less.
+  [[nodiscard]] bool refine(double suspected, double setting) {
+    const bool falls = suspected_ == 0 || suspected < suspected_ / 100;
+    if (!falls || accuracy_ <= setting) return false;
+    accuracy_ = std::max(accuracy_ * 1e-3, setting);
+    suspected_ = suspected;
+    return true;
+  }
+
+  template <class Bookmark>
+  void pass(Bookmark& bookmark) {
+    bookmark(accuracy_, suspected_);
+  }
+
+ private:
+  double accuracy_ = std::numeric_limits<double>::max();
+  double suspected_ = 0;  ///< by coarser ones
 };
 
 }  // namespace kreisel::detail

@@ -348,10 +348,9 @@ template <class Runs>
   Trajectory<double> result;
   const double end = task.times.back();
   double digits = digits_off(task);
-  double grown_to = 0;                                // by rounding, in any try
-  double cheap = std::numeric_limits<double>::max();  // steps that tell that
-  double suspected = 0;                               // to be what it grows to, by cheaper ones
-  double known = 0;  // of the error at this setting, from a try with fewer digits
+  double grown_to = 0;  // by rounding, in any try
+  CheapSteps cheap;     // that tell it
+  double known = 0;     // of the error at this setting, from a try with fewer digits
   auto setting = runs.first();
   Missed<decltype(setting)> missed{setting};
   // A scene with another one is held against that, and of stiff springs cheap steps tell nothing.
@@ -379,7 +378,7 @@ template <class Runs>
   const auto pass_setting = [&](Bookmark& numbers) {
     double own = kind;
     numbers(own, setting, missed, digits, account.spent, coarse_starts_off, pair_is_shaken,
-            looks_for_rounding, cheap, suspected);
+            looks_for_rounding, cheap);
     if (own != kind) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
@@ -401,8 +400,7 @@ template <class Runs>
     std::optional<GrownRounding> rounding;
     if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
       if (looks_for_rounding && runs.can_look_for_rounding(setting, missed.error > 0)) {
-        cheap = std::min(cheap, runs.cheap(setting));
-        rounding.emplace(runs, cheap, scene, task, start);
+        rounding.emplace(runs, cheap.beside(runs, setting), scene, task, start);
       }
     }
     // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
@@ -510,13 +508,9 @@ template <class Runs>
         pair_is_shaken && !rounds_too_much && runs.of_pair(grown_to) > report.error_estimate / 3;
     bool asks_again = false;
     if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
-      asks_again = complete && rounds_too_much && !last_try && cheap > setting &&
-                   AdaptiveRuns::falls_as_steps_do(grown_to, suspected);
-      if (asks_again) {
-        cheap = AdaptiveRuns::less_cheap(cheap, setting);
-        suspected = std::exchange(grown_to, 0);
-      }
+      asks_again = complete && rounds_too_much && !last_try && cheap.refine(grown_to, setting);
     }
+    if (asks_again) grown_to = 0;
     if (complete && (unsure || shaken_too_much || asks_again)) {
       looks_for_rounding = true;
       known = 0;
