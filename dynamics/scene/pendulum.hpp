@@ -9,6 +9,7 @@
 
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/scene/pendulum_series.hpp>
 #include <dynamics/scene/structure.hpp>
 #include <dynamics/scene/terms.hpp>
 #include <motor/absent.hpp>
@@ -416,6 +417,8 @@ template <class Shape, class Motion>
 /// Throws : InvalidInput where products of inertia are said to vanish and do not
 template <class S, class Motion = PendulumGuide<S>, class Damping = NoDamping, class... Known>
 class PendulumField {
+  static constexpr bool steady = detail::is_steady_pendulum_guide<Motion>;
+
  public:
   explicit PendulumField(const PendulumBody<S>& body, Motion motion, Damping damping = {},
                          Known... /*known*/)
@@ -432,6 +435,13 @@ class PendulumField {
     } else {
       return rate(detail::pendulum_equation(shape_, motion_(time)), state);
     }
+  }
+
+  /// For TaylorSteps.
+  [[nodiscard]] detail::PendulumSeries series() const
+      requires(steady&& std::is_same_v<S, double>&& std::is_same_v<Damping, NoDamping>) {
+    const auto& [e, f, h, twice_k, drive] = steady_;
+    return {0.0 + e, 0.0 + f, (0.0 + twice_k) / 2, 0.0 + h, 0.0 + drive};
   }
 
   /// What the field computes of (23): see kreisel::terms.
@@ -454,7 +464,6 @@ class PendulumField {
   }
 
  private:
-  static constexpr bool steady = detail::is_steady_pendulum_guide<Motion>;
   static constexpr bool principal = detail::principal<Known...>;
   using Shape = detail::PendulumShape<S, std::conditional_t<principal, detail::Absent, S>>;
 

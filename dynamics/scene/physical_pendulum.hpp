@@ -15,6 +15,7 @@
 #include <dynamics/scene/closed_form.hpp>
 #include <dynamics/scene/pendulum.hpp>
 #include <dynamics/scene/pendulum_motion.hpp>
+#include <dynamics/scene/pendulum_series.hpp>
 #include <dynamics/scene/terms.hpp>
 
 namespace kreisel {
@@ -109,6 +110,11 @@ class PhysicalPendulum {
     }
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
+
+  /// For TaylorSteps, on a steady guide and without damping.
+  [[nodiscard]] detail::PendulumSeries series() const requires(is_steady&& undamped) {
+    return field_.series();
+  }
 
   /// Theta_C phi.^2/2 and the potential, where they are kept.
   [[nodiscard]] std::vector<std::pair<const char*, double>> conserved(const double& /*t*/,

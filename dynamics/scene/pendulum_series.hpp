@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <dynamics/guide/series.hpp>
+#include <motor/four.hpp>
+
+namespace kreisel::detail {
+
+/// The Taylor series of the motion of an undamped pendulum on a steady guide, for TaylorSteps:
+///
+///   phi'' = -(e sin phi + f cos phi + k sin 2phi + h cos 2phi + drive)
+///
+/// Each coefficient comes from those before it, for  x = (sin phi, cos phi, sin 2phi, cos 2phi)  turns
+/// by products of series:
+///
+///   x' = phi' y,   y = (x_2, -x_1, 2 x_4, -2 x_3)
+///
+/// Source : recurrences of sine and cosine: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+///          Differential Equations I, I.8
+class PendulumSeries {
+ public:
+  static constexpr int most_order = most_series_order;
+
+  /// Moments and ou_z over Theta_C.
+  PendulumSeries(double e, double f, double k, double h, double drive)
+      : moments_(e, f, k, h), drive_(drive) {}
+
+  /// Fills the columns 1 to `order` of c with the coefficients of (phi; phi') in powers of
+  /// (time - t)/h, for the motion that has column 0 at t.
+  template <class Coefficients>
+  void operator()(double /*t*/, double h, int order, Coefficients& c) const {
+    std::array<double, most_order> turned;    // h phi'
+    std::array<Four, most_order> quarter_on;  // y
+    Four x = waves(c(0, 0));
+    double drive = drive_;
+    for (int k = 0;; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const double weight = h / (k + 1);
+      const Four moment = moments_ * x;
+      c(0, k + 1) = weight * c(1, k);
+      c(1, k + 1) = -weight * ((moment[0] + moment[1]) + (moment[2] + moment[3]) + drive);
+      if (k + 1 == order) return;
+      drive = 0;
+      turned[at] = h * c(1, k);
+      quarter_on[at] = Four(x[1], -x[0], 2 * x[3], -2 * x[2]);
+      // Two sums, lest each term wait for the one before; and the newest coefficients last.
+      Four even(0, 0, 0, 0);
+      Four odd(0, 0, 0, 0);
+      std::size_t i = 1;
+      for (; i + 2 < at; i += 2) {
+        even += turned[i] * quarter_on[at - i];
+        odd += turned[i + 1] * quarter_on[at - i - 1];
+      }
+      for (; i < at; ++i) even += turned[i] * quarter_on[at - i];
+      if (k > 0) odd += turned[at] * quarter_on[0];
+      x = 1.0 / (k + 1) * ((even + odd) + turned[0] * quarter_on[at]);
+    }
+  }
+
+ private:
+  [[nodiscard]] static Four waves(double angle) {
+    const double s = std::sin(angle);
+    const double c = std::cos(angle);
+    return {s, c, 2 * s * c, (c - s) * (c + s)};
+  }
+
+  Four moments_;
+  double drive_;
+};
+
+}  // namespace kreisel::detail
