@@ -105,25 +105,29 @@ class FreeBody {
     const Vector3<N> u(y[7], y[8], y[9]);
     const Vector3<N> v(y[10], y[11], y[12]);
     const auto turn = detail::Turn<N>::from(q);
-    const Acceleration<N> dV = std::apply(
+    const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
+    const auto dr = turned(turn, detail::components(v));
+    const auto rate = [&](const Acceleration<N>& dV) {
+      return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], dr.x, dr.y, dr.z, dV.angular.x,
+                                 dV.angular.y, dV.angular.z, dV.linear.x, dV.linear.y, dV.linear.z);
+    };
+    return std::apply(
         [&](const Loads&... all) {
           if constexpr (!has_forces) {
-            return acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), NoForce{});
+            return rate(
+                acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), NoForce{}));
           } else {
             Situation<N> s = situation_in<N>(t, turn.matrix(), r, {u, v});
             if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
             if constexpr (guide_is_read && !SteadyGuide<M>) {
-              return acceleration_of(turn, r, {u, v}, felt_.in(s.guide, all...), force(s));
+              return rate(acceleration_of(turn, r, {u, v}, felt_.in(s.guide, all...), force(s)));
             } else {
-              return acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), force(s));
+              return rate(
+                  acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), force(s)));
             }
           }
         },
         loads_);
-    const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
-    const auto dr = turned(turn, detail::components(v));
-    return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], dr.x, dr.y, dr.z, dV.angular.x,
-                               dV.angular.y, dV.angular.z, dV.linear.x, dV.linear.y, dV.linear.z);
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
