@@ -238,15 +238,16 @@ template <class S>
       const S s = sqrt(s2);
       ratio = atan2(s, cosine) / s;
     }
-    const auto w = ratio * sine;
-    const S t2 = ratio * ratio * s2;
+    const S ratio2 = ratio * ratio;
+    const S t2 = ratio2 * s2;
     const S gamma = ratio * (S(1) + cosine) / S(2);
     const S c = t2 < detail::small_squared_angle<S>()
-                    ? S(S(1) / S(12) + t2 / S(720) * (S(1) + t2 / S(42)))
-                    : S((S(1) - gamma) / t2);
-    const auto half = S(0.5) * w;
-    const auto half_wx = cross(half, x);
-    const auto moment = x - (half_wx - S(S(2) * c) * cross(w, half_wx));
+                    ? S(ratio2 * (S(1) / S(12) + t2 / S(720) * (S(1) + t2 / S(42))))
+                    : S((S(1) - gamma) / s2);
+    // By the sine, whose products do not wait for the angle: c is that of the formula by ratio^2.
+    const auto sx = cross(sine, x);
+    const auto w = ratio * sine;
+    const auto moment = x - (S(ratio / S(2)) * sx - c * cross(sine, sx));
     return {detail::vector<S>(w), detail::vector<S>(moment)};
   }
   return detail::log_of_wide_turn(X);

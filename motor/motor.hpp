@@ -189,8 +189,8 @@ template <class S>
   detail::Read<S> ax0 = a.moment.x(), ay0 = a.moment.y(), az0 = a.moment.z();
   detail::Read<S> bx0 = b.moment.x(), by0 = b.moment.y(), bz0 = b.moment.z();
   return {{ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx},
-          {ay * bz0 - az * by0 + (ay0 * bz - az0 * by), az * bx0 - ax * bz0 + (az0 * bx - ax0 * bz),
-           ax * by0 - ay * bx0 + (ax0 * by - ay0 * bx)}};
+          {ay * bz0 - az * by0 + ay0 * bz - az0 * by, az * bx0 - ax * bz0 + az0 * bx - ax0 * bz,
+           ax * by0 - ay * bx0 + ax0 * by - ay0 * bx}};
 }
 
 /// Reciprocal product  a . b0 + a0 . b: the power of a force motor on a velocity motor.
