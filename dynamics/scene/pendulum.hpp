@@ -441,7 +441,7 @@ class PendulumField {
   [[nodiscard]] detail::PendulumSeries series() const
       requires(steady&& std::is_same_v<S, double>&& std::is_same_v<Damping, NoDamping>) {
     const auto& [e, f, h, twice_k, drive] = steady_;
-    return {0.0 + e, 0.0 + f, (0.0 + twice_k) / 2, 0.0 + h, 0.0 + drive};
+    return {e, 0.0 + f, (0.0 + twice_k) / 2, 0.0 + h, 0.0 + drive};
   }
 
   /// What the field computes of (23): see kreisel::terms.
