@@ -2,6 +2,7 @@
 # whoever links it, and with its flags. Part of our own build and, installed, of the CMake package.
 if(NOT TARGET kreisel_compiled)
   add_library(kreisel_compiled STATIC EXCLUDE_FROM_ALL
+    ${CMAKE_CURRENT_LIST_DIR}/compiled/any_field.cpp
     ${CMAKE_CURRENT_LIST_DIR}/compiled/body.cpp
     ${CMAKE_CURRENT_LIST_DIR}/compiled/closed_form.cpp
     ${CMAKE_CURRENT_LIST_DIR}/compiled/decompositions.cpp

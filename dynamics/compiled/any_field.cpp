@@ -1,0 +1,1 @@
+#include <dynamics/solve/any_field_defined.hpp>

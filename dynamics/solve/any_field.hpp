@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include <dynamics/compiled.hpp>
+#include <dynamics/solve/run.hpp>
+#include <dynamics/solve/task.hpp>
+#include <dynamics/step/accuracy.hpp>
+#include <dynamics/step/radau.hpp>
+#include <dynamics/step/shared.hpp>
+
+/// Scenes that know only at run time how many components they have: trees of bodies, and what users
+/// write. Their evaluations do not feel a call by pointer, so that one integrator serves them all.
+
+namespace kreisel::detail {
+
+/// The field of such a scene, whatever its type.
+using AnyField =
+    std::function<void(const double& t, const Eigen::VectorXd& y, Eigen::VectorXd& rate)>;
+
+template <class Field>
+[[nodiscard]] AnyField any_field(Field field) {
+  return [field = std::move(field)](const double& t, const Eigen::VectorXd& y,
+                                    Eigen::VectorXd& rate) mutable { call(field, t, y, rate); };
+}
+
+/// As the functions of the same names in runs_of_steps.hpp.
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<ExplicitRun> run_explicit_steps(
+    const SteppedScene& scene, bool other, const AnyField& field, const Task& task,
+    const Eigen::VectorXd& start, const Accuracy& accuracy);
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
+                                                                    const AnyField& field,
+                                                                    const Task& task,
+                                                                    const Eigen::VectorXd& start,
+                                                                    const EqualLength& length);
+
+/// With a Jacobian by differences.
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);
+
+}  // namespace kreisel::detail
+
+#ifndef KREISEL_COMPILED
+#include <dynamics/solve/any_field_defined.hpp>
+#endif

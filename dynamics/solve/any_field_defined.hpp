@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <utility>
+
+#include <dynamics/solve/any_field.hpp>
+#include <dynamics/solve/runs_of_steps.hpp>
+#include <dynamics/step/jacobian.hpp>
+
+namespace kreisel::detail {
+
+KREISEL_DEFINED std::unique_ptr<ExplicitRun> run_explicit_steps(const SteppedScene& scene,
+                                                                bool other, const AnyField& field,
+                                                                const Task& task,
+                                                                const Eigen::VectorXd& start,
+                                                                const Accuracy& accuracy) {
+  return run_explicit_steps<Eigen::VectorXd, AnyField>(scene, other, field, task, start, accuracy);
+}
+
+KREISEL_DEFINED std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
+                                                     const AnyField& field, const Task& task,
+                                                     const Eigen::VectorXd& start,
+                                                     const EqualLength& length) {
+  return run_gauss_steps<Eigen::VectorXd, AnyField>(scene, field, task, start, length);
+}
+
+KREISEL_DEFINED std::unique_ptr<StiffField> stiff_field(const AnyField& field) {
+  auto jacobian = difference_jacobian<Eigen::Dynamic>(field);
+  using J = decltype(jacobian);
+  return std::make_unique<StiffFieldOf<Eigen::VectorXd, AnyField, J>>(field, std::move(jacobian));
+}
+
+}  // namespace kreisel::detail
