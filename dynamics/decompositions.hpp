@@ -58,6 +58,19 @@ KREISEL_DECLARED [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eig
 KREISEL_DECLARED [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
                                                          const Eigen::VectorXcd& b);
 
+/// The shortest of all x that come nearest to  A x = b.
+struct ShortestSolution {
+  Eigen::VectorXd x;
+  int rank = 0;  ///< of A
+};
+
+/// By a complete orthogonal decomposition; A is not empty.
+///
+/// threshold : a pivot is 0 below so much of the greatest
+KREISEL_DECLARED [[nodiscard]] ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
+                                                                  const Eigen::VectorXd& b,
+                                                                  double threshold);
+
 }  // namespace kreisel::detail
 
 #ifndef KREISEL_COMPILED

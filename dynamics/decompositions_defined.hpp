@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 
 #include <cmath>
@@ -80,6 +81,14 @@ KREISEL_DEFINED std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& 
 
 KREISEL_DEFINED Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
   return A.fullPivLu().solve(b);
+}
+
+KREISEL_DEFINED ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
+                                                   const Eigen::VectorXd& b, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+  factors.setThreshold(threshold);
+  factors.compute(A);
+  return {factors.solve(b), static_cast<int>(factors.rank())};
 }
 
 }  // namespace kreisel::detail

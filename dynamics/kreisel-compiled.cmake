@@ -6,6 +6,7 @@ if(NOT TARGET kreisel_compiled)
     ${CMAKE_CURRENT_LIST_DIR}/compiled/body.cpp
     ${CMAKE_CURRENT_LIST_DIR}/compiled/closed_form.cpp
     ${CMAKE_CURRENT_LIST_DIR}/compiled/decompositions.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/compiled/precession.cpp
     ${CMAKE_CURRENT_LIST_DIR}/compiled/solve.cpp)
   add_library(kreisel::compiled ALIAS kreisel_compiled)
   target_compile_definitions(kreisel_compiled PUBLIC KREISEL_COMPILED)

@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 
+#include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_gimbals.hpp>
 
 // A gyro on springs in two gimbals is released from rest. How far technical (precession) equations

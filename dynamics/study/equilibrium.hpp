@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <limits>
@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/study/linearize.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 
@@ -71,12 +73,11 @@ struct NewtonStep {
   NewtonStep(const Eigen::MatrixXd& A, const Eigen::VectorXd& f,
              double threshold = std::numeric_limits<double>::epsilon())
       : step(Eigen::VectorXd::Zero(A.cols())) {
-    if (A.size() == 0) return;  // which Eigen's factors do not take
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-    factors.setThreshold(threshold * static_cast<double>(std::min(A.rows(), A.cols())));
-    factors.compute(A);
-    rank = static_cast<int>(factors.rank());
-    step = -factors.solve(f);
+    if (A.size() == 0) return;
+    const auto pivots = static_cast<double>(std::min(A.rows(), A.cols()));
+    const ShortestSolution solution = shortest_solution(A, f, threshold * pivots);
+    rank = solution.rank;
+    step = -solution.x;
   }
 
   /// Whether it leaves no rate that rounding does not explain: a body that falls has no equilibrium

@@ -1,24 +1,11 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <cmath>
-#include <complex>
-#include <cstddef>
-#include <limits>
-#include <optional>
-#include <sstream>
-#include <utility>
 #include <vector>
 
-#include <dynamics/decompositions.hpp>
-#include <dynamics/step/explicit.hpp>
-#include <motor/error.hpp>
+#include <dynamics/compiled.hpp>
+#include <dynamics/step/accuracy.hpp>
 
 namespace kreisel {
 
@@ -79,121 +66,40 @@ struct TechnicalMotion {
   double seconds = 0;  ///< of computing
 };
 
-namespace detail {
+/// What technical equations have to know of a system. Places are its own; displacements e and
+/// velocities u have as many components as there are equations.
+class TechnicalModel {
+ public:
+  virtual ~TechnicalModel() = default;
 
-template <class... Words>
-[[noreturn]] void refuse_technical(double t, const Words&... words) {
-  std::ostringstream text;
-  text.precision(10);
-  text << "technical equations at t = " << t << " s: ";
-  (text << ... << words);
-  throw ComputationFailed(text.str());
-}
+  [[nodiscard]] virtual GyroForces forces(double t, const Eigen::VectorXd& place) const = 0;
 
-/// The derivative at each of five places h apart of the polynomial through them, times 12 h.
-inline constexpr std::array<std::array<double, 5>, 5> five_point_slopes{{{-25, 48, -36, 16, -3},
-                                                                         {-3, -10, 18, -6, 1},
-                                                                         {1, -8, 0, 8, -1},
-                                                                         {-1, 6, -18, 10, 3},
-                                                                         {3, -16, 36, -48, 25}}};
+  /// c(u)
+  [[nodiscard]] virtual Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
+                                                      const Eigen::VectorXd& u) const = 0;
 
-/// The orthonormal directions N of kept accelerations and P of the others.
-struct Directions {
-  Eigen::MatrixXd N;
-  Eigen::MatrixXd P;
-
-  [[nodiscard]] static Directions of(const Eigen::MatrixXd& G, const TechnicalOptions& options) {
-    const Eigen::Index n = G.rows();
-    if (options.kept == KeptAccelerations::none) {
-      return {Eigen::MatrixXd(n, 0), Eigen::MatrixXd::Identity(n, n)};
-    }
-    const auto [s, U, V] = singular_values(G);
-    const Eigen::Index rank = (s.array() > options.rank_tolerance * s[0]).count();
-    return {V.rightCols(n - rank), V.leftCols(rank)};
+  /// Of a place.
+  [[nodiscard]] virtual Eigen::VectorXd rate(double /*t*/, const Eigen::VectorXd& /*place*/,
+                                             const Eigen::VectorXd& u) const {
+    return u;
   }
+
+  /// A place that is displaced.
+  [[nodiscard]] virtual Eigen::VectorXd moved(const Eigen::VectorXd& place,
+                                              const Eigen::VectorXd& e) const {
+    return place + e;
+  }
+
+  /// What e' has besides the change of u, where u are no rates of coordinates.
+  [[nodiscard]] virtual Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
+                                                      const Eigen::VectorXd& /*u*/,
+                                                      const Eigen::VectorXd& e) const {
+    return Eigen::VectorXd::Zero(e.size());
+  }
+
+  /// Of components of a place whose error is told as one, as ExplicitSteps takes them.
+  [[nodiscard]] virtual std::vector<int> blocks() const = 0;
 };
-
-/// What belongs to one place: u from the technical equations, and how they answer to more force.
-struct TechnicalPoint {
-  GyroForces f;
-  Eigen::MatrixXd W;  ///< G + D
-  Eigen::VectorXd u;
-  Eigen::VectorXd dv;   ///< of v = N' u
-  Eigen::MatrixXd way;  ///< P, and how the kept directions go along: way' A N = 0
-  Eigen::FullPivLU<Eigen::MatrixXd> across;  ///< way' W P
-  bool determined = true;                    ///< whether it is regular
-  Eigen::LDLT<Eigen::MatrixXd> along;        ///< N' A N
-
-  TechnicalPoint(const Directions& d, GyroForces forces, const Eigen::VectorXd& v)
-      : f(std::move(forces)), W(f.G + f.D), way(d.P) {
-    if (d.N.cols() > 0) {
-      along.compute(d.N.transpose() * f.A * d.N);
-      way -= d.N * along.solve(d.N.transpose() * f.A * d.P);
-    }
-    if (d.P.cols() > 0) {
-      across.compute(way.transpose() * W * d.P);
-      across.setThreshold(1e-12);
-      determined = across.isInvertible();
-    }
-    u = velocity(d, f.Q, v);
-    dv = acceleration(d, f.Q - W * u);
-  }
-
-  [[nodiscard]] Eigen::VectorXd velocity(const Directions& d, const Eigen::VectorXd& Q,
-                                         const Eigen::VectorXd& v) const {
-    Eigen::VectorXd whole = d.N * v;
-    if (d.P.cols() > 0) whole += d.P * across.solve(way.transpose() * (Q - W * whole));
-    return whole;
-  }
-  [[nodiscard]] Eigen::VectorXd acceleration(const Directions& d,
-                                             const Eigen::VectorXd& force) const {
-    if (d.N.cols() == 0) return Eigen::VectorXd(0);
-    return along.solve(d.N.transpose() * force);
-  }
-};
-
-/// The nutations that a motion starts with because its velocity is another than the technical one:
-/// A_f w' + way' W P w = 0 with A_f = P' A way: across, the kept directions giving way.
-struct Nutations {
-  Eigen::VectorXcd roots;
-  Eigen::MatrixXcd shapes;  ///< of the displacement, scaled to the start
-  Eigen::VectorXd offset;   ///< of their middle from the start
-  Eigen::VectorXd kick;     ///< of v
-
-  Nutations(const Directions& d, const TechnicalPoint& p, const Eigen::VectorXd& mismatch)
-      : offset(Eigen::VectorXd::Zero(p.u.size())), kick(Eigen::VectorXd::Zero(d.N.cols())) {
-    if (d.P.cols() == 0) return;
-    const Eigen::VectorXd w = d.P.transpose() * mismatch;
-    if (d.N.cols() > 0) kick = -d.N.transpose() * p.way * w;
-    const Eigen::MatrixXd A = d.P.transpose() * p.f.A * p.way;
-    offset = p.way * p.across.solve(A * w);
-    const Eigenpairs modes = eigenpairs(state_matrix(d, p, A));
-    roots = modes.values;
-    const Eigen::VectorXcd share = solution(modes.vectors, w.cast<std::complex<double>>());
-    shapes = p.way * modes.vectors * share.cwiseQuotient(roots).asDiagonal();
-  }
-
-  /// Amplitudes, component by component, so long after the start.
-  [[nodiscard]] Eigen::VectorXd amplitude(double time) const {
-    if (roots.size() == 0) return Eigen::VectorXd::Zero(offset.size());
-    return shapes.cwiseAbs() * (roots.real() * time).array().exp().matrix();
-  }
-
-  /// The least |root| that nutations have at one point.
-  [[nodiscard]] static double slowest(const Directions& d, const TechnicalPoint& p) {
-    if (d.P.cols() == 0) return std::numeric_limits<double>::infinity();
-    const Eigen::MatrixXd A = d.P.transpose() * p.f.A * p.way;
-    return eigenvalues(state_matrix(d, p, A)).cwiseAbs().minCoeff();
-  }
-
- private:
-  [[nodiscard]] static Eigen::MatrixXd state_matrix(const Directions& d, const TechnicalPoint& p,
-                                                    const Eigen::MatrixXd& A) {
-    return -A.ldlt().solve(p.way.transpose() * p.W * d.P);
-  }
-};
-
-}  // namespace detail
 
 /// Integrates the technical (precession) equations
 ///
@@ -210,9 +116,6 @@ struct Nutations {
 /// beside it the nutation itself, each mode with its own decay or growth. The bound is both, times
 /// 1.2 + 4 `smallness` for what is of higher order.
 ///
-/// Model  : has forces(t, place) -> GyroForces; motion_forces(t, place, u) -> c; rate(t, place, u)
-///          and moved(place, e) of places; turning_along(place, u, e), what e' has besides w where
-///          u are no rates of coordinates; blocks() of a place
 /// Source : paper 000 (15); errors: G^-1 A(u(0) - u_p(0)) and the integral of G^-1 r, here signed
 /// Error  : the true error lies in [0.1, 1] of the bound in >= 95 % of random cases
 ///          (tests/dynamics/study/precession.cpp) and where G is singular (precession_bodies.cpp).
@@ -221,143 +124,12 @@ struct Nutations {
 ///          kernel turns away from the directions kept, which are those at the start
 /// Throws : ComputationFailed where G + D (across N) is singular at the start; and as ExplicitSteps
 ///          does
-template <class Model>
-[[nodiscard]] TechnicalMotion technical_motion(const Model& model, double t_begin,
-                                               const Eigen::VectorXd& place,
-                                               const Eigen::VectorXd& u, double t_end,
-                                               const TechnicalOptions& options = {}) {
-  using Eigen::VectorXd;
-  using Point = detail::TechnicalPoint;
-  const auto clock = std::chrono::steady_clock::now();
-  const GyroForces at_start = model.forces(t_begin, place);
-  const auto directions = detail::Directions::of(at_start.G, options);
-  const auto& N = directions.N;
-  const Eigen::Index n = place.size(), kept = N.cols();
-
-  const auto point = [&](double t, const VectorXd& z) {
-    return Point(directions, model.forces(t, z.head(n)), z.tail(kept));
-  };
-  const auto field = [&](double t, const VectorXd& z, VectorXd& rate) {
-    const Point p = point(t, z);
-    // No number: the step is made shorter.
-    if (!p.determined) {
-      rate.setConstant(std::numeric_limits<double>::quiet_NaN());
-      return;
-    }
-    rate.head(n) = model.rate(t, z.head(n), p.u);
-    rate.tail(kept) = p.dv;
-  };
-  // What the forces at unchanged velocities gain by a displacement.
-  const auto stiffening = [&](double t, const VectorXd& z, const Point& p, const VectorXd& e) {
-    const double size = e.norm();
-    VectorXd change = VectorXd::Zero(e.size());
-    if (!(size > 0)) return change;
-    const double h = 1e-4;
-    for (const double sign : {1.0, -1.0}) {
-      const GyroForces f = model.forces(t, model.moved(z.head(n), VectorXd(sign * h / size * e)));
-      change += sign * ((f.G + f.D) * p.u - f.Q + f.A * N * p.dv);
-    }
-    return VectorXd(change * (size / (2 * h)));
-  };
-
-  VectorXd z(n + kept);
-  z << place, N.transpose() * u;
-  std::vector<int> blocks = model.blocks();
-  blocks.insert(blocks.end(), static_cast<std::size_t>(kept), 1);
-  ExplicitSteps steps(field, t_begin, z, options.accuracy, blocks);
-
-  TechnicalMotion motion;
-  motion.kept = static_cast<int>(kept);
-  motion.valid_until = t_begin;
-  std::optional<detail::Nutations> nutations;
-  VectorXd e, w_kept;
-  double worst = 0, fastest_drift = 0;
-  bool good = true;
-  const auto note = [&](double t, const VectorXd& at, const Point& p) {
-    TechnicalSample s{t, at.head(n), p.u, e, nutations->amplitude(t - t_begin), 0};
-    worst = std::max(worst, (e.cwiseAbs() + s.nutation).norm());
-    s.bound = (1.2 + 4 * motion.smallness) * worst;
-    good = good && s.bound <= options.tolerated_error;
-    if (good) motion.valid_until = t;
-    motion.samples.push_back(std::move(s));
-  };
-
-  if (!point(t_begin, z).determined) {
-    detail::refuse_technical(
-        t_begin, "G + D does not determine the velocities; keep the accelerations on its kernel");
-  }
-  while (steps.t() != t_end && motion.slow) {
-    const double from = steps.t();
-    std::vector<VectorXd> states{steps.y()};
-    steps.step_towards(t_end);
-    const double h = (steps.t() - from) / 4;
-    std::vector<double> times{from};
-    std::vector<Point> points;
-    for (int i = 1; i < 5; ++i) {
-      times.push_back(i < 4 ? from + i * h : steps.t());
-      states.push_back(i < 4 ? steps.at(times.back()) : steps.y());
-    }
-    for (std::size_t i = 0; i < 5; ++i) points.push_back(point(times[i], states[i]));
-    std::vector<VectorXd> neglected;
-    for (std::size_t i = 0; i < 5; ++i) {
-      const Point& p = points[i];
-      VectorXd du = VectorXd::Zero(p.u.size());
-      for (std::size_t k = 0; k < 5; ++k) {
-        du += detail::five_point_slopes.at(i).at(k) / (12 * h) * points[k].u;
-      }
-      neglected.push_back(p.f.A * du - p.f.A * N * p.dv +
-                          model.motion_forces(times[i], states[i].head(n), p.u));
-    }
-    if (!nutations) {
-      const Point& p = points[0];
-      const VectorXd slow = p.velocity(directions, VectorXd(p.f.Q - neglected[0]), z.tail(kept));
-      nutations.emplace(directions, p, u - slow);
-      e = nutations->offset;
-      w_kept = nutations->kick;
-      note(t_begin, states[0], p);
-    }
-    const double least_nutation = detail::Nutations::slowest(directions, points[4]);
-    // Classical Runge-Kutta steps from every second of the five points to the next.
-    const auto slope = [&](std::size_t i, const VectorXd& x) {
-      const Point& p = points[i];
-      const VectorXd at = x.head(e.size());
-      const VectorXd force = -neglected[i] - stiffening(times[i], states[i], p, at);
-      const VectorXd w = p.velocity(directions, force, x.tail(kept));
-      VectorXd rate(x.size());
-      rate.head(e.size()) = w + model.turning_along(states[i].head(n), p.u, at);
-      rate.tail(kept) = p.acceleration(directions, force - p.W * w);
-      return rate;
-    };
-    VectorXd x(e.size() + kept);
-    x << e, w_kept;
-    for (std::size_t i = 0; i < 4; i += 2) {
-      const VectorXd k_1 = slope(i, x);
-      const VectorXd k_2 = slope(i + 1, x + h * k_1);
-      const VectorXd k_3 = slope(i + 1, x + h * k_2);
-      const VectorXd k_4 = slope(i + 2, x + 2 * h * k_3);
-      x += h / 3 * (k_1 + 2 * k_2 + 2 * k_3 + k_4);
-      fastest_drift = std::max(fastest_drift, k_4.head(e.size()).norm());
-      const double turn = (k_4 - k_1).head(e.size()).norm() / (2 * h);
-      if (fastest_drift > 0) {
-        motion.smallness = std::max(motion.smallness, turn / fastest_drift / least_nutation);
-      }
-      motion.slow = motion.smallness < 0.5;
-      if (!motion.slow) break;
-      e = x.head(e.size());
-      w_kept = x.tail(kept);
-      note(times[i + 2], states[i + 2], points[i + 2]);
-    }
-    while (motion.slow && motion.outputs.size() < options.times.size() &&
-           steps.covers(options.times[motion.outputs.size()])) {
-      const double t = options.times[motion.outputs.size()];
-      const VectorXd there = steps.at(t);
-      motion.outputs.push_back(
-          {t, there.head(n), point(t, there).u, {}, {}, motion.samples.back().bound});
-    }
-  }
-  motion.effort = steps.effort();
-  motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-  return motion;
-}
+KREISEL_DECLARED [[nodiscard]] TechnicalMotion technical_motion(
+    const TechnicalModel& model, double t_begin, const Eigen::VectorXd& place,
+    const Eigen::VectorXd& u, double t_end, const TechnicalOptions& options = {});
 
 }  // namespace kreisel
+
+#ifndef KREISEL_COMPILED
+#include <dynamics/study/precession_defined.hpp>
+#endif

@@ -26,7 +26,7 @@ namespace kreisel {
 ///          friction, or there is no rotor
 /// Cost   : of each evaluation one rotor_matrices(); with loads 2n more, for their damping
 template <class M>
-class TechnicalBodies {
+class TechnicalBodies final : public TechnicalModel {
  public:
   explicit TechnicalBodies(BodySystem<M> system)
       : system_(std::move(system)), workspace_(system_.workspace()) {
@@ -73,7 +73,7 @@ class TechnicalBodies {
     return y;
   }
 
-  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const {
+  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const override {
     const auto n = static_cast<Eigen::Index>(rates_.size());
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
     const RotorMatrices m = matrices(t, place, zero);
@@ -96,14 +96,14 @@ class TechnicalBodies {
   }
 
   [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
-                                              const Eigen::VectorXd& u) const {
+                                              const Eigen::VectorXd& u) const override {
     const GyroForces f = forces(t, place);
     const RotorMatrices m = matrices(t, place, u);
     return f.Q - (m.Q - m.c) - f.D * u;
   }
 
   [[nodiscard]] Eigen::VectorXd rate(double t, const Eigen::VectorXd& place,
-                                     const Eigen::VectorXd& u) const {
+                                     const Eigen::VectorXd& u) const override {
     const BodyTree& tree = system_.tree();
     Eigen::VectorXd result(place.size());
     const Eigen::VectorXd v = scattered(u);
@@ -120,7 +120,7 @@ class TechnicalBodies {
   }
 
   [[nodiscard]] Eigen::VectorXd moved(const Eigen::VectorXd& place,
-                                      const Eigen::VectorXd& e) const {
+                                      const Eigen::VectorXd& e) const override {
     Eigen::VectorXd result = place;
     const Eigen::VectorXd v = scattered(e);
     for (const detail::Link& link : system_.tree().links()) {
@@ -137,7 +137,7 @@ class TechnicalBodies {
 
   [[nodiscard]] Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
                                               const Eigen::VectorXd& u,
-                                              const Eigen::VectorXd& e) const {
+                                              const Eigen::VectorXd& e) const override {
     const Eigen::VectorXd w = scattered(u), x = scattered(e);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(x.size());
     for (const detail::Link& link : system_.tree().links()) {
@@ -148,7 +148,7 @@ class TechnicalBodies {
     return result(rates_);
   }
 
-  [[nodiscard]] std::vector<int> blocks() const {
+  [[nodiscard]] std::vector<int> blocks() const override {
     const BodyTree& tree = system_.tree();
     std::vector<int> result;
     for (int sum = 0; const int size : tree.blocks()) {

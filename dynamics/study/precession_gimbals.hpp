@@ -22,7 +22,7 @@ namespace kreisel {
 /// Source : paper 000 (14) with B = (sin beta, 0)
 /// Throws : InvalidInput for a rotor that is not symmetric or has friction
 template <class M, class Rotor>
-class TechnicalGimbals {
+class TechnicalGimbals final : public TechnicalModel {
   static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, RegulatedRotor>,
                 "a driven rotor has no constant momentum");
 
@@ -44,7 +44,7 @@ class TechnicalGimbals {
 
   [[nodiscard]] const Gyro& gyro() const { return gyro_; }
 
-  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const {
+  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const override {
     const auto& [rotor, inner, outer] = gyro_.moments();
     const auto& [about_a, about_b] = gyro_.bearings();
     const double sb = std::sin(about_b.reference + place[1]);
@@ -62,25 +62,12 @@ class TechnicalGimbals {
   }
 
   [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
-                                              const Eigen::VectorXd& u) const {
+                                              const Eigen::VectorXd& u) const override {
     const GyroForces f = forces(t, place);
     return f.Q - (f.G + f.D) * u - f.A * acceleration(t, place, u);
   }
 
-  [[nodiscard]] static Eigen::VectorXd rate(double /*t*/, const Eigen::VectorXd& /*place*/,
-                                            const Eigen::VectorXd& u) {
-    return u;
-  }
-  [[nodiscard]] static Eigen::VectorXd moved(const Eigen::VectorXd& place,
-                                             const Eigen::VectorXd& e) {
-    return place + e;
-  }
-  [[nodiscard]] static Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
-                                                     const Eigen::VectorXd& /*u*/,
-                                                     const Eigen::VectorXd& e) {
-    return Eigen::VectorXd::Zero(e.size());
-  }
-  [[nodiscard]] static std::vector<int> blocks() { return {1, 1}; }
+  [[nodiscard]] std::vector<int> blocks() const override { return {1, 1}; }
 
  private:
   static constexpr bool regulated = std::is_same_v<Rotor, RegulatedRotor>;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/scene/rotors_reference.hpp>
+#include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 #include <dynamics/study/precession_gimbals.hpp>
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/scene/load.hpp>
+#include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 
 #include <support/worst.hpp>

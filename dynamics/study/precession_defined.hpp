@@ -1,0 +1,299 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <dynamics/decompositions.hpp>
+#include <dynamics/step/explicit.hpp>
+#include <dynamics/study/precession.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+template <class... Words>
+[[noreturn]] void refuse_technical(double t, const Words&... words) {
+  std::ostringstream text;
+  text.precision(10);
+  text << "technical equations at t = " << t << " s: ";
+  (text << ... << words);
+  throw ComputationFailed(text.str());
+}
+
+/// The derivative at each of five places h apart of the polynomial through them, times 12 h.
+inline constexpr std::array<std::array<double, 5>, 5> five_point_slopes{{{-25, 48, -36, 16, -3},
+                                                                         {-3, -10, 18, -6, 1},
+                                                                         {1, -8, 0, 8, -1},
+                                                                         {-1, 6, -18, 10, 3},
+                                                                         {3, -16, 36, -48, 25}}};
+
+// Products are taken two by two, of matrices and not of expressions, each of which the compiler would
+// have to make anew.
+[[nodiscard]] inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A * B;
+}
+
+/// The orthonormal directions N of kept accelerations and P of the others.
+struct Directions {
+  Eigen::MatrixXd N;
+  Eigen::MatrixXd P;
+  Eigen::MatrixXd N_t = N.transpose();
+  Eigen::MatrixXd P_t = P.transpose();
+
+  [[nodiscard]] static Directions of(const Eigen::MatrixXd& G, const TechnicalOptions& options) {
+    const Eigen::Index n = G.rows();
+    if (options.kept == KeptAccelerations::none) {
+      return {Eigen::MatrixXd(n, 0), Eigen::MatrixXd::Identity(n, n)};
+    }
+    const auto [s, U, V] = singular_values(G);
+    const Eigen::Index rank = (s.array() > options.rank_tolerance * s[0]).count();
+    return {V.rightCols(n - rank), V.leftCols(rank)};
+  }
+};
+
+/// What belongs to one place: u from the technical equations, and how they answer to more force.
+struct TechnicalPoint {
+  GyroForces f;
+  Eigen::MatrixXd W;  ///< G + D
+  Eigen::VectorXd u;
+  Eigen::VectorXd dv;   ///< of v = N' u
+  Eigen::MatrixXd way;  ///< P, and how the kept directions go along: way' A N = 0
+  Eigen::FullPivLU<Eigen::MatrixXd> across;  ///< way' W P
+  bool determined = true;                    ///< whether it is regular
+  Eigen::LDLT<Eigen::MatrixXd> along;        ///< N' A N
+
+  TechnicalPoint(const Directions& d, GyroForces forces, const Eigen::VectorXd& v)
+      : f(std::move(forces)), W(f.G + f.D), way(d.P) {
+    if (d.N.cols() > 0) {
+      const Eigen::MatrixXd N_A = product(d.N_t, f.A);
+      along.compute(product(N_A, d.N));
+      way -= product(d.N, along.solve(product(N_A, d.P)));
+    }
+    if (d.P.cols() > 0) {
+      across.compute(product(product(way.transpose(), W), d.P));
+      across.setThreshold(1e-12);
+      determined = across.isInvertible();
+    }
+    u = velocity(d, f.Q, v);
+    dv = acceleration(d, f.Q - W * u);
+  }
+
+  [[nodiscard]] Eigen::VectorXd velocity(const Directions& d, const Eigen::VectorXd& Q,
+                                         const Eigen::VectorXd& v) const {
+    Eigen::VectorXd whole = d.N * v;
+    if (d.P.cols() == 0) return whole;
+    const Eigen::VectorXd left = Q - W * whole;
+    const Eigen::VectorXd w = across.solve(Eigen::VectorXd(way.transpose() * left));
+    return whole + d.P * w;
+  }
+  [[nodiscard]] Eigen::VectorXd acceleration(const Directions& d,
+                                             const Eigen::VectorXd& force) const {
+    if (d.N.cols() == 0) return Eigen::VectorXd(0);
+    return along.solve(Eigen::VectorXd(d.N_t * force));
+  }
+};
+
+/// The nutations that a motion starts with because its velocity is another than the technical one:
+/// A_f w' + way' W P w = 0 with A_f = P' A way: across, the kept directions giving way.
+struct Nutations {
+  Eigen::VectorXcd roots;
+  Eigen::MatrixXcd shapes;  ///< of the displacement, scaled to the start
+  Eigen::VectorXd offset;   ///< of their middle from the start
+  Eigen::VectorXd kick;     ///< of v
+
+  Nutations(const Directions& d, const TechnicalPoint& p, const Eigen::VectorXd& mismatch)
+      : offset(Eigen::VectorXd::Zero(p.u.size())), kick(Eigen::VectorXd::Zero(d.N.cols())) {
+    if (d.P.cols() == 0) return;
+    const Eigen::VectorXd w = d.P_t * mismatch;
+    if (d.N.cols() > 0) kick = -(d.N_t * Eigen::VectorXd(p.way * w));
+    const Eigen::MatrixXd A = across(d, p);
+    const Eigen::VectorXd middle = p.across.solve(Eigen::VectorXd(A * w));
+    offset = p.way * middle;
+    const Eigenpairs modes = eigenpairs(state_matrix(d, p, A));
+    roots = modes.values;
+    const Eigen::VectorXcd share = solution(modes.vectors, w.cast<std::complex<double>>());
+    shapes.resize(p.way.rows(), roots.size());
+    shapes.real() = product(p.way, modes.vectors.real());
+    shapes.imag() = product(p.way, modes.vectors.imag());
+    for (Eigen::Index k = 0; k < roots.size(); ++k) shapes.col(k) *= share[k] / roots[k];
+  }
+
+  /// Amplitudes, component by component, so long after the start.
+  [[nodiscard]] Eigen::VectorXd amplitude(double time) const {
+    if (roots.size() == 0) return Eigen::VectorXd::Zero(offset.size());
+    const Eigen::VectorXd grown = (roots.real() * time).array().exp();
+    return Eigen::MatrixXd(shapes.cwiseAbs()) * grown;
+  }
+
+  /// The least |root| that nutations have at one point.
+  [[nodiscard]] static double slowest(const Directions& d, const TechnicalPoint& p) {
+    if (d.P.cols() == 0) return std::numeric_limits<double>::infinity();
+    return eigenvalues(state_matrix(d, p, across(d, p))).cwiseAbs().minCoeff();
+  }
+
+ private:
+  /// A_f
+  [[nodiscard]] static Eigen::MatrixXd across(const Directions& d, const TechnicalPoint& p) {
+    return product(product(d.P_t, p.f.A), p.way);
+  }
+  [[nodiscard]] static Eigen::MatrixXd state_matrix(const Directions& d, const TechnicalPoint& p,
+                                                    const Eigen::MatrixXd& A) {
+    return -A.ldlt().solve(product(product(p.way.transpose(), p.W), d.P));
+  }
+};
+
+}  // namespace detail
+
+KREISEL_DEFINED TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
+                                                 const Eigen::VectorXd& place,
+                                                 const Eigen::VectorXd& u, double t_end,
+                                                 const TechnicalOptions& options) {
+  using Eigen::VectorXd;
+  using Point = detail::TechnicalPoint;
+  const auto clock = std::chrono::steady_clock::now();
+  const GyroForces at_start = model.forces(t_begin, place);
+  const auto directions = detail::Directions::of(at_start.G, options);
+  const auto& N = directions.N;
+  const Eigen::Index n = place.size(), kept = N.cols();
+
+  const auto point = [&](double t, const VectorXd& z) {
+    return Point(directions, model.forces(t, z.head(n)), z.tail(kept));
+  };
+  const auto field = [&](double t, const VectorXd& z, VectorXd& rate) {
+    const Point p = point(t, z);
+    // No number: the step is made shorter.
+    if (!p.determined) {
+      rate.setConstant(std::numeric_limits<double>::quiet_NaN());
+      return;
+    }
+    rate.head(n) = model.rate(t, z.head(n), p.u);
+    rate.tail(kept) = p.dv;
+  };
+  // What the forces at unchanged velocities gain by a displacement.
+  const auto stiffening = [&](double t, const VectorXd& z, const Point& p, const VectorXd& e) {
+    const double size = e.norm();
+    VectorXd change = VectorXd::Zero(e.size());
+    if (!(size > 0)) return change;
+    const double h = 1e-4;
+    for (const double sign : {1.0, -1.0}) {
+      const GyroForces f = model.forces(t, model.moved(z.head(n), VectorXd(sign * h / size * e)));
+      change += sign * ((f.G + f.D) * p.u - f.Q + f.A * VectorXd(N * p.dv));
+    }
+    return VectorXd(change * (size / (2 * h)));
+  };
+
+  VectorXd z(n + kept);
+  z << place, N.transpose() * u;
+  std::vector<int> blocks = model.blocks();
+  blocks.insert(blocks.end(), static_cast<std::size_t>(kept), 1);
+  ExplicitSteps steps(field, t_begin, z, options.accuracy, blocks);
+
+  TechnicalMotion motion;
+  motion.kept = static_cast<int>(kept);
+  motion.valid_until = t_begin;
+  std::optional<detail::Nutations> nutations;
+  VectorXd e, w_kept;
+  double worst = 0, fastest_drift = 0;
+  bool good = true;
+  const auto note = [&](double t, const VectorXd& at, const Point& p) {
+    TechnicalSample s{t, at.head(n), p.u, e, nutations->amplitude(t - t_begin), 0};
+    worst = std::max(worst, (e.cwiseAbs() + s.nutation).norm());
+    s.bound = (1.2 + 4 * motion.smallness) * worst;
+    good = good && s.bound <= options.tolerated_error;
+    if (good) motion.valid_until = t;
+    motion.samples.push_back(std::move(s));
+  };
+
+  if (!point(t_begin, z).determined) {
+    detail::refuse_technical(
+        t_begin, "G + D does not determine the velocities; keep the accelerations on its kernel");
+  }
+  while (steps.t() != t_end && motion.slow) {
+    const double from = steps.t();
+    std::vector<VectorXd> states{steps.y()};
+    steps.step_towards(t_end);
+    const double h = (steps.t() - from) / 4;
+    std::vector<double> times{from};
+    std::vector<Point> points;
+    for (int i = 1; i < 5; ++i) {
+      times.push_back(i < 4 ? from + i * h : steps.t());
+      states.push_back(i < 4 ? steps.at(times.back()) : steps.y());
+    }
+    for (std::size_t i = 0; i < 5; ++i) points.push_back(point(times[i], states[i]));
+    std::vector<VectorXd> neglected;
+    for (std::size_t i = 0; i < 5; ++i) {
+      const Point& p = points[i];
+      VectorXd du = VectorXd::Zero(p.u.size());
+      for (std::size_t k = 0; k < 5; ++k) {
+        du += detail::five_point_slopes.at(i).at(k) / (12 * h) * points[k].u;
+      }
+      neglected.push_back(p.f.A * du - p.f.A * VectorXd(N * p.dv) +
+                          model.motion_forces(times[i], states[i].head(n), p.u));
+    }
+    if (!nutations) {
+      const Point& p = points[0];
+      const VectorXd slow = p.velocity(directions, VectorXd(p.f.Q - neglected[0]), z.tail(kept));
+      nutations.emplace(directions, p, u - slow);
+      e = nutations->offset;
+      w_kept = nutations->kick;
+      note(t_begin, states[0], p);
+    }
+    const double least_nutation = detail::Nutations::slowest(directions, points[4]);
+    // Classical Runge-Kutta steps from every second of the five points to the next.
+    const auto slope = [&](std::size_t i, const VectorXd& x) {
+      const Point& p = points[i];
+      const VectorXd at = x.head(e.size());
+      const VectorXd force = -neglected[i] - stiffening(times[i], states[i], p, at);
+      const VectorXd w = p.velocity(directions, force, x.tail(kept));
+      VectorXd rate(x.size());
+      rate.head(e.size()) = w + model.turning_along(states[i].head(n), p.u, at);
+      rate.tail(kept) = p.acceleration(directions, force - p.W * w);
+      return rate;
+    };
+    VectorXd x(e.size() + kept);
+    x << e, w_kept;
+    for (std::size_t i = 0; i < 4; i += 2) {
+      const VectorXd k_1 = slope(i, x);
+      const VectorXd k_2 = slope(i + 1, x + h * k_1);
+      const VectorXd k_3 = slope(i + 1, x + h * k_2);
+      const VectorXd k_4 = slope(i + 2, x + 2 * h * k_3);
+      x += h / 3 * (k_1 + 2 * k_2 + 2 * k_3 + k_4);
+      fastest_drift = std::max(fastest_drift, k_4.head(e.size()).norm());
+      const double turn = (k_4 - k_1).head(e.size()).norm() / (2 * h);
+      if (fastest_drift > 0) {
+        motion.smallness = std::max(motion.smallness, turn / fastest_drift / least_nutation);
+      }
+      motion.slow = motion.smallness < 0.5;
+      if (!motion.slow) break;
+      e = x.head(e.size());
+      w_kept = x.tail(kept);
+      note(times[i + 2], states[i + 2], points[i + 2]);
+    }
+    while (motion.slow && motion.outputs.size() < options.times.size() &&
+           steps.covers(options.times[motion.outputs.size()])) {
+      const double t = options.times[motion.outputs.size()];
+      const VectorXd there = steps.at(t);
+      motion.outputs.push_back(
+          {t, there.head(n), point(t, there).u, {}, {}, motion.samples.back().bound});
+    }
+  }
+  motion.effort = steps.effort();
+  motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+  return motion;
+}
+
+}  // namespace kreisel
