@@ -51,6 +51,8 @@ class BodySystem {
   [[nodiscard]] const M& guide() const { return guide_; }
   [[nodiscard]] const BodyTree& tree() const { return tree_; }
   [[nodiscard]] const Gravity& gravity() const { return gravity_; }
+  /// The field of gravity on guide axes.
+  [[nodiscard]] Vector3<S> gravity_at(double t) const { return detail::field(gravity_, guide_(t)); }
   [[nodiscard]] BodyWorkspace workspace() const { return BodyWorkspace(tree_); }
   [[nodiscard]] int body_count() const { return static_cast<int>(tree_.bodies().size()); }
 

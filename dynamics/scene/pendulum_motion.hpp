@@ -73,10 +73,15 @@ class SteadyPendulumMotion {
   /// How much of its rounding the phase takes over: 1 far from barriers, and great near them.
   [[nodiscard]] S condition() const { return condition_; }
 
+  /// How many radians of phase that time takes.
+  [[nodiscard]] S phase(const S& time) const {
+    using std::abs;
+    return abs(S(time / pace_));
+  }
+
   /// Bound of what the phase is off at that time by rounding.
   [[nodiscard]] S phase_error(const S& time) const {
-    using std::abs;
-    return (S(4) * abs(S(time / pace_)) + S(32)) * std::numeric_limits<S>::epsilon() * condition_;
+    return (S(4) * phase(time) + S(32)) * std::numeric_limits<S>::epsilon() * condition_;
   }
 
   /// What angle and rate change by for each radian of phase, at most.

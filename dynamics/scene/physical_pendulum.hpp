@@ -26,8 +26,10 @@ namespace detail {
 /// RunReport::error_estimate: in proportion to the greatest angle and rate so far.
 class SteadyPendulumMotionError {
  public:
-  SteadyPendulumMotionError(const SteadyPendulumMotion<exact::Real>& motion, double begin)
-      : motion_(motion), begin_(begin) {}
+  /// inputs : of each radian of phase, what the rounding of inputs makes it wrong by
+  SteadyPendulumMotionError(const SteadyPendulumMotion<exact::Real>& motion, double begin,
+                            double inputs = 0)
+      : motion_(motion), begin_(begin), inputs_(inputs) {}
 
   [[nodiscard]] double operator()(double t, double smallest) {
     const exact::Real time = exact::Real(t) - begin_;
@@ -35,7 +37,7 @@ class SteadyPendulumMotionError {
     angle_ = std::max({angle_, smallest, std::abs(double(point.angle))});
     rate_ = std::max({rate_, smallest, std::abs(double(point.rate))});
     constexpr double u = std::numeric_limits<double>::epsilon() / 2;
-    const double off = double(motion_.phase_error(time));
+    const double off = double(motion_.phase_error(time) + inputs_ * motion_.phase(time));
     return 2 * u + off * double(std::max(motion_.angle_per_phase() / angle_,
                                          motion_.rate_per_phase() / rate_));
   }
@@ -43,6 +45,7 @@ class SteadyPendulumMotionError {
  private:
   SteadyPendulumMotion<exact::Real> motion_;
   double begin_;
+  double inputs_;
   double angle_ = 0;  ///< the greatest so far
   double rate_ = 0;
 };

@@ -36,11 +36,21 @@ class WatchedSystem {
 
   [[nodiscard]] const JointState& latest() const { return latest_; }
 
+  [[nodiscard]] const System& system() const { return system_; }
+
  private:
   const System& system_;
   const std::function<bool()>& interrupted_;
   mutable JointState latest_;
 };
+
+/// That of the system, where it may have one.
+template <class System>
+[[nodiscard]] auto closed_form(const WatchedSystem<System>& watched, double begin,
+                               const typename System::State& start)
+    -> decltype(closed_form(watched.system(), begin, start)) {
+  return closed_form(watched.system(), begin, start);
+}
 
 template <class M>
 class ModelOnGuide final : public Model {

@@ -6,9 +6,12 @@
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
 #include <dynamics/scene/body_system.hpp>
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/solve/solve.hpp>
+
+#include <support/sample.hpp>
 
 /// Trees of bodies, whose states have a size known at run time only.
 
@@ -30,8 +33,9 @@ BOOST_AUTO_TEST_CASE(solves_trees_of_bodies) {
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     BOOST_TEST(std::abs(found.states[i].coordinates[0] - truth.at(found.times[i]).angle) <= 1e-10);
   }
-  for (const Method method : {Method::radau13, Method::gauss16}) {
+  for (const Method method : {Method::verner98, Method::radau13, Method::gauss16}) {
     const auto other = solve(system, start, {.times = {20}, .tolerance = 1e-10, .method = method});
+    BOOST_TEST(other.report.method == name(method));
     BOOST_TEST(other.report.tolerance_kept);
     BOOST_TEST(std::abs(other.states[0].coordinates[0] - truth.at(20).angle) <= 1e-10);
   }
@@ -90,6 +94,149 @@ BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
     BOOST_TEST(std::abs(q[1] - 0.3 - as_gyro.states[i].beta) <= 2e-9);
     BOOST_TEST(std::abs(v[0] - as_gyro.states[i].alpha_rate) <= 2e-9);
   }
+}
+
+namespace {
+
+using Resting = BodySystem<RestingFrame<>>;
+
+/// Of coordinates or rates, by their size.
+double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).lpNorm<Eigen::Infinity>() / std::max(1.0, b.lpNorm<Eigen::Infinity>());
+}
+
+double distance(const Resting::State& a, const Resting::State& b, JointKind kind) {
+  Eigen::VectorXd x = a.coordinates, y = b.coordinates;
+  if (kind != JointKind::revolute) {
+    x.head<4>().normalize();
+    y.head<4>().normalize();
+  }
+  return std::max(apart(x, y), apart(a.rates, b.rates));
+}
+
+BodyDescription one(JointKind kind, const InertiaTensor<Body>& inertia) {
+  return {.name = "one", .joint = {.kind = kind, .axis = {0, 1, 0}}, .inertia = inertia};
+}
+
+const InertiaTensor<Body> brick =
+    InertiaTensor<Body>::about_origin(1.3, {0, 0, 0}, Vector3<double>(1, 1.5, 2).asDiagonal());
+const Gravity weight = UniformGravity<Guide>{{0, 0, -9.81}};
+
+}  // namespace
+
+// Against steps, which know nothing of it. Steps take the tensor about an axis and the arm as rounded:
+// 1e-13 are 100 such roundings of the angles turned through.
+BOOST_AUTO_TEST_CASE(knows_a_pendulum_and_a_top_among_systems) {
+  test::Sample sample(11);
+  const auto vector = [&sample] {
+    return Vector3<double>(sample.uniform(0.3, 1.5) * sample.direction());
+  };
+  const auto attitude = [&sample] { return Eigen::Quaterniond(sample.rotation()); };
+  double worst = 0;
+  for (int i = 0; i < 40; ++i) {
+    const JointKind kind = i % 4 == 0   ? JointKind::revolute
+                           : i % 4 == 1 ? JointKind::free
+                                        : JointKind::spherical;
+    BodyDescription body = one(kind, brick);
+    body.joint.position = vector();
+    Vector3<double> g = 5 * vector();
+    if (kind == JointKind::revolute) {
+      body.joint.axis = vector();
+      body.joint.orientation = attitude();
+      const Vector3<double> a = vector();
+      body.inertia = InertiaTensor<Body>::about_centre(
+          1.3, vector(), 2 * Matrix3<double>::Identity() - 0.3 * a * a.transpose());
+    } else if (kind == JointKind::free) {
+      body.joint.orientation = attitude();
+    } else {  // Lagrange's top, upright and hanging down; Euler's, as nothing pulls
+      const double arm = i % 8 == 2 ? 0.5 : -0.5;
+      body.inertia = InertiaTensor<Body>::about_origin(1.3, {0, 0, arm},
+                                                       Vector3<double>(1.5, 1.5, 0.7).asDiagonal());
+      g = i % 8 == 3 ? Vector3<double>(0, 0, 0) : Vector3<double>(0, 0, -9.81);
+    }
+    const Resting system({}, {body}, UniformGravity<Guide>{g});
+    auto start = system.rest();
+    for (double& rate : start.rates) rate = sample.uniform(-1, 1);
+    if (kind == JointKind::revolute) {
+      start.coordinates[0] = sample.uniform(-3, 3);
+    } else {
+      start.coordinates.head<4>() = attitude().coeffs();
+      if (kind == JointKind::free) start.coordinates.tail<3>() = vector();
+    }
+    const std::vector<double> times{-1, 0.5, 3, 7};
+    const auto known = solve(system, start, {.begin = -2, .times = times, .tolerance = 1e-13});
+    const auto steps =
+        solve(system, start,
+              {.begin = -2, .times = times, .tolerance = 1e-13, .method = Method::verner98});
+    BOOST_TEST(known.report.all_evaluations == 0, known.report.method);
+    BOOST_TEST(known.report.tolerance_kept);
+    BOOST_TEST(known.report.invariants.size() == steps.report.invariants.size());
+    for (const InvariantDrift& drift : known.report.invariants) {
+      BOOST_TEST(drift.largest <= 1e-12, drift.name);  // of sums of some 20
+    }
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      worst = std::max(worst, distance(known.states[k], steps.states[k], kind));
+    }
+  }
+  BOOST_TEST(worst <= 1e-13);
+}
+
+BOOST_AUTO_TEST_CASE(leaves_to_steps_what_is_more_than_that) {
+  const auto by_steps = [](BodyDescription body, auto guide, const Gravity& gravity = weight) {
+    const BodySystem system(std::move(guide), {std::move(body)}, gravity);
+    auto start = system.rest();
+    start.rates.setConstant(0.3);
+    const auto found = solve(system, start, {.times = {0.5}, .tolerance = 1e-8});
+    return found.report.tolerance_kept && found.report.all_evaluations > 0;
+  };
+  using enum JointKind;
+  const RestingFrame<> still;
+  const InertiaTensor<Body> rod{{1, {0.3, 0, 0}, {0.1, 0.2, 0.2}}};
+  BOOST_TEST(!by_steps(one(revolute, rod), still));  // which this is all about
+  BodyDescription other = one(revolute, rod);
+  other.forces = {{.stiffness = 1}};
+  BOOST_TEST(by_steps(other, still));
+  other.forces = {{.damping = 1}};
+  BOOST_TEST(by_steps(other, still));
+  other.forces = {{.constant = 1}};
+  BOOST_TEST(by_steps(other, still));
+  other = one(revolute, rod);
+  other.loads = {ConstantLoad<Body>{{0, 0, 1}}};
+  BOOST_TEST(by_steps(other, still));
+  BOOST_TEST(by_steps(one(revolute, rod), still, {}));  // nothing pulls
+  BOOST_TEST(by_steps(one(revolute, rod), RotatingFrame<>{{0, 0, 0.1}}));
+  BOOST_TEST(by_steps(one(prismatic, rod), still));
+  BOOST_TEST(by_steps(one(free, rod), still));  // the centre of mass is not at the origin
+  BOOST_TEST(by_steps(one(spherical, InertiaTensor<Body>{{1, {0, 0.3, 0.3}, {1, 1, 1}}}), still));
+  BOOST_TEST(by_steps(one(spherical, InertiaTensor<Body>{{1, {0, 0, 0.3}, {1, 1.1, 0.5}}}), still));
+  Inertia<> oblique = brick.value;
+  oblique.tensor.xy = 0.1;
+  BOOST_TEST(by_steps(one(spherical, {oblique}), still));
+  BOOST_TEST(by_steps(one(free, {oblique}), still));
+  other = one(spherical, InertiaTensor<Body>{{1, {0, 0, 0.3}, {1, 1, 0.5}}});
+  BOOST_TEST(!by_steps(other, still));
+  other.joint.orientation = Eigen::Quaterniond(0.8, 0.6, 0, 0);  // its start is rounded
+  BOOST_TEST(by_steps(other, still));
+  const Resting two({},
+                    {one(revolute, rod),
+                     {.name = "two",
+                      .parent = "one",
+                      .joint = {.kind = revolute, .axis = {0, 1, 0}},
+                      .inertia = rod}},
+                    weight);
+  BOOST_TEST(solve(two, two.rest(), {.times = {0.1}}).report.all_evaluations > 0);
+}
+
+BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_as_long_as_one_likes) {
+  const BodySystem system(RestingFrame<>{},
+                          {one(JointKind::revolute, {{2, {0, 0, -1}, {0.6, 0.6, 0.1}}})}, weight);
+  auto start = system.rest();
+  start.coordinates[0] = 0.7;
+  const exact::PendulumMotion truth(9.81 / 0.6, 0.7, 0);
+  const auto found = solve(system, start, {.times = {1e6}, .tolerance = 1e-8});
+  const double off = std::abs(found.states[0].coordinates[0] - truth.at(1e6).angle) / 0.7;
+  BOOST_TEST(found.report.tolerance_kept);
+  BOOST_TEST(off <= 1e-9);  // of 9.81/0.6 as rounded
 }
 
 // From whichever output, of whichever attempt: the same states and the same report.

@@ -1,0 +1,215 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <dynamics/body/tree.hpp>
+#include <dynamics/exact/elliptic.hpp>
+#include <dynamics/scene/physical_pendulum.hpp>
+#include <dynamics/solve/closed_form.hpp>
+
+/// Systems of bodies that are no more than a pendulum or a top.
+
+namespace kreisel::detail {
+
+/// The only body of a tree, where no joint force and no load acts on it.
+[[nodiscard]] inline const BodyDescription* lone_body(const BodyTree& tree) {
+  const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && tree.loaded().empty();
+  if (!alone || !tree.links().back().moved_by_forces()) return nullptr;
+  for (const JointForce& force : tree.forces()) {
+    if (force.stiffness != 0 || force.damping != 0 || force.constant != 0) return nullptr;
+  }
+  return &tree.body(0);
+}
+
+/// What a last digit of the description, of which mass, arm, weight and tensor are products, makes each
+/// radian wrong by.
+inline constexpr double of_inputs = std::numeric_limits<double>::epsilon();
+
+/// In long double, so that what the description is turned into is off by nothing else.
+[[nodiscard]] inline Eigen::Quaternion<exact::Real> orientation(const kreisel::Joint& joint) {
+  return joint.orientation.cast<exact::Real>().normalized();
+}
+
+/// Of a body in a revolute joint, with its axis a, the moment of inertia Theta about it, and the part p
+/// of its first moment that is across it, at q = 0:
+///
+///   Theta q'' + E sin q + F cos q = 0,   E = p.g,   F = -a.(p x g)
+KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> pendulum_motion(
+    const BodyDescription& body, const Vector3<double>& gravity, double begin,
+    const Eigen::VectorXd& y) {
+  using exact::Real;
+  using Vector = Vector3<Real>;
+  const Inertia<>& inertia = body.inertia.value;
+  const Vector a = body.joint.axis.cast<Real>().normalized();
+  const auto q = orientation(body.joint);
+  const Vector on_body = q.conjugate() * a;
+  const Vector first_moment = q * Vector(inertia.first_moment.cast<Real>());
+  const Vector p = first_moment - a.dot(first_moment) * a;
+  const Vector g = gravity.cast<Real>();
+  PendulumBody<Real> reduced;
+  reduced.theta_c = on_body.dot(inertia.tensor.matrix().cast<Real>() * on_body);
+  PendulumCoefficients<Real> c;
+  c.weight = p.dot(g);
+  c.f = -a.dot(p.cross(g));
+  if (!(reduced.theta_c > 0) || (c.weight == 0 && c.f == 0)) return std::nullopt;
+  if (!y.allFinite()) return std::nullopt;
+  try {
+    const SteadyPendulumMotion<Real> motion(reduced, c, y[0], y[1]);
+    return ClosedForm<Eigen::VectorXd>{"energy integral, Fourier series",
+                                       [motion, begin](double t) -> Eigen::VectorXd {
+                                         const auto point = motion.at(Real(t) - begin);
+                                         return Eigen::Vector2d(double(point.angle),
+                                                                double(point.rate));
+                                       },
+                                       SteadyPendulumMotionError(motion, begin, of_inputs)};
+  } catch (const ComputationFailed&) {  // too near a barrier
+    return std::nullopt;
+  }
+}
+
+/// A body that turns about a point, as an EulerTop.
+struct TurningBody {
+  EulerTop top;
+  Eigen::Quaternion<exact::Real> from_guide;  ///< to axes on which the vertical is z
+  Matrix3<double> axes;                       ///< of the top, on the body's: the weight lies on +z
+};
+
+/// Nothing where the axes are no principal axes, or the weight lies on none.
+[[nodiscard]] inline std::optional<TurningBody> turning_body(const BodyDescription& body,
+                                                             const Vector3<double>& gravity) {
+  using exact::Real;
+  const Inertia<>& inertia = body.inertia.value;
+  const Symmetric3<>& T = inertia.tensor;
+  const Vector3<double> moments(T.xx, T.yy, T.zz);
+  const Vector3<double>& s = inertia.first_moment;
+  const bool principal = T.xy == 0 && T.xz == 0 && T.yz == 0 && moments.minCoeff() > 0;
+  if (!principal || (body.joint.kind == JointKind::free && !s.isZero(0))) return std::nullopt;
+  const double k = gravity.norm() * s.norm();
+  if (k == 0) {
+    return TurningBody{EulerTop(moments), Eigen::Quaternion<Real>::Identity(),
+                       Matrix3<double>::Identity()};
+  }
+  if ((s.array() != 0).count() != 1) return std::nullopt;
+  const int z = s.x() != 0 ? 0 : s.y() != 0 ? 1 : 2;
+  const int x = (z + 1) % 3, y = (z + 2) % 3;
+  const double sign = s[z] > 0 ? 1 : -1;
+  Matrix3<double> axes = Matrix3<double>::Zero();
+  axes(x, 0) = 1;
+  axes(y, 1) = sign;
+  axes(z, 2) = sign;
+  const Vector3<Real> up = -gravity.cast<Real>().normalized();
+  return TurningBody{EulerTop({moments[x], moments[y], moments[z]}, {0, 0, k}),
+                     Eigen::Quaternion<Real>::FromTwoVectors(up, Vector3<Real>::UnitZ()), axes};
+}
+
+/// The flight of a free body's centre of mass; of one that is held nothing moves.
+struct Flight {
+  Vector3<exact::Real> start, velocity, gravity;
+
+  [[nodiscard]] Vector3<exact::Real> place(exact::Real time) const {
+    return start + time * velocity_after(time / 2);
+  }
+  [[nodiscard]] Vector3<exact::Real> velocity_after(exact::Real time) const {
+    return velocity + time * gravity;
+  }
+};
+
+/// By the measure of RunReport::error_estimate; in long double little is lost by cancellation.
+class FlightError {
+ public:
+  explicit FlightError(Flight flight) : flight_(std::move(flight)) {}
+
+  [[nodiscard]] double operator()(exact::Real time, double smallest) {
+    using exact::Real;
+    constexpr double u = std::numeric_limits<double>::epsilon() / 2;
+    const auto place = flight_.place(time), velocity = flight_.velocity_after(time);
+    place_ = std::max({place_, smallest, double(place.lpNorm<Eigen::Infinity>())});
+    velocity_ = std::max({velocity_, smallest, double(velocity.lpNorm<Eigen::Infinity>())});
+    const Real fall = std::abs(time) * flight_.gravity.norm();
+    const Real speed = flight_.velocity.norm() + fall;
+    const Real way = flight_.start.norm() + std::abs(time) * speed;
+    constexpr Real lost = 4 * std::numeric_limits<Real>::epsilon();
+    const auto relative = [](Real off, double size) { return size > 0 ? double(off / size) : 0; };
+    return 2 * u + std::max(relative(lost * way, place_), relative(lost * speed, velocity_));
+  }
+
+ private:
+  Flight flight_;
+  double place_ = 0;  ///< the greatest so far
+  double velocity_ = 0;
+};
+
+KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> top_motion(
+    const BodyDescription& body, const Vector3<double>& gravity, double begin,
+    const Eigen::VectorXd& y) {
+  using exact::Real;
+  using Quaternion = Eigen::Quaternion<Real>;
+  const auto turning = turning_body(body, gravity);
+  if (!turning || !y.allFinite()) return std::nullopt;
+  const Matrix3<double> axes = turning->axes;
+  const Quaternion before = turning->from_guide * orientation(body.joint);
+  const Quaternion to_body(Matrix3<Real>(axes.cast<Real>()));
+  const Quaternion start =
+      before * Quaternion(Eigen::Matrix<Real, 4, 1>(y.head<4>().cast<Real>())) * to_body;
+  const Eigen::Quaterniond rounded = start.cast<double>();
+  // Without weight the start's rounding stays what it is; with weight the motion makes of it what it
+  // will, and near the one that ends upright anything.
+  const bool is_exact = rounded.coeffs().cast<Real>() == start.coeffs();
+  const double k = turning->top.weight_moment().z();
+  if (k > 0 && !is_exact) return std::nullopt;
+  const bool free = body.joint.kind == JointKind::free;
+  const Eigen::Index rates = free ? 7 : 4;
+  const Vector3<double> w = axes.transpose() * y.segment<3>(rates);
+  const auto motion = kreisel::closed_form(turning->top, begin, {rounded, w});
+  if (!motion) return std::nullopt;
+  // How fast it turns, but for the spin about an axis of symmetry, which is given and no result: with a
+  // weight that a pendulum's rate at the lowest point may be added to it.
+  const double fall = 2 * std::sqrt(k / turning->top.moments().minCoeff());
+  const double rate = k > 0 ? std::hypot(w.x(), w.y()) + fall : w.norm();
+
+  const Vector3<Real> zero = Vector3<Real>::Zero();
+  Flight flight{zero, zero, zero};
+  if (free) {
+    flight = {y.segment<3>(4).cast<Real>(), y.tail<3>().cast<Real>(), gravity.cast<Real>()};
+  }
+  const auto at = [=, size = y.size(), top = motion->at](double t) {
+    const EulerTop::State state = top(t);
+    const Quaternion q = before.conjugate() * state.attitude.cast<Real>() * to_body.conjugate();
+    Eigen::VectorXd result(size);
+    result.head(4) = q.coeffs().cast<double>();
+    result.segment(rates, 3) = axes * state.angular_velocity;
+    if (free) {
+      result.segment(4, 3) = flight.place(Real(t) - begin).cast<double>();
+      result.tail(3) = flight.velocity_after(Real(t) - begin).cast<double>();
+    }
+    return result;
+  };
+  const auto error = [=, of_top = motion->error, of_flight = FlightError(flight)](
+                         double t, double smallest) mutable {
+    // Attitudes are turned there and back.
+    constexpr double of_turns = 2 * std::numeric_limits<double>::epsilon();
+    const double turned = of_top(t, smallest) + of_turns + of_inputs * rate * std::abs(t - begin);
+    return free ? std::max(turned, of_flight(Real(t) - begin, smallest)) : turned;
+  };
+  return ClosedForm<Eigen::VectorXd>{motion->name, at, error};
+}
+
+KREISEL_DEFINED std::optional<ClosedForm<Eigen::VectorXd>> closed_form(
+    const BodyTree& tree, const Vector3<double>& gravity, double begin, const Eigen::VectorXd& y) {
+  const BodyDescription* body = lone_body(tree);
+  if (!body) return std::nullopt;
+  switch (body->joint.kind) {
+    case JointKind::revolute: return pendulum_motion(*body, gravity, begin, y);
+    case JointKind::spherical:
+    case JointKind::free: return top_motion(*body, gravity, begin, y);
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace kreisel::detail
