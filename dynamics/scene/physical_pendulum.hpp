@@ -24,15 +24,15 @@ namespace detail {
 
 /// How far a SteadyPendulumMotion is off at output times that are asked for in turn, by the measure of
 /// RunReport::error_estimate: in proportion to the greatest angle and rate so far.
+template <class S>
 class SteadyPendulumMotionError {
  public:
   /// inputs : of each radian of phase, what the rounding of inputs makes it wrong by
-  SteadyPendulumMotionError(const SteadyPendulumMotion<exact::Real>& motion, double begin,
-                            double inputs = 0)
+  SteadyPendulumMotionError(const SteadyPendulumMotion<S>& motion, double begin, double inputs = 0)
       : motion_(motion), begin_(begin), inputs_(inputs) {}
 
   [[nodiscard]] double operator()(double t, double smallest) {
-    const exact::Real time = exact::Real(t) - begin_;
+    const S time = S(t) - begin_;
     const auto point = motion_.at(time);
     angle_ = std::max({angle_, smallest, std::abs(double(point.angle))});
     rate_ = std::max({rate_, smallest, std::abs(double(point.rate))});
@@ -43,7 +43,7 @@ class SteadyPendulumMotionError {
   }
 
  private:
-  SteadyPendulumMotion<exact::Real> motion_;
+  SteadyPendulumMotion<S> motion_;
   double begin_;
   double inputs_;
   double angle_ = 0;  ///< the greatest so far

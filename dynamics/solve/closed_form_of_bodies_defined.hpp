@@ -18,7 +18,7 @@
 namespace kreisel::detail {
 
 /// The only body of a tree, where no joint force and no load acts on it.
-[[nodiscard]] inline const BodyDescription* lone_body(const BodyTree& tree) {
+KREISEL_DECLARED [[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
   const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && tree.loaded().empty();
   if (!alone || !tree.links().back().moved_by_forces()) return nullptr;
   for (const JointForce& force : tree.forces()) {
@@ -32,7 +32,8 @@ namespace kreisel::detail {
 inline constexpr double of_inputs = std::numeric_limits<double>::epsilon();
 
 /// In long double, so that what the description is turned into is off by nothing else.
-[[nodiscard]] inline Eigen::Quaternion<exact::Real> orientation(const kreisel::Joint& joint) {
+KREISEL_DECLARED [[nodiscard]] Eigen::Quaternion<exact::Real> orientation(
+    const kreisel::Joint& joint) {
   return joint.orientation.cast<exact::Real>().normalized();
 }
 
@@ -81,8 +82,8 @@ struct TurningBody {
 };
 
 /// Nothing where the axes are no principal axes, or the weight lies on none.
-[[nodiscard]] inline std::optional<TurningBody> turning_body(const BodyDescription& body,
-                                                             const Vector3<double>& gravity) {
+KREISEL_DECLARED [[nodiscard]] std::optional<TurningBody> turning_body(
+    const BodyDescription& body, const Vector3<double>& gravity) {
   using exact::Real;
   const Inertia<>& inertia = body.inertia.value;
   const Symmetric3<>& T = inertia.tensor;
@@ -109,28 +110,27 @@ struct TurningBody {
 }
 
 /// The flight of a free body's centre of mass; of one that is held nothing moves.
+template <class Real>
 struct Flight {
-  Vector3<exact::Real> start, velocity, gravity;
+  Vector3<Real> start, velocity, gravity;
 
-  [[nodiscard]] Vector3<exact::Real> place(exact::Real time) const {
+  [[nodiscard]] Vector3<Real> place(Real time) const {
     return start + time * velocity_after(time / 2);
   }
-  [[nodiscard]] Vector3<exact::Real> velocity_after(exact::Real time) const {
-    return velocity + time * gravity;
-  }
+  [[nodiscard]] Vector3<Real> velocity_after(Real time) const { return velocity + time * gravity; }
 };
 
 /// By the measure of RunReport::error_estimate; in long double little is lost by cancellation.
+template <class Real>
 class FlightError {
  public:
-  explicit FlightError(Flight flight) : flight_(std::move(flight)) {}
+  explicit FlightError(const Flight<Real>& flight) : flight_(flight) {}
 
-  [[nodiscard]] double operator()(exact::Real time, double smallest) {
-    using exact::Real;
+  [[nodiscard]] double operator()(Real time, double smallest) {
     constexpr double u = std::numeric_limits<double>::epsilon() / 2;
     const auto place = flight_.place(time), velocity = flight_.velocity_after(time);
-    place_ = std::max({place_, smallest, double(place.lpNorm<Eigen::Infinity>())});
-    velocity_ = std::max({velocity_, smallest, double(velocity.lpNorm<Eigen::Infinity>())});
+    place_ = std::max({place_, smallest, double(place.cwiseAbs().maxCoeff())});
+    velocity_ = std::max({velocity_, smallest, double(velocity.cwiseAbs().maxCoeff())});
     const Real fall = std::abs(time) * flight_.gravity.norm();
     const Real speed = flight_.velocity.norm() + fall;
     const Real way = flight_.start.norm() + std::abs(time) * speed;
@@ -140,7 +140,7 @@ class FlightError {
   }
 
  private:
-  Flight flight_;
+  Flight<Real> flight_;
   double place_ = 0;  ///< the greatest so far
   double velocity_ = 0;
 };
@@ -174,7 +174,7 @@ KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> top_mo
   const double rate = k > 0 ? std::hypot(w.x(), w.y()) + fall : w.norm();
 
   const Vector3<Real> zero = Vector3<Real>::Zero();
-  Flight flight{zero, zero, zero};
+  Flight<Real> flight{zero, zero, zero};
   if (free) {
     flight = {y.segment<3>(4).cast<Real>(), y.tail<3>().cast<Real>(), gravity.cast<Real>()};
   }
