@@ -68,6 +68,8 @@ struct TechnicalMotion {
 
 /// What technical equations have to know of a system. Places are its own; displacements e and
 /// velocities u have as many components as there are equations.
+///
+/// Units : s, and those of the system's coordinates and rates
 class TechnicalModel {
  public:
   virtual ~TechnicalModel() = default;
