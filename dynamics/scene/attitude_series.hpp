@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include <dynamics/guide/series.hpp>
+#include <dynamics/scene/diagonals.hpp>
 #include <dynamics/scene/tensor_of_four.hpp>
 #include <motor/absent.hpp>
 #include <motor/four.hpp>
@@ -61,7 +62,7 @@ class AttitudeSeries {
         if constexpr (guide_changes) s.add_felt(i, j, felt, sums);
       }
       at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_attitudes(i, j, sums); });
-      const TurnBack R = sums.turn_back(1 / norm2);
+      const Diagonals R = Diagonals::turn_back(sums.square, sums.next, sums.by_w, 1 / norm2);
       if constexpr (guide_changes) {
         s.turn_back[std::size_t(k)] = R;
         at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_felt(i, j, felt, sums); });
@@ -115,23 +116,6 @@ class AttitudeSeries {
   template <class T>
   using Of = std::array<T, most_order + 1>;
 
-  /// A vector and both its cyclic exchanges.
-  struct Cycles {
-    Four as_is, next, after;
-
-    Cycles() = default;
-    explicit Cycles(const Four& v) : as_is(v), next(v.next()), after(v.after()) {}
-  };
-
-  /// R^t by its three diagonals, which what it turns goes round.
-  struct TurnBack {
-    Four main, upper, lower;
-
-    [[nodiscard]] friend Four operator*(const TurnBack& R, const Cycles& v) {
-      return R.main * v.as_is + R.upper * v.next + R.lower * v.after;
-    }
-  };
-
   struct SteadyFelt {
     Cycles u, g;
   };
@@ -151,14 +135,6 @@ class AttitudeSeries {
     Four w_square = {0, 0, 0, 0};  ///< xx, yy, zz
     Four guide = {0, 0, 0, 0};     ///< R^t u
     Four gravity = {0, 0, 0, 0};   ///< R^t g'
-
-    /// Of a quaternion whose norm is 1/sqrt(scale).
-    [[nodiscard]] TurnBack turn_back(double scale) const {
-      const double ww = square[3];
-      const Four zw = by_w.after();
-      return {scale * ((square + Four(ww, ww, ww, ww)) - (square.next() + square.after())),
-              2 * scale * (next + zw), (2 * scale * (next - zw)).after()};
-    }
   };
 
   /// The coefficients so far, as the products take them. Of the functions that add up the compiler
@@ -168,7 +144,7 @@ class AttitudeSeries {
     Of<Four> q_i, q_j, q_k;  ///< the products with the quaternion units
     Of<Four> w, w_next, w_after;
     Of<Four> u;  ///< u', or w where that is taken for it
-    Of<TurnBack> turn_back;
+    Of<Diagonals> turn_back;
     Of<Four> aside;     ///< on Resal's axes: (-w_y, w_x)
     Of<double> excess;  ///< there: C w_z - A n
 

@@ -6,6 +6,24 @@
 
 namespace kreisel::detail {
 
+/// What gyroscopic torques take of a tensor.
+class GyroscopicDifferences {
+ public:
+  explicit GyroscopicDifferences(const Symmetric3<double>& T)
+      : differences_(T.yy - T.zz, T.zz - T.xx, T.xx - T.yy, 0),
+        opposite_(T.yz, T.xz, T.xy, 0),
+        beside_(T.xy, T.yz, T.xz, 0) {}
+
+  /// -w x (Theta w), from the products (w_y w_z, w_z w_x, w_x w_y) and the squares of w.
+  [[nodiscard]] Four torque(const Four& mixed, const Four& squares) const {
+    return differences_ * mixed + opposite_ * (squares.after() - squares.next()) +
+           (beside_ * mixed.next() - beside_.after() * mixed.after());
+  }
+
+ private:
+  Four differences_, opposite_, beside_;
+};
+
 /// PrincipalTensor or GeneralTensor for vectors that are Four, with w = 0.
 template <class Tensor>
 class TensorOfFour;
@@ -19,7 +37,7 @@ class TensorOfFour<PrincipalTensor<>> {
     differences_ = {T.yy - T.zz, T.zz - T.xx, T.xx - T.yy, 0};
   }
 
-  /// -w x (Theta w), from the products (w_y w_z, w_z w_x, w_x w_y) and the squares of w.
+  /// As GyroscopicDifferences.
   [[nodiscard]] Four gyroscopic_torque(const Four& mixed, const Four& /*squares*/) const {
     return differences_ * mixed;
   }
@@ -38,16 +56,11 @@ class TensorOfFour<PrincipalTensor<>> {
 template <>
 class TensorOfFour<GeneralTensor> {
  public:
-  explicit TensorOfFour(const GeneralTensor& tensor) : tensor_(tensor) {
-    const Symmetric3<double> T = tensor.tensor();
-    differences_ = {T.yy - T.zz, T.zz - T.xx, T.xx - T.yy, 0};
-    opposite_ = {T.yz, T.xz, T.xy, 0};
-    beside_ = {T.xy, T.yz, T.xz, 0};
-  }
+  explicit TensorOfFour(const GeneralTensor& tensor)
+      : tensor_(tensor), differences_(tensor.tensor()) {}
 
   [[nodiscard]] Four gyroscopic_torque(const Four& mixed, const Four& squares) const {
-    return differences_ * mixed + opposite_ * (squares.after() - squares.next()) +
-           (beside_ * mixed.next() - beside_.after() * mixed.after());
+    return differences_.torque(mixed, squares);
   }
 
   [[nodiscard]] Four solve(const Four& M) const {
@@ -57,7 +70,7 @@ class TensorOfFour<GeneralTensor> {
 
  private:
   GeneralTensor tensor_;
-  Four differences_, opposite_, beside_;
+  GyroscopicDifferences differences_;
 };
 
 }  // namespace kreisel::detail
