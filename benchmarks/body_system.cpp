@@ -73,6 +73,19 @@ void inverse(benchmark::State& state) {
   }
 }
 
+/// To order 20, as solve() takes it to 1e-10.
+void series(benchmark::State& state) {
+  System<RestingFrame<>> s(resting(), static_cast<int>(state.range(0)));
+  auto series = s.system.series();
+  Eigen::MatrixXd c(s.start.y.size(), 21);
+  c.col(0) = s.start.y;
+  for (auto _ : state) {
+    c(0, 0) += 1e-3;
+    series(0.5, 0.1, 20, c);
+    benchmark::DoNotOptimize(c.data());
+  }
+}
+
 void forward_by_hand(benchmark::State& state) {
   const auto n = static_cast<int>(state.range(0));
   HandWritten hand(chain(n));
@@ -127,6 +140,7 @@ void lengths(benchmark::internal::Benchmark* benchmark) {
 BENCHMARK(forward_by_hand)->Apply(lengths);
 BENCHMARK_TEMPLATE(forward, resting)->Apply(lengths);
 BENCHMARK_TEMPLATE(forward, moving)->Apply(lengths);
+BENCHMARK(series)->Apply(lengths);
 BENCHMARK(inverse_by_hand)->Apply(lengths);
 BENCHMARK_TEMPLATE(inverse, resting)->Apply(lengths);
 BENCHMARK_TEMPLATE(inverse, moving)->Apply(lengths);

@@ -70,6 +70,8 @@ class Satellite {
     return rate_;
   }
 
+  [[nodiscard]] auto series() const { return system_.series(); }
+
  private:
   BodySystem<RestingFrame<>> system_;
   mutable BodyWorkspace workspace_ = system_.workspace();

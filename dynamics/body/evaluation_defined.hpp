@@ -124,10 +124,10 @@ KREISEL_DEFINED void rates(const BodyTree& tree, const Surroundings& now, const 
 
 KREISEL_DEFINED void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force,
                              BodyWorkspace& w) {
-  const double* still = w.still.data();
-  set_motions(tree, LinkMotion<>{}, still, nullptr, w);
+  std::fill(w.motion.begin(), w.motion.end(), LinkMotion<>{});
+  std::fill(w.force.begin(), w.force.end(), Motor<>{});
   ask_no_spin_up(w);
-  add_rotor_forces(tree, still, joint_force.data(), w);
+  add_rotor_forces(tree, w.still.data(), joint_force.data(), w);
   solve(tree, joint_force.data(), w.acceleration.data(), w);
 }
 

@@ -1,14 +1,41 @@
 #pragma once
 
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/scene/felt_motion.hpp>
 
 namespace kreisel {
 
 /// A guide motion whose kind a file has named.
-using SceneGuide = std::function<FrameMotion<Guide, Inertial>(double)>;
+class SceneGuide {
+ public:
+  template <GuideMotion M>
+  requires(!std::is_same_v<M, SceneGuide>)
+      SceneGuide(M motion)  // NOLINT: any kind is meant where one is taken
+      : motion_(motion) {
+    if constexpr (AnalyticGuide<M> || SteadyGuide<M>) {
+      series_ = [motion](double t, double h, int order, const detail::Components<double>& g) {
+        return detail::series_of(motion, t, h, order, g);
+      };
+    }
+  }
+
+  [[nodiscard]] FrameMotion<Guide, Inertial> operator()(double t) const { return motion_(t); }
+
+  /// Whether its kind is analytic: then series() is as AnalyticGuide asks for.
+  [[nodiscard]] bool knows_series() const { return static_cast<bool>(series_); }
+  [[nodiscard]] GuideSeries series(double t, double h, int order,
+                                   const detail::Components<double>& g) const {
+    return series_(t, h, order, g);
+  }
+
+ private:
+  std::function<FrameMotion<Guide, Inertial>(double)> motion_;
+  std::function<GuideSeries(double, double, int, const detail::Components<double>&)> series_;
+};
 
 /// The guide motion of a scene, for times in [0, t_end].
 ///

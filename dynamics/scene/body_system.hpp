@@ -10,7 +10,9 @@
 
 #include <dynamics/body/evaluation.hpp>
 #include <dynamics/body/passes.hpp>
+#include <dynamics/body/series.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/scene/felt_motion.hpp>
 
 namespace kreisel {
 
@@ -166,6 +168,31 @@ class BodySystem {
     return rates(Dual(t), y);
   }
 
+  /// Whether series() has one for what is in this system: no loads, no rates that rotors are asked
+  /// for, nothing that floats against another body, and a guide that moves analytically.
+  [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
+    if constexpr (requires { guide_.knows_series(); }) {
+      if (!guide_.knows_series()) return false;
+    }
+    return detail::knows_series(tree_);
+  }
+
+  /// The Taylor series of the motion, for TaylorSteps; this system has to outlive it. Formulas:
+  /// dynamics/body/series.hpp.
+  [[nodiscard]] detail::TreeSeries series() const requires(detail::feels_analytically<M>) {
+    const auto field = [this](double t, const Vector& y, Vector& rate, BodyWorkspace& w) {
+      rates(t, y, rate, w);
+    };
+    return {tree_, detail::is_resting<M>, field, felt_at_origin()};
+  }
+
+  /// Whether anything may be so stiff or damped that steps stay short for it.
+  [[nodiscard]] bool may_be_stiff() const {
+    const auto& forces = tree_.forces();
+    return std::any_of(forces.begin(), forces.end(),
+                       [](const JointForce& f) { return f.stiffness != 0 || f.damping != 0; });
+  }
+
   /// Inverse dynamics: the joint forces, besides those of the description, that bring about the
   /// accelerations dv.
   void joint_forces(double t, const Vector& y, const Vector& dv, Vector& result,
@@ -239,6 +266,24 @@ class BodySystem {
  private:
   [[nodiscard]] detail::Surroundings at(double t) const {
     return {t, guide_(t), detail::is_resting<M>, gravity_};
+  }
+
+  [[nodiscard]] auto felt_at_origin() const {
+    const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity_);
+    const auto* at_rest = std::get_if<UniformGravity<Inertial>>(&gravity_);
+    const Vector3<S> zero = Vector3<S>::Zero();
+    const auto moving = detail::components(on_guide ? on_guide->g : zero);
+    const auto resting = detail::components(at_rest ? at_rest->g : zero);
+    if constexpr (AnalyticGuide<M>) {
+      return [felt = detail::FeltSeries(guide_, detail::NoVector{}, moving, resting)](
+                 double t, double h, int order) mutable { return felt.at(t, h, order); };
+    } else {
+      return [guide = guide_, moving, resting](double t, double h, int order) {
+        GuideSeries felt = detail::series_of(guide, t, h, order, resting);
+        felt.g[0] = felt.g[0] + moving;
+        return felt;
+      };
+    }
   }
 
   M guide_;

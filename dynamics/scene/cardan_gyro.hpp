@@ -229,8 +229,8 @@ class CardanGyro {
     }
   }
 
-  /// Whether anything takes energy out of the motion, so that it may be stiff.
-  [[nodiscard]] bool is_damped() const {
+  /// Whether anything takes energy out of the motion, so that steps may stay short for it.
+  [[nodiscard]] bool may_be_stiff() const {
     return bearings_.outer.damping != 0 || bearings_.inner.damping != 0 || rotor_.friction != 0;
   }
 

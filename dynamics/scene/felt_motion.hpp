@@ -327,6 +327,28 @@ class FeltMotion {
   KnownMotion known_;
 };
 
+/// What is felt at the origin of a guide that moves steadily or analytically, as AnalyticGuide gives
+/// it.
+template <class M>
+[[nodiscard]] GuideSeries series_of(const M& guide, double t, double h, int order,
+                                    const Components<double>& g) {
+  if constexpr (AnalyticGuide<M>) {
+    return guide.series(t, h, order, g);
+  } else {
+    const UniformGravity<Inertial> field{vector<double>(g)};
+    const FeltMotion<true, NoVector, M, UniformGravity<Inertial>> felt({}, guide, "guide", field);
+    const auto whole = felt.whole(guide, field);
+    if constexpr (requires { whole.at(t, h, order); }) {
+      return whole.at(t, h, order);
+    } else {
+      GuideSeries steady;
+      steady.u[0] = components(vector<double>(whole.u));
+      steady.g[0] = components(vector<double>(whole.g));
+      return steady;
+    }
+  }
+}
+
 /// The loads that are no field and no statement, together.
 template <class N, class... Loads>
 [[nodiscard]] Force<Body, N> forces(const Situation<N>& s, const Loads&... loads) {

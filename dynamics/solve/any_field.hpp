@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
+#include <dynamics/body/series.hpp>
 #include <dynamics/compiled.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/task.hpp>
@@ -28,6 +30,25 @@ template <class Field>
                                     Eigen::VectorXd& rate) mutable { call(field, t, y, rate); };
 }
 
+/// The Taylor series of such a scene.
+class AnySeries {
+ public:
+  static constexpr int most_order = most_series_order;
+  static constexpr double relative_order = TreeSeries::relative_order;
+
+  template <class Series>
+  requires(!std::is_same_v<Series, AnySeries>) explicit AnySeries(Series series)
+      : fill_(std::move(series)) {}
+
+  template <class Coefficients>
+  void operator()(double t, double h, int order, Coefficients& c) const {
+    fill_(t, h, order, c);
+  }
+
+ private:
+  std::function<void(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c)> fill_;
+};
+
 /// As the functions of the same names in runs_of_steps.hpp.
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<ExplicitRun> run_explicit_steps(
     const SteppedScene& scene, bool other, const AnyField& field, const Task& task,
@@ -37,6 +58,9 @@ KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const Steppe
                                                                     const Task& task,
                                                                     const Eigen::VectorXd& start,
                                                                     const EqualLength& length);
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_taylor_steps(
+    const SteppedScene& scene, bool other, bool looks, const AnySeries& series, const Task& task,
+    const Eigen::VectorXd& start, const Accuracy& accuracy);
 
 /// With a Jacobian by differences.
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);

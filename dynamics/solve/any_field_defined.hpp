@@ -26,6 +26,15 @@ KREISEL_DEFINED std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
   return run_gauss_steps<Eigen::VectorXd, AnyField>(scene, field, task, start, length);
 }
 
+KREISEL_DEFINED std::unique_ptr<Run> run_taylor_steps(const SteppedScene& scene, bool other,
+                                                      bool looks, const AnySeries& series,
+                                                      const Task& task,
+                                                      const Eigen::VectorXd& start,
+                                                      const Accuracy& accuracy) {
+  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, other, looks, series, task, start,
+                                                      accuracy);
+}
+
 KREISEL_DEFINED std::unique_ptr<StiffField> stiff_field(const AnyField& field) {
   auto jacobian = difference_jacobian<Eigen::Dynamic>(field);
   using J = decltype(jacobian);

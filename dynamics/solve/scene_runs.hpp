@@ -68,7 +68,11 @@ class SceneRuns final : public SteppedScene {
   }
   [[nodiscard]] bool has_other() const override { return other_.has_value(); }
   [[nodiscard]] bool knows_series() const override {
-    return requires { scene_.series(); };
+    if constexpr (requires { scene_.knows_series(); }) {
+      return scene_.knows_series();
+    } else {
+      return requires { scene_.series(); };
+    }
   }
   [[nodiscard]] const EulerTop* top() const override {
     if constexpr (std::is_same_v<Scene, EulerTop>) {
@@ -118,11 +122,16 @@ class SceneRuns final : public SteppedScene {
                                                 bool other) const override {
     if constexpr (requires { scene_.series(); }) {
       bool looks = false;
-      if constexpr (requires { scene_.is_damped(); }) {
-        looks = task.method == Method::automatic && scene(other).is_damped();
+      if constexpr (requires { scene_.may_be_stiff(); }) {
+        looks = task.method == Method::automatic && scene(other).may_be_stiff();
       }
-      return run_taylor_steps<Own>(*this, other, looks, scene(other).series(), task, start,
-                                   accuracy);
+      if constexpr (of_any_size) {
+        return run_taylor_steps(*this, other, looks, AnySeries(scene(other).series()), task, start,
+                                accuracy);
+      } else {
+        return run_taylor_steps<Own>(*this, other, looks, scene(other).series(), task, start,
+                                     accuracy);
+      }
     } else {
       return nullptr;
     }

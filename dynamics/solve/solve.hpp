@@ -17,7 +17,7 @@ namespace kreisel {
 ///
 /// Scene  : has State, Vector, blocks, to_vector, from_vector and rates(t, y); with conserved(t,
 ///          state) its invariants are watched, with a closed_form() it is computed by that, with
-///          series() by those, and is_damped() tells then whether it may be stiff
+///          series() by those, and may_be_stiff() tells then whether it may be stiff
 /// Error  : by steps true error / estimate lies in [0.1, 1] in 98 % of 400 runs and never above 1.1
 ///          (tests/dynamics/solve/solve.cpp); docs/promises.md tells where that ends. Where the
 ///          tolerance cannot be reached the best is returned and RunReport::tolerance_kept is false

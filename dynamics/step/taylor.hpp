@@ -22,15 +22,16 @@ namespace kreisel {
 /// know is a field that changes its formula on the way: its jumps have to be announced. Output
 /// between the ends of a step is the series itself and costs no evaluation.
 ///
-/// Vector : Eigen::Matrix<double, n, 1>
+/// Vector : Eigen::Matrix<double, n, 1> or Eigen::VectorXd
 /// Series : series(t, h, order, c) fills the columns 1 to `order` of an n x (most_order + 1) matrix c
 ///          with the coefficients of the solution in powers of (time - t)/h, from column 0, which is
-///          the state at t; Series::most_order is the greatest order it is asked for
+///          the state at t; Series::most_order is the greatest order it is asked for, and
+///          Series::relative_order, if there, the best order over that of most
 /// Blocks : as ExplicitSteps
 /// Source : order and step: A. Jorba, M. Zou, A software package for the numerical integration of
 ///          ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99
 /// Error  : that of a step, relative, is about `accuracy.relative`
-/// Cost   : a series of order 9 to 21 a step, by the accuracy; its coefficients count as evaluations
+/// Cost   : a series of order 9 to 24 a step, by the accuracy; its coefficients count as evaluations
 /// Throws : as ExplicitSteps
 template <class Vector, class Series>
 class TaylorSteps {
@@ -42,14 +43,14 @@ class TaylorSteps {
       : series_(std::move(series)),
         accuracy_(accuracy),
         time_{t, 0},
-        state_{y, Vector::Zero()},
+        state_{y, Vector::Zero(y.size())},
         sizes_(blocks, accuracy.smallest, y),
         before_{time_, state_} {
     detail::check(accuracy, detail::least_over_long_ways);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
     if (!detail::finite(y)) detail::refuse_steps("the state at the start is not finite");
     order_ = order_for(accuracy.relative);
-    coefficient_.setZero();
+    coefficient_.setZero(y.size(), most_order + 1);
   }
 
   [[nodiscard]] const double& t() const { return time_.value; }
@@ -118,7 +119,7 @@ class TaylorSteps {
 
   /// Goes back to a time within the last step and continues from there.
   void back_to(double time) {
-    state_ = {at(time), Vector::Zero()};
+    state_ = {at(time), Vector::Zero(y().size())};
     time_ = {time, 0};
     before_ = {time_, state_};
   }
@@ -149,7 +150,9 @@ class TaylorSteps {
   /// Somewhat above the  1 - ln(accuracy)/2  of Jorba and Zou, who count coefficients alone: a step
   /// costs something besides.
   [[nodiscard]] static int order_for(double relative) {
-    return std::clamp(int(std::lround(7.5 - 0.37 * std::log(relative))), 9, most_order);
+    double best = 7.5 - 0.37 * std::log(relative);
+    if constexpr (requires { Series::relative_order; }) best *= Series::relative_order;
+    return std::clamp(int(std::lround(best)), 9, most_order);
   }
 
   /// The series from here on. The unit of time is the last step: powers of it stay within range.
@@ -209,7 +212,7 @@ class TaylorSteps {
 
   /// How the rate at the step's begin answers a change of the state in its last digits.
   void note_noise() {
-    Coefficients moved;
+    Coefficients moved(coefficient_.rows(), coefficient_.cols());
     Vector start = before_.state.value;
     detail::move_last_digits(start, 1);
     moved.col(0) = start;

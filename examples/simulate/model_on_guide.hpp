@@ -12,6 +12,8 @@
 /// stops a run between two outputs.
 template <class System>
 class WatchedSystem {
+  static constexpr bool has_series = requires(const System& system) { system.series(); };
+
  public:
   using State = typename System::State;
   using Vector = typename System::Vector;
@@ -25,9 +27,19 @@ class WatchedSystem {
   [[nodiscard]] State from_vector(const Vector& y) const { return system_.from_vector(y); }
 
   void rates(double t, const Vector& y, Vector& result, kreisel::BodyWorkspace& w) const {
-    if (interrupted_()) throw kreisel::ComputationFailed("interrupted");
+    stop_if_interrupted();
     system_.rates(t, y, result, w);
   }
+
+  [[nodiscard]] bool knows_series() const requires has_series { return system_.knows_series(); }
+  [[nodiscard]] auto series() const requires has_series {
+    return [this, series = system_.series()](double t, double h, int order,
+                                             Eigen::Ref<Eigen::MatrixXd> c) mutable {
+      stop_if_interrupted();
+      series(t, h, order, c);
+    };
+  }
+  [[nodiscard]] bool may_be_stiff() const { return system_.may_be_stiff(); }
 
   [[nodiscard]] auto conserved(double t, const State& state) const {
     latest_ = {state.coordinates, state.rates};
@@ -39,6 +51,10 @@ class WatchedSystem {
   [[nodiscard]] const System& system() const { return system_; }
 
  private:
+  void stop_if_interrupted() const {
+    if (interrupted_()) throw kreisel::ComputationFailed("interrupted");
+  }
+
   const System& system_;
   const std::function<bool()>& interrupted_;
   mutable JointState latest_;

@@ -1,0 +1,186 @@
+#include <boost/test/data/monomorphic.hpp>
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/body_system.hpp>
+#include <dynamics/scene/pendulum_series.hpp>
+
+#include <support/sample.hpp>
+#include <support/series.hpp>
+
+using namespace kreisel;
+using test::Sample;
+namespace data = boost::unit_test::data;
+
+namespace {
+
+InertiaTensor<Body> random_inertia(Sample& sample) {
+  const Vector3<double> moments(sample.uniform(0.3, 0.5), sample.uniform(0.3, 0.5),
+                                sample.uniform(0.3, 0.5));
+  const Matrix3<double> R = sample.rotation();
+  return InertiaTensor<Body>::about_centre(sample.uniform(0.5, 2), 0.3 * sample.direction(),
+                                           R * moments.asDiagonal() * R.transpose());
+}
+
+Joint random_joint(Sample& sample, JointKind kind) {
+  return {kind, sample.direction(), sample.direction(), 0.5 * sample.direction(),
+          Eigen::Quaterniond(sample.rotation())};
+}
+
+std::vector<JointForce> random_forces(Sample& sample, JointKind kind) {
+  const bool springs = kind != JointKind::spherical && kind != JointKind::free;
+  static constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
+  std::vector<JointForce> forces;
+  for (int i = 0; i < rate_counts[int(kind)]; ++i) {
+    forces.push_back({springs ? sample.uniform(0, 2) : 0, springs ? sample.uniform(-1, 1) : 0,
+                      sample.uniform(0, 0.5), sample.uniform(-1, 1)});
+  }
+  return forces;
+}
+
+/// A tree in which the kinds of joints hang on each other in all ways, with some held and some at a
+/// constant rate, and rotors of the mode given.
+std::vector<BodyDescription> random_tree(std::uint64_t seed, JointKind root) {
+  Sample sample(seed);
+  std::vector<BodyDescription> bodies;
+  const int count = 2 + int(seed % 4);
+  for (int i = 0; i < count; ++i) {
+    BodyDescription b;
+    b.name = "body " + std::to_string(i);
+    const auto kind = i == 0 ? root : static_cast<JointKind>(int(sample.uniform(0, 5)));
+    if (i > 0) b.parent = "body " + std::to_string(int(sample.uniform(0, i)));
+    b.joint = random_joint(sample, kind);
+    b.inertia = random_inertia(sample);
+    if (sample.once_in(2)) b.forces = random_forces(sample, kind);
+    if (i > 0 && sample.once_in(6)) b.rule = JointRule::held;
+    if (kind == JointKind::revolute && sample.once_in(6)) b.rule = JointRule::constant_rate;
+    bodies.push_back(b);
+  }
+  for (const RotorMode mode : {RotorMode::free, RotorMode::regulated, RotorMode::torque}) {
+    if (!sample.once_in(2)) continue;
+    BodyDescription b;
+    b.name = "rotor " + std::to_string(int(mode));
+    b.parent = "body " + std::to_string(int(sample.uniform(0, count)));
+    b.joint = random_joint(sample, JointKind::revolute);
+    b.joint.orientation.setIdentity();
+    const Vector3<double> e = b.joint.axis.normalized();
+    b.inertia = InertiaTensor<Body>::about_centre(
+        0.4, 0.1 * e, 0.05 * Matrix3<double>::Identity() + 0.04 * e * e.transpose());
+    b.rotor = {.mode = mode, .torque = mode == RotorMode::torque ? 0.3 : 0};
+    if (mode == RotorMode::torque) b.forces = {{0, 0, 0.02, 0}};
+    bodies.push_back(b);
+  }
+  return bodies;
+}
+
+/// Where a body hangs on another that is lighter the accelerations differ by more than rounding of
+/// each: 1e-13 is 450u.
+template <class M>
+void hold_tree(const std::string& what, const BodySystem<M>& system, std::uint64_t seed) {
+  BOOST_TEST_REQUIRE(system.knows_series());
+  Sample sample(seed + 1000);
+  Eigen::VectorXd y = system.to_vector(system.rest());
+  for (double& x : y) x += sample.uniform(-1, 1);
+  test::hold_series(what, system, y, 0.05, 1e-13);
+}
+
+constexpr JointKind roots[] = {JointKind::revolute,  JointKind::free,      JointKind::spherical,
+                               JointKind::prismatic, JointKind::universal, JointKind::fixed};
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(tree_series)
+
+BOOST_DATA_TEST_CASE(is_that_of_trees_on_all_kinds_of_guides, data::xrange(120), seed) {
+  const auto number = static_cast<std::uint64_t>(seed);
+  const auto bodies = random_tree(number, roots[number % std::size(roots)]);
+  const UniformGravity<Guide> along_guide{{1, 2, -9}};
+  const UniformGravity<Inertial> resting{{1, 2, -9}};
+  hold_tree("at rest", BodySystem(RestingFrame<>{}, bodies, along_guide), number);
+  RestingFrame<> aslant;
+  aslant.X.value.rotation = Sample(number).rotation();
+  hold_tree("at rest aslant", BodySystem(aslant, bodies, resting), number);
+  const RotatingFrame<> turntable{{0.3, -0.8, 0.5}, {1, 2, 3}};
+  hold_tree("on a turntable", BodySystem(turntable, bodies, along_guide), number);
+  hold_tree("on a turntable, gravity at rest", BodySystem(turntable, bodies, resting), number);
+  const HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}};
+  hold_tree("on a harmonic guide", BodySystem(HarmonicFrame<>(u, {}, 0, 2), bodies, resting),
+            number);
+}
+
+BOOST_AUTO_TEST_CASE(is_that_of_more_rates_than_are_inverted) {
+  std::vector<BodyDescription> chain;
+  Sample sample(7);
+  for (int i = 0; i < 20; ++i) {
+    BodyDescription b;
+    b.name = "link " + std::to_string(i);
+    if (i > 0) b.parent = chain.back().name;
+    b.joint = random_joint(sample, JointKind::revolute);
+    b.inertia = random_inertia(sample);
+    chain.push_back(b);
+  }
+  hold_tree("a chain of 20", BodySystem(RestingFrame<>{}, chain, UniformGravity<Guide>{{0, 0, -9}}),
+            0);
+}
+
+/// Of a pendulum, which has a series of its own.
+BOOST_AUTO_TEST_CASE(is_that_of_a_pendulum) {
+  BodyDescription rod;
+  rod.name = "rod";
+  rod.joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}};
+  rod.inertia =
+      InertiaTensor<Body>::about_centre(1, {0, 0, -0.5}, Matrix3<double>::Identity() / 12);
+  const BodySystem system(RestingFrame<>{}, {rod}, UniformGravity<Guide>{{0, 0, -9.81}});
+  const double e = 9.81 * 0.5 / (1.0 / 12 + 0.25);
+  detail::PendulumSeries pendulum(e, 0, 0, 0, 0);
+  Eigen::Matrix<double, 2, 25> expected;
+  Eigen::MatrixXd c(2, 25);
+  c.col(0) << 0.7, -1.2;
+  expected.col(0) = c.col(0);
+  pendulum(0, 0.1, 20, expected);
+  auto series = system.series();
+  series(0, 0.1, 20, c);
+  for (int k = 1; k <= 20; ++k) {
+    BOOST_TEST(
+        (c.col(k) - expected.col(k)).norm() <= 1e-13 * expected.col(k).norm(),
+        "order " << k << ": " << c.col(k).transpose() << " and " << expected.col(k).transpose());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(is_not_known_of_what_changes_otherwise) {
+  BodyDescription carrier;
+  carrier.name = "carrier";
+  carrier.joint = {.kind = JointKind::free};
+  carrier.inertia = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Identity());
+  const auto knows = [](const std::vector<BodyDescription>& bodies) {
+    return BodySystem(RestingFrame<>{}, bodies).knows_series();
+  };
+  BOOST_TEST(knows({carrier}));
+
+  BodyDescription loaded = carrier;
+  loaded.loads = {[](const Situation<>&) { return Force<Body>{}; }};
+  BOOST_TEST(!knows({loaded}));
+
+  BodyDescription beside = carrier;
+  beside.name = "beside";
+  beside.parent = "carrier";
+  BOOST_TEST(!knows({carrier, beside}));
+
+  BodyDescription wheel = carrier;
+  wheel.name = "wheel";
+  wheel.parent = "carrier";
+  wheel.joint = {.kind = JointKind::revolute, .axis = {0, 0, 1}};
+  wheel.rotor = Rotor{RotorMode::regulated};
+  BOOST_TEST(knows({carrier, wheel}));
+  wheel.rotor->acceleration = [](double t) { return t; };
+  BOOST_TEST(!knows({carrier, wheel}));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
