@@ -20,11 +20,19 @@ template <std::size_t groups>
 class ProductsOfSeries {
  public:
   [[gnu::always_inline]] void begin(int k) {
-    sums_.fill(Four(0, 0, 0, 0));
+    // Two sums, lest each term wait for the one before.
+    Sums even = zeros();
+    Sums odd = even;
     const auto last = static_cast<std::size_t>(k) - 1;
-    for (std::size_t i = 2; i + 1 < std::size_t(k); ++i) add(i, std::size_t(k) - i);
-    if (k > 2) add(1, last);
-    if (k > 1) add(last, 1);
+    std::size_t i = 2;
+    for (; i + 2 < std::size_t(k); i += 2) {
+      add(i, std::size_t(k) - i, even);
+      add(i + 1, std::size_t(k) - i - 1, odd);
+    }
+    if (i + 1 < std::size_t(k)) add(i, std::size_t(k) - i, even);
+    if (k > 2) add(1, last, odd);
+    if (k > 1) add(last, 1, even);
+    for (std::size_t g = 0; g < groups; ++g) sums_[g] = even[g] + odd[g];
   }
 
   /// Those of order k, with the factors' coefficients of that order, the right ones of which are
@@ -44,15 +52,23 @@ class ProductsOfSeries {
   }
 
  private:
-  [[gnu::always_inline]] void add(std::size_t i, std::size_t j) {
-    for (std::size_t g = 0; g < groups; ++g) sums_[g] += left_[i][g] * right_[j][g];
+  using Sums = std::array<Four, groups>;
+
+  [[nodiscard]] static Sums zeros() {
+    Sums sums;
+    sums.fill(Four(0, 0, 0, 0));
+    return sums;
+  }
+
+  [[gnu::always_inline]] void add(std::size_t i, std::size_t j, Sums& sums) const {
+    for (std::size_t g = 0; g < groups; ++g) sums[g] += left_[i][g] * right_[j][g];
   }
 
   using Coefficients = std::array<std::array<Four, groups>, most_series_order + 1>;
 
   Coefficients left_;
   Coefficients right_;
-  std::array<Four, groups> sums_;
+  Sums sums_;
 };
 
 /// The numbers in the equations of a CardanGyro.
@@ -69,9 +85,12 @@ struct CardanConstants {
 
 /// The Taylor series of the motion of a CardanGyro, for TaylorSteps. All is products of series, so
 /// that each coefficient comes from those before it. x, y, z are angular velocities of the outer (3)
-/// and the inner ring (2) on their own axes, d their rates without what alpha'' and beta'' do to them:
+/// and the inner ring (2) on their own axes:
 ///
-///   x_3 = alpha' + u_x,   dy_3 = alpha' z_3 + (ou_y cos alpha + ou_z sin alpha),   and so on
+///   x_3 = alpha' + u_x,   x_2 = x_3 cos beta - z_3 sin beta,   z_2 = x_3 sin beta + z_3 cos beta
+///
+/// Their coefficients of order k + 1, those of the momenta and the torques of order k are linear in
+/// alpha'' and beta'' of order k, with the mass matrix of where the step begins.
 ///
 /// With the mean of A_1 and B_1 in the ring, what is left of the rotor's tensor on the ring's axes is
 /// n (cos 2 phi, sin 2 phi; sin 2 phi, -cos 2 phi).
@@ -85,6 +104,9 @@ template <class Turning>
 class CardanSeries {
  public:
   static constexpr int most_order = most_series_order;
+
+  /// An order waits for the one before about as long as its sums take, so that high ones pay.
+  static constexpr double relative_order = 1.1;
 
   CardanSeries(const CardanConstants& gyro, const Turning& turning)
       : gyro_(gyro), turning_(turning) {}
@@ -121,140 +143,157 @@ class CardanSeries {
     const CardanConstants& g = gyro_;
     const auto& [outer, inner] = g.bearings;
     const Vector3<double>& outer_ring = g.moments.outer_ring;
+    const RingMoments<double>& ring = g.ring;
     const double C_1 = g.moments.rotor.z();
-    ProductsOfSeries<3> rings;
-    [[maybe_unused]] ProductsOfSeries<turns_unsteadily ? 5 : 3> guide;
-    [[maybe_unused]] ProductsOfSeries<5> blades;
+    constexpr std::size_t blades = 3;
+    constexpr std::size_t guide = round ? 3 : 5;
+    ProductsOfSeries<guide + (turns_unsteadily ? 3 : turns ? 2 : 0)> products;
+    [[maybe_unused]] ProductsOfSeries<1> spin;
 
-    // Of series that are not in c: the coefficient of order k.
-    auto [sb, cb] = sin_cos(inner.reference, c(1, 0));
-    const double first_sb = sb;
+    // The coefficients of order k; of those whose products reach one order further also the first.
+    double da = c(3, 0), db = c(4, 0), df = c(5, 0);
+    const auto [first_sb, first_cb] = sin_cos(inner.reference, c(1, 0));
+    double sb = first_sb, cb = first_cb;
     [[maybe_unused]] double sa = 0, ca = 0, y3 = 0, z3 = 0;
+    const Components<double> first_u = first(u);
     if constexpr (turns) {
       const auto alpha = sin_cos(outer.reference, c(0, 0));
       sa = alpha.sin;
       ca = alpha.cos;
-      const Components<double> now = first(u);
-      y3 = now.y * ca + now.z * sa;
-      z3 = now.z * ca - now.y * sa;
+      y3 = first_u.y * ca + first_u.z * sa;
+      z3 = first_u.z * ca - first_u.y * sa;
     }
-    [[maybe_unused]] double s2 = 0, c2 = 0;
+    const double first_x3 = da + first_u.x, first_z3 = z3;
+    double x2 = cb * first_x3 - sb * z3, y2 = db + y3, z2 = sb * first_x3 + cb * z3;
+    const double first_x2 = x2, first_y2 = y2, first_df = df;
+    [[maybe_unused]] double s2 = 0, c2 = 0, X = 0, Y = 0;
+    SinCos<double> spun;
     if constexpr (!round) {
-      s2 = std::sin(2 * c(2, 0));
-      c2 = std::cos(2 * c(2, 0));
+      spun = {std::sin(c(2, 0)), std::cos(c(2, 0))};
+      s2 = 2 * spun.sin * spun.cos;
+      c2 = (spun.cos - spun.sin) * (spun.cos + spun.sin);
+      X = c2 * x2 + s2 * y2;
+      Y = s2 * x2 - c2 * y2;
     }
-    const Inverse inverse = inverted<round>(c(1, 0), sb, cb, c(2, 0));
+    const double first_s2 = s2, first_c2 = c2;
+    const Inverse inverse = inverted<round>(c(1, 0), sb, cb, spun);
 
-    double da = c(3, 0), db = c(4, 0), df = c(5, 0);
     for (int k = 0; k < order; ++k) {
       const double w = h / (k + 1);
+      const double per = 1 / w;
 
-      // The rings' angular velocities, and what is known of their rates.
-      double x3 = da;
-      [[maybe_unused]] Components<double> du = {};
-      if constexpr (turns_unsteadily) {
-        x3 += u[std::size_t(k)].x;
-        du = (1 / w) * u[std::size_t(k) + 1];
-      } else if constexpr (turns) {
-        if (k == 0) x3 += u.x;
-      }
-      rings.begin(k);
-      const Four angles = rings.of(0, k, {cb, sb, cb, sb}, {db, db, x3, x3});
-      double x2 = angles[2], y2 = db, z2 = angles[3];
-      double dy3 = 0, fx = 0, fz = 0, y3z2 = 0, y3x2 = 0, y3z3 = 0;
+      // Of order k + 1, without what alpha'' and beta'' of order k do.
+      products.begin(k);
+      const Four angles = products.of(0, k, {cb, sb, cb, sb}, {db, db, 0, 0});
+      const double next_sb = w * angles[0];
+      const double next_cb = -w * angles[1];
+      double next_x2 = angles[2] + next_cb * first_x3;
+      double next_z2 = angles[3] + next_sb * first_x3;
+      double next_x3 = 0, next_y2 = 0;
+      [[maybe_unused]] double y3z3 = 0;
       if constexpr (turns) {
-        guide.begin(k);
-        const Four turned = guide.of(0, k, {z3, y3, cb, sb}, {da, da, z3, z3});
-        x2 -= turned[3];
-        y2 += y3;
-        z2 += turned[2];
-        dy3 = turned[0];
-        double dz3 = -turned[1];
+        const Four turned = products.of(guide, k, {z3, y3, cb, sb}, {da, da, 0, 0});
+        const Four beside = products.of(guide + 1, k, {y3, ca, sa, 0}, {z3, da, da, 0});
+        y3z3 = beside[0];
         if constexpr (turns_unsteadily) {
-          const Four rate = guide.of(3, k, {ca, sa, ca, sa}, {du.y, du.z, du.z, du.y});
-          dy3 += rate[0] + rate[1];
-          dz3 += rate[2] - rate[3];
-          const Four alpha = guide.of(4, k, {ca, sa, 0, 0}, {da, da, 0, 0});
-          sa = w * alpha[0];
-          ca = -w * alpha[1];
+          const Components<double>& next_u = u[std::size_t(k) + 1];
+          const Four field =
+              products.of(guide + 2, k, {ca, sa, ca, sa}, {next_u.y, next_u.z, next_u.z, next_u.y});
+          sa = w * beside[1];
+          ca = -w * beside[2];
+          y3 = (field[0] + field[1]) + (ca * first_u.y + sa * first_u.z);
+          z3 = (field[2] - field[3]) + (ca * first_u.z - sa * first_u.y);
+          next_x3 = next_u.x;
+        } else {
+          y3 = w * turned[0];
+          z3 = -w * turned[1];
         }
-        const Four by_z3 = guide.of(1, k, {cb, sb, y3, y3}, {dz3, dz3, z2, x2});
-        const Four by_du = guide.of(2, k, {du.x, du.x, y3, 0}, {cb, sb, z3, 0});
-        fx = by_du[0] - by_z3[1];
-        fz = by_du[1] + by_z3[0];
-        y3z2 = by_z3[2];
-        y3x2 = by_z3[3];
-        y3z3 = by_du[2];
-        y3 = w * dy3;
-        z3 = w * dz3;
+        products.complete(guide, k, {da, da, z3, z3});
+        next_x2 -= turned[3] + first_sb * z3 + next_sb * first_z3;
+        next_z2 += turned[2] + first_cb * z3 + next_cb * first_z3;
+        next_x2 += first_cb * next_x3;
+        next_z2 += first_sb * next_x3;
+        next_y2 = y3;
       }
 
-      // What turns inner ring and rotor, on the ring's axes.
+      // What turns inner ring and rotor, on the ring's axes: rates of their angular momentum, and
+      // w x of it.
       const double L = C_1 * (g.regulated ? df : z2 + df);
-      const Four ring = rings.of(1, k, {y2, y2, x2, sb},
-                                 {x2, g.ring.c_less_ab * z2 + L, g.ring.a_less_c * z2 - L, sb});
-      const double dz2 = fz + (ring[0] - y3x2);
-      double on_a = g.ring.a * (fx + y3z2) + ring[1];
-      double on_b = g.ring.b * dy3 + ring[2];
-      const double on_c = g.ring.c * (fz - y3x2) + g.ring.bc_less_a * ring[0];
-      // Of the mass matrix the first coefficient is inverted already; cos^2 + sin^2 = 1.
-      const double cc = k == 0 ? cb * cb : -ring[3];
-      double M_aa = (g.ring.c - g.ring.a) * ring[3];
-      double twist = 0, M_a_rest = 0, M_b_rest = 0;
-      [[maybe_unused]] Four spun;
+      const Four gyro = products.of(1, k, {y2, y2, x2, 0},
+                                    {x2, (ring.c - ring.b) * z2 + L, ring.a_less_c * z2 - L, 0});
+      double on_a = per * ring.a * next_x2 + gyro[1];
+      double on_b = per * ring.b * next_y2 + gyro[2];
+      const double on_c = per * ring.c * next_z2 + (ring.b - ring.a) * gyro[0];
+      [[maybe_unused]] double next_s2 = 0, next_c2 = 0, next_X = 0, next_Y = 0;
+      double twist = 0;
       if constexpr (!round) {
-        blades.begin(k);
-        spun = blades.of(0, k, {c2, s2, db, s2}, {df, df, z2, cb});
-        const double dx2 = fx - spun[2];
-        const Four by_w = blades.of(1, k, {c2, s2, s2, c2}, {x2, y2, x2, y2});
-        const Four by_dw = blades.of(2, k, {c2, s2, s2, c2}, {dx2, dy3, dx2, dy3});
-        const double X = by_w[0] + by_w[1];
-        const double Y = by_w[2] - by_w[3];
-        const double both = 2 * df + z2;
-        const Four gyro = blades.of(3, k, {both, both, x2, y2}, {Y, X, Y, X});
-        on_a += g.n * ((by_dw[0] + by_dw[1]) - gyro[0]);
-        on_b += g.n * ((by_dw[2] - by_dw[3]) + gyro[1]);
-        twist = g.n * (gyro[2] - gyro[3]);
-        const double M_ab = g.n * spun[3];
-        const Four mass = blades.of(4, k, {cc, M_ab, M_ab, -g.n * c2}, {c2, 0, 0, 0});
-        M_aa += g.n * mass[0];
-        M_a_rest = mass[1];
-        M_b_rest = mass[2] + mass[3];
+        if (g.regulated) {
+          next_s2 = 2 * w * first_df * c2;
+          next_c2 = -2 * w * first_df * s2;
+        } else {
+          spin.begin(k);
+          const Four turned = spin.of(0, k, {c2, s2, 0, 0}, {df, df, 0, 0});
+          next_s2 = 2 * w * turned[0];
+          next_c2 = -2 * w * turned[1];
+        }
+        const Four by_w =
+            products.of(blades, k, {c2, s2, s2, c2}, {next_x2, next_y2, next_x2, next_y2});
+        next_X = (by_w[0] + by_w[1]) + (next_c2 * first_x2 + next_s2 * first_y2);
+        next_Y = (by_w[2] - by_w[3]) + (next_s2 * first_x2 - next_c2 * first_y2);
+        const Four turned = products.of(blades + 1, k, {z2, z2, x2, y2}, {Y, X, Y, X});
+        on_a += g.n * (per * next_X - turned[0]);
+        on_b += g.n * (per * next_Y + turned[1]);
+        twist = g.n * (turned[2] - turned[3]);
       }
       const double torque = (k == 0 ? g.torque : 0) - g.friction * df;
-      const double along = on_c + (g.regulated ? twist : torque);
+      double along = on_c + (g.regulated ? twist : torque);
 
-      // alpha'' and beta'', of which the products lack the newest coefficient.
-      const Four known = rings.of(2, k, {cb, sb, M_aa, sb}, {on_a, along, 0, 0});
-      const double resisted_a = resistance(outer, c(0, k), da) + M_a_rest +
-                                (outer_ring.x() * du.x + (outer_ring.z() - outer_ring.y()) * y3z3);
-      const double left_a = (resisted_a + known[2]) + (known[0] + known[1]);
-      const double left_b = resistance(inner, c(1, k), db) + on_b + M_b_rest;
+      const Four on_outer = products.of(2, k, {cb, sb, 0, 0}, {on_a, along, 0, 0});
+      const double left_a =
+          resistance(outer, c(0, k), da) + (on_outer[0] + on_outer[1]) +
+          (per * outer_ring.x() * next_x3 + (outer_ring.z() - outer_ring.y()) * y3z3);
+      const double left_b = resistance(inner, c(1, k), db) + on_b;
       double dda = -inverse.aa * left_a;
       double ddb = -inverse.bb * left_b;
       if constexpr (!round) {
         dda += inverse.ab * left_b;
         ddb += inverse.ab * left_a;
       }
-      rings.complete(2, k, {on_a, along, dda, dda});
-      if constexpr (!round) {
-        blades.complete(4, k, {c2, ddb, dda, ddb});
-        s2 = 2 * w * spun[0];
-        c2 = -2 * w * spun[1];
-      }
-      const double ddf = (torque - twist) / C_1 - ((dz2 + known[3]) + first_sb * dda);
 
-      c(0, k + 1) = w * da;
-      c(1, k + 1) = w * db;
-      c(2, k + 1) = w * df;
-      c(3, k + 1) = da = w * dda;
-      c(4, k + 1) = db = w * ddb;
-      c(5, k + 1) = df = g.regulated ? 0 : w * ddf;
-      sb = w * angles[0];
-      cb = -w * angles[1];
+      // With these.
+      da = w * dda;
+      db = w * ddb;
+      const double more_x2 = first_cb * da;
+      const double more_z2 = first_sb * da;
+      x2 = next_x2 + more_x2;
+      y2 = next_y2 + db;
+      z2 = next_z2 + more_z2;
+      next_x3 += da;
+      on_a += per * ring.a * more_x2;
+      along += per * ring.c * more_z2;
+      if constexpr (!round) {
+        const double more_X = first_c2 * more_x2 + first_s2 * db;
+        on_a += g.n * per * more_X;
+        X = next_X + more_X;
+        Y = next_Y + (first_s2 * more_x2 - first_c2 * db);
+        s2 = next_s2;
+        c2 = next_c2;
+        products.complete(blades, k, {x2, y2, x2, y2});
+      }
+      products.complete(0, k, {c(4, k), c(4, k), next_x3, next_x3});
+      products.complete(2, k, {on_a, along, 0, 0});
+      sb = next_sb;
+      cb = next_cb;
+
+      for (int i = 0; i < 3; ++i) c(i, k + 1) = w * c(i + 3, k);
+      df = g.regulated ? 0 : w * (torque - twist) / C_1 - z2;
+      c(3, k + 1) = da;
+      c(4, k + 1) = db;
+      c(5, k + 1) = df;
     }
   }
 
+  [[nodiscard]] static Components<double> first(const Absent& /*u*/) { return {}; }
   [[nodiscard]] static Components<double> first(const Components<double>& u) { return u; }
   [[nodiscard]] static Components<double> first(const GuideSeries::Coefficients& u) { return u[0]; }
 
@@ -263,7 +302,8 @@ class CardanSeries {
   }
 
   template <bool round>
-  [[nodiscard]] Inverse inverted(double beta, double sb, double cb, double phi) const {
+  [[nodiscard]] Inverse inverted(double beta, double sb, double cb,
+                                 const SinCos<double>& spun) const {
     const auto& [rotor, inner, outer] = gyro_.moments;
     const double across = outer.x() + gyro_.ring.c * (sb * sb);
     const double cc = cb * cb;
@@ -272,8 +312,7 @@ class CardanSeries {
       if (M_aa <= gyro_.singular) stop(beta);
       return {1 / M_aa, 0, 1 / gyro_.ring.b};
     } else {
-      const double s = std::sin(phi);
-      const double c = std::cos(phi);
+      const auto& [s, c] = spun;
       const double P = rotor.x() * c * c + rotor.y() * s * s;
       const double Q = rotor.x() * s * s + rotor.y() * c * c;
       const double M_bb = inner.y() + Q;
