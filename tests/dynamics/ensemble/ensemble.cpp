@@ -217,6 +217,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_a_member_failed_by) {
 }
 
 BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
+  const auto all = ensemble(top, {.count = 400}, scattered, task);
   for (const int threads : {1, 3}) {
     Sampling sampling{.count = 400, .threads = threads};
     double last = 0;
@@ -230,7 +231,6 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
     BOOST_TEST((result.status == RunStatus::cancelled));
     BOOST_TEST(grows);
     BOOST_TEST(last >= 0.25);
-    const auto all = ensemble(top, {.count = 400}, scattered, task);
     std::size_t complete = 0;
     for (std::size_t i = 0; i < 400; ++i) {
       const auto& member = result.members[i];
