@@ -3,7 +3,6 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include <dynamics/scene/body_system.hpp>
 #include <dynamics/scene/pendulum_series.hpp>
 
+#include <support/random_tree.hpp>
 #include <support/sample.hpp>
 #include <support/series.hpp>
 
@@ -20,65 +20,6 @@ using test::Sample;
 namespace data = boost::unit_test::data;
 
 namespace {
-
-InertiaTensor<Body> random_inertia(Sample& sample) {
-  const Vector3<double> moments(sample.uniform(0.3, 0.5), sample.uniform(0.3, 0.5),
-                                sample.uniform(0.3, 0.5));
-  const Matrix3<double> R = sample.rotation();
-  return InertiaTensor<Body>::about_centre(sample.uniform(0.5, 2), 0.3 * sample.direction(),
-                                           R * moments.asDiagonal() * R.transpose());
-}
-
-Joint random_joint(Sample& sample, JointKind kind) {
-  return {kind, sample.direction(), sample.direction(), 0.5 * sample.direction(),
-          Eigen::Quaterniond(sample.rotation())};
-}
-
-std::vector<JointForce> random_forces(Sample& sample, JointKind kind) {
-  const bool springs = kind != JointKind::spherical && kind != JointKind::free;
-  static constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
-  std::vector<JointForce> forces;
-  for (int i = 0; i < rate_counts[int(kind)]; ++i) {
-    forces.push_back({springs ? sample.uniform(0, 2) : 0, springs ? sample.uniform(-1, 1) : 0,
-                      sample.uniform(0, 0.5), sample.uniform(-1, 1)});
-  }
-  return forces;
-}
-
-/// A tree in which the kinds of joints hang on each other in all ways, with some held and some at a
-/// constant rate, and rotors of the mode given.
-std::vector<BodyDescription> random_tree(std::uint64_t seed, JointKind root) {
-  Sample sample(seed);
-  std::vector<BodyDescription> bodies;
-  const int count = 2 + int(seed % 4);
-  for (int i = 0; i < count; ++i) {
-    BodyDescription b;
-    b.name = "body " + std::to_string(i);
-    const auto kind = i == 0 ? root : static_cast<JointKind>(int(sample.uniform(0, 5)));
-    if (i > 0) b.parent = "body " + std::to_string(int(sample.uniform(0, i)));
-    b.joint = random_joint(sample, kind);
-    b.inertia = random_inertia(sample);
-    if (sample.once_in(2)) b.forces = random_forces(sample, kind);
-    if (i > 0 && sample.once_in(6)) b.rule = JointRule::held;
-    if (kind == JointKind::revolute && sample.once_in(6)) b.rule = JointRule::constant_rate;
-    bodies.push_back(b);
-  }
-  for (const RotorMode mode : {RotorMode::free, RotorMode::regulated, RotorMode::torque}) {
-    if (!sample.once_in(2)) continue;
-    BodyDescription b;
-    b.name = "rotor " + std::to_string(int(mode));
-    b.parent = "body " + std::to_string(int(sample.uniform(0, count)));
-    b.joint = random_joint(sample, JointKind::revolute);
-    b.joint.orientation.setIdentity();
-    const Vector3<double> e = b.joint.axis.normalized();
-    b.inertia = InertiaTensor<Body>::about_centre(
-        0.4, 0.1 * e, 0.05 * Matrix3<double>::Identity() + 0.04 * e * e.transpose());
-    b.rotor = {.mode = mode, .torque = mode == RotorMode::torque ? 0.3 : 0};
-    if (mode == RotorMode::torque) b.forces = {{0, 0, 0.02, 0}};
-    bodies.push_back(b);
-  }
-  return bodies;
-}
 
 /// Where a body hangs on another that is lighter the accelerations differ by more than rounding of
 /// each: 1e-13 is 450u.
@@ -91,16 +32,13 @@ void hold_tree(const std::string& what, const BodySystem<M>& system, std::uint64
   test::hold_series(what, system, y, 0.05, 1e-13);
 }
 
-constexpr JointKind roots[] = {JointKind::revolute,  JointKind::free,      JointKind::spherical,
-                               JointKind::prismatic, JointKind::universal, JointKind::fixed};
-
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(tree_series)
 
 BOOST_DATA_TEST_CASE(is_that_of_trees_on_all_kinds_of_guides, data::xrange(120), seed) {
   const auto number = static_cast<std::uint64_t>(seed);
-  const auto bodies = random_tree(number, roots[number % std::size(roots)]);
+  const auto bodies = test::random_tree(number);
   const UniformGravity<Guide> along_guide{{1, 2, -9}};
   const UniformGravity<Inertial> resting{{1, 2, -9}};
   hold_tree("at rest", BodySystem(RestingFrame<>{}, bodies, along_guide), number);
@@ -122,8 +60,8 @@ BOOST_AUTO_TEST_CASE(is_that_of_more_rates_than_are_inverted) {
     BodyDescription b;
     b.name = "link " + std::to_string(i);
     if (i > 0) b.parent = chain.back().name;
-    b.joint = random_joint(sample, JointKind::revolute);
-    b.inertia = random_inertia(sample);
+    b.joint = test::random_joint(sample, JointKind::revolute);
+    b.inertia = test::random_inertia(sample);
     chain.push_back(b);
   }
   hold_tree("a chain of 20", BodySystem(RestingFrame<>{}, chain, UniformGravity<Guide>{{0, 0, -9}}),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <vector>
 
 #include <dynamics/exact/pendulum_motion.hpp>
@@ -11,7 +13,9 @@
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/solve/solve.hpp>
 
+#include <support/random_tree.hpp>
 #include <support/sample.hpp>
+#include <support/worst.hpp>
 
 /// Trees of bodies, whose states have a size known at run time only.
 
@@ -94,6 +98,44 @@ BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
     BOOST_TEST(std::abs(q[1] - 0.3 - as_gyro.states[i].beta) <= 2e-9);
     BOOST_TEST(std::abs(v[0] - as_gyro.states[i].alpha_rate) <= 2e-9);
   }
+}
+
+// Random trees against finer steps of another kind. The error that is told is that of the steps.
+BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
+  using Scene = BodySystem<RestingFrame<>>;
+  int runs = 0;
+  int within = 0;
+  double greatest = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Scene system(RestingFrame<>{}, test::random_tree(seed),
+                       UniformGravity<Guide>{{1, 2, -9}});
+    test::Sample sample(seed);
+    auto start = system.rest();
+    for (double& q : start.coordinates) q += sample.uniform(-0.5, 0.5);
+    for (double& v : start.rates) v = sample.uniform(-1, 1);
+    Task task{.times = {0.5, 1, 1.5, 2}, .tolerance = 1e-13, .method = Method::verner98};
+    const auto truth = solve(system, start, task);
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+      task.tolerance = tolerance;
+      task.method = Method::taylor;
+      const auto found = solve(system, start, task);
+      detail::ErrorMeasure<Scene> distance(system, task.smallest);
+      double error = 0;
+      for (std::size_t i = 0; i < task.times.size(); ++i) {
+        error = test::worst_of(
+            error, distance(Scene::to_vector(found.states[i]), Scene::to_vector(truth.states[i])));
+      }
+      const double ratio = error / found.report.error_estimate;
+      runs += 1;
+      within += ratio >= 0.1 && ratio <= 1 ? 1 : 0;
+      greatest = test::worst_of(greatest, ratio);
+      BOOST_TEST(found.report.tolerance_kept, "tree " << seed << " to " << tolerance);
+      BOOST_TEST(error <= tolerance, "tree " << seed << " to " << tolerance << ": " << error);
+    }
+  }
+  BOOST_TEST_MESSAGE(within << " of " << runs << " in [0.1, 1], greatest " << greatest);
+  BOOST_TEST(within >= 0.95 * runs);
+  BOOST_TEST(greatest <= 3);
 }
 
 namespace {

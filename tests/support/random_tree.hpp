@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <dynamics/body/description.hpp>
+
+#include <support/sample.hpp>
+
+namespace kreisel::test {
+
+inline InertiaTensor<Body> random_inertia(Sample& sample) {
+  const Vector3<double> moments(sample.uniform(0.3, 0.5), sample.uniform(0.3, 0.5),
+                                sample.uniform(0.3, 0.5));
+  const Matrix3<double> R = sample.rotation();
+  return InertiaTensor<Body>::about_centre(sample.uniform(0.5, 2), 0.3 * sample.direction(),
+                                           R * moments.asDiagonal() * R.transpose());
+}
+
+inline Joint random_joint(Sample& sample, JointKind kind) {
+  return {kind, sample.direction(), sample.direction(), 0.5 * sample.direction(),
+          Eigen::Quaterniond(sample.rotation())};
+}
+
+inline std::vector<JointForce> random_forces(Sample& sample, JointKind kind) {
+  const bool springs = kind != JointKind::spherical && kind != JointKind::free;
+  static constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
+  std::vector<JointForce> forces;
+  for (int i = 0; i < rate_counts[int(kind)]; ++i) {
+    forces.push_back({springs ? sample.uniform(0, 2) : 0, springs ? sample.uniform(-1, 1) : 0,
+                      sample.uniform(0, 0.5), sample.uniform(-1, 1)});
+  }
+  return forces;
+}
+
+/// A tree in which the kinds of joints hang on each other in all ways, with some held and some at a
+/// constant rate, and rotors of all modes; nothing acts that has no series.
+inline std::vector<BodyDescription> random_tree(std::uint64_t seed) {
+  Sample sample(seed);
+  std::vector<BodyDescription> bodies;
+  constexpr JointKind roots[] = {JointKind::revolute,  JointKind::free,      JointKind::spherical,
+                                 JointKind::prismatic, JointKind::universal, JointKind::fixed};
+  const int count = 2 + int(seed % 4);
+  for (int i = 0; i < count; ++i) {
+    BodyDescription b;
+    b.name = "body " + std::to_string(i);
+    const auto kind =
+        i == 0 ? roots[seed % std::size(roots)] : static_cast<JointKind>(int(sample.uniform(0, 5)));
+    if (i > 0) b.parent = "body " + std::to_string(int(sample.uniform(0, i)));
+    b.joint = random_joint(sample, kind);
+    b.inertia = random_inertia(sample);
+    if (sample.once_in(2)) b.forces = random_forces(sample, kind);
+    if (i > 0 && sample.once_in(6)) b.rule = JointRule::held;
+    if (kind == JointKind::revolute && sample.once_in(6)) b.rule = JointRule::constant_rate;
+    bodies.push_back(b);
+  }
+  for (const RotorMode mode : {RotorMode::free, RotorMode::regulated, RotorMode::torque}) {
+    if (!sample.once_in(2)) continue;
+    BodyDescription b;
+    b.name = "rotor " + std::to_string(int(mode));
+    b.parent = "body " + std::to_string(int(sample.uniform(0, count)));
+    b.joint = random_joint(sample, JointKind::revolute);
+    b.joint.orientation.setIdentity();
+    const Vector3<double> e = b.joint.axis.normalized();
+    b.inertia = InertiaTensor<Body>::about_centre(
+        0.4, 0.1 * e, 0.05 * Matrix3<double>::Identity() + 0.04 * e * e.transpose());
+    b.rotor = {.mode = mode, .torque = mode == RotorMode::torque ? 0.3 : 0};
+    if (mode == RotorMode::torque) b.forces = {{0, 0, 0.02, 0}};
+    bodies.push_back(b);
+  }
+  return bodies;
+}
+
+}  // namespace kreisel::test
