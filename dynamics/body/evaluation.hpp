@@ -53,8 +53,8 @@ KREISEL_DECLARED void accelerate(const BodyTree& tree, const Surroundings& now,
 KREISEL_DECLARED void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                             Eigen::VectorXd& result, BodyWorkspace& w);
 
-/// The accelerations  M dv = joint_force  of a system at rest, once the joints are eliminated, into
-/// w.acceleration.
+/// The accelerations  M dv = joint_force  of a system at rest, once the field has been evaluated where
+/// it is: joints eliminated, axes of rotors known. Into w.acceleration.
 KREISEL_DECLARED void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force,
                               BodyWorkspace& w);
 

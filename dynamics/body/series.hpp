@@ -201,7 +201,7 @@ class TreeSeries {
   Of<Diagonals> guide_gamma_;
 
   /// Beyond which the mass matrix is not inverted: then linear time pays.
-  static constexpr std::size_t most_inverted = 12;
+  static constexpr int most_inverted = 12;
   std::size_t fours_;  ///< of a column of the inverse, by four; 0 where it is not inverted
   std::vector<Four> inverse_;
   std::array<double, most_inverted> dv_;

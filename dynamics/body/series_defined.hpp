@@ -88,12 +88,13 @@ KREISEL_DEFINED TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, F
       branches_(tree.links().size()),
       balls_(static_cast<std::size_t>(tree.balls())),
       spins_(tree.rotors().size()),
-      fours_(static_cast<std::size_t>(tree.rates()) <= most_inverted
-                 ? (static_cast<std::size_t>(tree.rates()) + 3) / 4
-                 : 0),
+      fours_(tree.rates() <= most_inverted ? static_cast<std::size_t>(tree.rates() + 3) / 4 : 0),
       inverse_(fours_ * static_cast<std::size_t>(tree.rates())) {
-  branches_[0].gamma = {Four(0, 0, 0, 0), Four(0, 0, 0, 0), Four(0, 0, 0, 0)};
-  branches_[0].w_next = Cycles(Four(0, 0, 0, 0));
+  const Four zero(0, 0, 0, 0);
+  Branch& guide = branches_[0];
+  guide.gamma = {zero, zero, zero};
+  guide.w_next = Cycles(zero);
+  guide.dw = guide.w_next;
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     const Link& link = tree.links()[i];
     Branch& b = branches_[i];

@@ -59,8 +59,8 @@ KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const Steppe
                                                                     const Eigen::VectorXd& start,
                                                                     const EqualLength& length);
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_taylor_steps(
-    const SteppedScene& scene, bool other, bool looks, const AnySeries& series, const Task& task,
-    const Eigen::VectorXd& start, const Accuracy& accuracy);
+    const SteppedScene& scene, bool other, bool may_be_stiff, const AnySeries& series,
+    const Task& task, const Eigen::VectorXd& start, const Accuracy& accuracy);
 
 /// With a Jacobian by differences.
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);

@@ -27,12 +27,12 @@ KREISEL_DEFINED std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
 }
 
 KREISEL_DEFINED std::unique_ptr<Run> run_taylor_steps(const SteppedScene& scene, bool other,
-                                                      bool looks, const AnySeries& series,
+                                                      bool may_be_stiff, const AnySeries& series,
                                                       const Task& task,
                                                       const Eigen::VectorXd& start,
                                                       const Accuracy& accuracy) {
-  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, other, looks, series, task, start,
-                                                      accuracy);
+  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, other, may_be_stiff, series, task,
+                                                      start, accuracy);
 }
 
 KREISEL_DEFINED std::unique_ptr<StiffField> stiff_field(const AnyField& field) {

@@ -109,6 +109,12 @@ class RunOfGaussSteps final : public Run {
   Steps steps_;
 };
 
+/// Whether radau13 may take over, so that it makes sense to look whether a field is stiff; not where
+/// its factorisations would outweigh everything.
+[[nodiscard]] inline bool may_give_way(const Task& task, const Eigen::VectorXd& start) {
+  return task.method == Method::automatic && start.size() <= 200;
+}
+
 /// Of a scene's field, that of the other one where `other` says so; states are of the kind Vector.
 template <class Vector, class Field>
 [[nodiscard]] std::unique_ptr<ExplicitRun> run_explicit_steps(const SteppedScene& scene, bool other,
@@ -116,9 +122,7 @@ template <class Vector, class Field>
                                                               const Eigen::VectorXd& start,
                                                               const Accuracy& accuracy) {
   using Steps = ExplicitSteps<Vector, Field>;
-  // Where radau13 may not take over there is no need to look; and it cannot, where its
-  // factorisations would outweigh everything.
-  const bool looks = task.method == Method::automatic && start.size() <= 200;
+  const bool looks = may_give_way(task, start);
   Steps steps(std::move(field), task.begin, vector_of<Vector>(start), accuracy, scene.blocks());
   steps.stop_at(task.jumps);
   return std::make_unique<RunOfExplicitSteps<Steps>>(scene, other, looks, std::move(steps));
@@ -137,10 +141,11 @@ template <class Vector, class Field>
 
 template <class Vector, class Series>
 [[nodiscard]] std::unique_ptr<Run> run_taylor_steps(const SteppedScene& scene, bool other,
-                                                    bool looks, Series series, const Task& task,
-                                                    const Eigen::VectorXd& start,
+                                                    bool may_be_stiff, Series series,
+                                                    const Task& task, const Eigen::VectorXd& start,
                                                     const Accuracy& accuracy) {
   using Steps = TaylorSteps<Vector, Series>;
+  const bool looks = may_be_stiff && may_give_way(task, start);
   Steps steps(std::move(series), task.begin, vector_of<Vector>(start), accuracy, scene.blocks());
   steps.stop_at(task.jumps);
   return std::make_unique<RunOfTaylorSteps<Steps>>(scene, other, looks, std::move(steps));

@@ -121,15 +121,13 @@ class SceneRuns final : public SteppedScene {
                                                 const Accuracy& accuracy,
                                                 bool other) const override {
     if constexpr (requires { scene_.series(); }) {
-      bool looks = false;
-      if constexpr (requires { scene_.may_be_stiff(); }) {
-        looks = task.method == Method::automatic && scene(other).may_be_stiff();
-      }
+      bool may_be_stiff = false;
+      if constexpr (requires { scene_.may_be_stiff(); }) may_be_stiff = scene_.may_be_stiff();
       if constexpr (of_any_size) {
-        return run_taylor_steps(*this, other, looks, AnySeries(scene(other).series()), task, start,
-                                accuracy);
+        return run_taylor_steps(*this, other, may_be_stiff, AnySeries(scene(other).series()), task,
+                                start, accuracy);
       } else {
-        return run_taylor_steps<Own>(*this, other, looks, scene(other).series(), task, start,
+        return run_taylor_steps<Own>(*this, other, may_be_stiff, scene(other).series(), task, start,
                                      accuracy);
       }
     } else {
