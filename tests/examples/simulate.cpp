@@ -266,7 +266,7 @@ BOOST_AUTO_TEST_CASE(tells_reactions_and_terms_when_asked) {
   const Outcome text = run(file + " --reactions --terms");
   BOOST_TEST(text.status == 0);
   for (const char* const word :
-       {"verner98", "energy", "reactions", "terms kept", "Coriolis", "the guide rests"}) {
+       {"taylor", "energy", "reactions", "terms kept", "Coriolis", "the guide rests"}) {
     BOOST_TEST(text.out.find(word) != std::string::npos, word);
   }
   BOOST_TEST(text.err == "");

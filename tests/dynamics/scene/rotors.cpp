@@ -276,7 +276,7 @@ BOOST_AUTO_TEST_CASE(needs_no_more_evaluations_however_fast_it_turns) {
     start.rates << 0, 0, rate;
     const auto run = solve(system, start, {.times = {end}, .tolerance = 1e-9});
     BOOST_TEST(run.report.tolerance_kept);
-    BOOST_TEST(run.report.method == "verner98");
+    BOOST_TEST(run.report.method == "taylor");
     return run.report.all_evaluations;
   };
   for (const RotorMode mode : {RotorMode::regulated, RotorMode::free}) {
@@ -286,7 +286,7 @@ BOOST_AUTO_TEST_CASE(needs_no_more_evaluations_however_fast_it_turns) {
         const double fast = evaluations(mode, rate, end);
         BOOST_TEST_MESSAGE(end << " s at " << rate << " rad/s: " << fast
                                << " evaluations, at 100: " << slow);
-        BOOST_TEST(std::abs(fast - slow) <= 0.1 * slow);
+        BOOST_TEST(fast <= 1.1 * slow);
       }
     }
   }
