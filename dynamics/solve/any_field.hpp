@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <dynamics/body/series.hpp>
 #include <dynamics/compiled.hpp>
+#include <dynamics/guide/series.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/accuracy.hpp>
@@ -34,7 +34,7 @@ template <class Field>
 class AnySeries {
  public:
   static constexpr int most_order = most_series_order;
-  static constexpr double relative_order = TreeSeries::relative_order;
+  static constexpr double relative_order = 1.15;  ///< as of trees
 
   template <class Series>
   requires(!std::is_same_v<Series, AnySeries>) explicit AnySeries(Series series)
