@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <dynamics/body/check.hpp>
 #include <dynamics/body/evaluation.hpp>
 #include <dynamics/body/series.hpp>
 
