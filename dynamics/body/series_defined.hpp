@@ -89,7 +89,7 @@ KREISEL_DEFINED TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, F
       branches_(tree.links().size()),
       balls_(static_cast<std::size_t>(tree.balls())),
       spins_(tree.rotors().size()),
-      fours_(tree.rates() <= most_inverted ? static_cast<std::size_t>(tree.rates() + 3) / 4 : 0),
+      fours_(tree.rates() <= most_inverted ? (static_cast<std::size_t>(tree.rates()) + 3) / 4 : 0),
       inverse_(fours_ * static_cast<std::size_t>(tree.rates())) {
   const Four zero(0, 0, 0, 0);
   Branch& guide = branches_[0];

@@ -224,7 +224,7 @@ class CardanSeries {
       double on_a = per * ring.a * next_x2 + gyro[1];
       double on_b = per * ring.b * next_y2 + gyro[2];
       const double on_c = per * ring.c * next_z2 + (ring.b - ring.a) * gyro[0];
-      [[maybe_unused]] double next_s2 = 0, next_c2 = 0, next_X = 0, next_Y = 0;
+      [[maybe_unused]] double next_s2 = 0, next_c2 = 0, next_x = 0, next_y = 0;
       double twist = 0;
       if constexpr (!round) {
         if (g.regulated) {
@@ -238,11 +238,11 @@ class CardanSeries {
         }
         const Four by_w =
             products.of(blades, k, {c2, s2, s2, c2}, {next_x2, next_y2, next_x2, next_y2});
-        next_X = (by_w[0] + by_w[1]) + (next_c2 * first_x2 + next_s2 * first_y2);
-        next_Y = (by_w[2] - by_w[3]) + (next_s2 * first_x2 - next_c2 * first_y2);
+        next_x = (by_w[0] + by_w[1]) + (next_c2 * first_x2 + next_s2 * first_y2);
+        next_y = (by_w[2] - by_w[3]) + (next_s2 * first_x2 - next_c2 * first_y2);
         const Four turned = products.of(blades + 1, k, {z2, z2, x2, y2}, {Y, X, Y, X});
-        on_a += g.n * (per * next_X - turned[0]);
-        on_b += g.n * (per * next_Y + turned[1]);
+        on_a += g.n * (per * next_x - turned[0]);
+        on_b += g.n * (per * next_y + turned[1]);
         twist = g.n * (turned[2] - turned[3]);
       }
       const double torque = (k == 0 ? g.torque : 0) - g.friction * df;
@@ -272,10 +272,10 @@ class CardanSeries {
       on_a += per * ring.a * more_x2;
       along += per * ring.c * more_z2;
       if constexpr (!round) {
-        const double more_X = first_c2 * more_x2 + first_s2 * db;
-        on_a += g.n * per * more_X;
-        X = next_X + more_X;
-        Y = next_Y + (first_s2 * more_x2 - first_c2 * db);
+        const double more_x = first_c2 * more_x2 + first_s2 * db;
+        on_a += g.n * per * more_x;
+        X = next_x + more_x;
+        Y = next_y + (first_s2 * more_x2 - first_c2 * db);
         s2 = next_s2;
         c2 = next_c2;
         products.complete(blades, k, {x2, y2, x2, y2});
