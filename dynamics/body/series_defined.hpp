@@ -122,7 +122,8 @@ KREISEL_DEFINED TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, F
       b.floats = link.kind == LinkKind::free;
       b.set_outwards(link.still.transpose() * above);
       for (int j = 3; b.floats && j < 6; ++j) {
-        const JointForce& f = tree.forces()[static_cast<std::size_t>(link.v + j)];
+        const int rate = link.v + j;
+        const JointForce& f = tree.forces()[static_cast<std::size_t>(rate)];
         b.is_braked = b.is_braked || f.damping != 0 || f.constant != 0;
       }
     }
