@@ -68,6 +68,16 @@ BOOST_AUTO_TEST_CASE(is_that_of_more_rates_than_are_inverted) {
             0);
 }
 
+BOOST_AUTO_TEST_CASE(is_that_of_what_floats_and_is_braked) {
+  Sample sample(3);
+  BodyDescription body;
+  body.name = "body";
+  body.joint = test::random_joint(sample, JointKind::free);
+  body.inertia = test::random_inertia(sample);
+  body.forces.assign(6, {.damping = 0.3});
+  hold_tree("braked", BodySystem(RestingFrame<>{}, {body}, UniformGravity<Guide>{{0, 0, -9}}), 0);
+}
+
 /// Of a pendulum, which has a series of its own.
 BOOST_AUTO_TEST_CASE(is_that_of_a_pendulum) {
   BodyDescription rod;
