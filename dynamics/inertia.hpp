@@ -114,9 +114,9 @@ struct Inertia {
     Read<S> xx = t.xx, yy = t.yy, zz = t.zz, xy = t.xy, xz = t.xz, yz = t.yz;
     return {
         {m * vx + (uy * sz - uz * sy), m * vy + (uz * sx - ux * sz), m * vz + (ux * sy - uy * sx)},
-        {sy * vz - sz * vy + (xx * ux + xy * uy + xz * uz),
-         sz * vx - sx * vz + (xy * ux + yy * uy + yz * uz),
-         sx * vy - sy * vx + (xz * ux + yz * uy + zz * uz)}};
+        {sy * vz - sz * vy + xx * ux + xy * uy + xz * uz,
+         sz * vx - sx * vz + xy * ux + yy * uy + yz * uz,
+         sx * vy - sy * vx + xz * ux + yz * uy + zz * uz}};
   }
 
   /// Two bodies rigidly joined, both reduced at the same origin on the same axes.

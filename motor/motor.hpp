@@ -181,7 +181,7 @@ struct Motor {
   [[gnu::always_inline]] friend Motor operator-(const Motor& a, const Motor& b) {
     const auto& [p, p0] = a;
     const auto& [q, q0] = b;
-    return {{p.x() - q.x(), p.y() - q.y(), p.z() - q.z()},
+    return {detail::by_two(S(p.x() - q.x()), S(p.y() - q.y()), S(p.z() - q.z())),
             detail::by_two(S(p0.x() - q0.x()), S(p0.y() - q0.y()), S(p0.z() - q0.z()))};
   }
   friend Motor operator-(const Motor& a) { return {-a.resultant, -a.moment}; }
