@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include <motor/absent.hpp>
 #include <motor/motor.hpp>
@@ -69,7 +72,8 @@ struct Pose {
       const S y = n.y();
       const S z = n.z();
       return {{x, y, z},
-              {m.x() + (py * z - pz * y), m.y() + (pz * x - px * z), m.z() + (px * y - py * x)}};
+              detail::by_two(S(m.x() + (py * z - pz * y)), S(m.y() + (pz * x - px * z)),
+                             S(m.z() + (px * y - py * x)))};
     };
     if constexpr (std::is_same_v<S, double>) {
       const detail::Columns R(X.rotation.data());
@@ -95,17 +99,78 @@ struct Pose {
 
 namespace detail {
 
-/// Below this squared angle three terms of the series in it leave an error under u/5000.
-template <class S>
-[[nodiscard]] S small_squared_angle() {
-  if constexpr (std::is_same_v<S, double>) {
-    return 0x1.965fea53d6e3dp-18;  // a static has a guard to pass
+/// c[0] + c[1] x + c[2] x^2 + ..., by pairs, which need not wait for each other.
+template <std::size_t n>
+[[nodiscard, gnu::always_inline]] inline double by_pairs(double x, const std::array<double, n>& c) {
+  if constexpr (n == 1) {
+    return c[0];
   } else {
-    using std::cbrt;
-    static const S bound = cbrt(std::numeric_limits<S>::epsilon());
-    return bound;
+    std::array<double, (n + 1) / 2> pairs;
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+      ((pairs[i] = c[2 * i] + x * c[2 * i + 1]), ...);
+    }
+    (std::make_index_sequence<n / 2>());
+    if constexpr (n % 2 == 1) pairs[n / 2] = c[n - 1];
+    return by_pairs(x * x, pairs);
   }
 }
+
+/// first + second x + third x^2 + ..., where the first is the greatest: it is added last, so that no
+/// more is rounded at its size.
+template <class... Rest>
+[[nodiscard, gnu::always_inline]] inline double polynomial(double x, double first, Rest... rest) {
+  return first + x * by_pairs(x, std::array{rest...});
+}
+
+/// Below this squared angle three terms of a series in it leave an error under u/5000.
+template <class S>
+[[nodiscard]] S small_squared_angle() {
+  using std::cbrt;
+  static const S bound = cbrt(std::numeric_limits<S>::epsilon());
+  return bound;
+}
+
+/// How a rotation by theta is made of powers of its vector, smooth functions of theta^2:
+///
+///   sine = sin(theta)/theta,  versine = (1 - cos(theta))/theta^2,  rest = (1 - sine)/theta^2.
+template <class S>
+struct OverPowers {
+  S sine;
+  S versine;
+  S rest;
+
+  [[nodiscard, gnu::always_inline]] static OverPowers of(const S& t2) {
+    using std::cos;
+    using std::sin;
+    using std::sqrt;
+    if constexpr (std::is_same_v<S, double>) {
+      if (t2 < 10) {
+        // Through them at Chebyshev's points of [0, 10], within 2e-17, 3e-17 and 2e-17: no root, no
+        // quotient, and nothing that cancels. About the middle, where the terms are small.
+        const double x = t2 - 5;
+        return {polynomial(x, 0.351844907875699, -0.09691177843328656, 0.005740644068100509,
+                           -0.00014917585773936058, 2.186424820636489e-06, -2.0616823366817982e-08,
+                           1.3570958273630947e-10, -6.59370821442229e-13, 2.462769897000255e-15,
+                           -7.295848612193184e-18, 1.755264802987073e-20),
+                polynomial(x, 0.32345457529143334, -0.029506424270716765, 0.0010556959324789944,
+                           -1.9784384225787982e-05, 2.274804016833481e-07, -1.7675839219919887e-09,
+                           9.903060524708328e-12, -4.190399829738396e-14, 1.3871436033344526e-16,
+                           -3.687890300511132e-19),
+                polynomial(x, 0.1296310184248602, -0.006543847998314729, 0.00016064078604284258,
+                           -2.2929856606960823e-06, 2.131216801234889e-08, -1.39068929152316e-10,
+                           6.718692350324501e-13, -2.4996802575406287e-15, 7.384273522823804e-18,
+                           -1.7728724485362963e-20)};
+      }
+    } else if (t2 < small_squared_angle<S>()) {
+      return {S(1) - t2 / S(6) * (S(1) - t2 / S(20)), S(0.5) - t2 / S(24) * (S(1) - t2 / S(30)),
+              S(1) / S(6) - t2 / S(120) * (S(1) - t2 / S(42))};
+    }
+    const S theta = sqrt(t2);
+    const S s = sin(theta / S(2));
+    const S sine = sin(theta) / theta;
+    return {sine, S(2) * s * s / t2, (S(1) - sine) / t2};
+  }
+};
 
 }  // namespace detail
 
@@ -113,51 +178,31 @@ template <class S>
 /// about in unit time (a screw motion),
 ///
 ///   R = 1 + a S + b S^2,   x = v + b S v + c S^2 v = a v + b S v + c w w.v,   S = skew(w),
-///   a = sin(theta)/theta,  b = 2 sin^2(theta/2)/theta^2,  c = (1 - a)/theta^2,   theta = |w|.
+///   a = sin(theta)/theta,  b = (1 - cos(theta))/theta^2,  c = (1 - a)/theta^2,   theta = |w|.
 ///
-/// The half angle keeps b free of cancellation; c loses digits near 0 just where S^2 takes them
-/// away again. Of the two forms of x each errs less on its side of theta = 1. Below theta = 2.5e-3
-/// (double) the series takes over.
+/// Of the two forms of x each errs less on its side of theta = 1.
 ///
 /// Source : Rodrigues; the exponential map of SE(3)
 /// Error  : |R - exact| <= 8u, |x - exact| <= 8u |v| up to theta = pi, beyond it both times
 ///          theta/pi (tests/motor/displacement.cpp)
 template <class S>
 [[nodiscard]] Pose<S> exp(const Motor<S>& A) {
-  using std::cos;
-  using std::sin;
-  using std::sqrt;
   const auto w = detail::components(A.resultant);
   const auto v = detail::components(A.moment);
   const S t2 = w.x * w.x + w.y * w.y + w.z * w.z;
-  S a;
-  S b;
-  S c;
-  if (t2 < detail::small_squared_angle<S>()) {
-    a = S(1) - t2 / S(6) * (S(1) - t2 / S(20));
-    b = S(0.5) - t2 / S(24) * (S(1) - t2 / S(30));
-    c = S(1) / S(6) - t2 / S(120) * (S(1) - t2 / S(42));
-  } else {
-    const S theta = sqrt(t2);
-    const S half = theta / S(2);
-    const S s = sin(half);
-    const S two_s = s + s;
-    a = two_s * cos(half) / theta;
-    b = two_s * s / t2;
-    c = (S(1) - a) / t2;
-  }
-  const auto bw = b * w;
+  const auto over = detail::OverPowers<S>::of(t2);
+  const auto bw = over.versine * w;
   // Before the rotation, which would have to wait for it in registers.
   detail::Components<S> x;
   if (t2 < S(1)) {
     const auto wv = cross(w, v);
-    x = v + (b * wv + c * cross(w, wv));
+    x = v + (over.versine * wv + over.rest * cross(w, wv));
   } else {
-    const S along = c * (w.x * v.x + w.y * v.y + w.z * v.z);
-    x = cross(bw, v) + (a * v + along * w);
+    const S along = over.rest * (w.x * v.x + w.y * v.y + w.z * v.z);
+    x = cross(bw, v) + (over.sine * v + along * w);
   }
-  const S cosine = S(1) - b * t2;
-  const auto aw = a * w;
+  const S cosine = S(1) - over.versine * t2;
+  const auto aw = over.sine * w;
   const S xy = bw.x * w.y;
   const S xz = bw.x * w.z;
   const S yz = bw.y * w.z;
@@ -187,30 +232,83 @@ template <class S>
 
 namespace detail {
 
-/// The logarithm beyond 120 degrees. Apart, for others not to save the registers that it takes.
+/// Modified Rodrigues parameters tan(theta/4) n of a rotation by theta about n, by that row of 4 q q^t,
+/// q its quaternion, that has the i-th component of the vector throughout.
+template <int i, class S>
+[[nodiscard]] Components<S> rodrigues_by_row(const Matrix3<S>& R) {
+  using std::abs;
+  using std::sqrt;
+  constexpr int j = (i + 1) % 3;
+  constexpr int k = (j + 1) % 3;
+  S n[3];
+  n[i] = S(1) + R(i, i) - R(j, j) - R(k, k);
+  n[j] = R(j, i) + R(i, j);
+  n[k] = R(k, i) + R(i, k);
+  const S last = R(k, j) - R(j, k);
+  const S norm = sqrt(last * last + n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  const S scale = (last < S(0) ? S(-1) : S(1)) / (abs(last) + norm);
+  return {scale * n[0], scale * n[1], scale * n[2]};
+}
+
+/// Beyond 120 degrees the greatest component is one of the vector. Not inline, for others not to save
+/// the registers that it takes.
 template <class S>
-[[nodiscard, gnu::noinline]] Motor<S> log_of_wide_turn(const Pose<S>& X) {
+[[nodiscard, gnu::noinline]] Components<S> rodrigues_of_wide_turn(const Matrix3<S>& R) {
+  if (R(0, 0) > R(1, 1) && R(0, 0) > R(2, 2)) return rodrigues_by_row<0>(R);
+  return R(1, 1) > R(2, 2) ? rodrigues_by_row<1>(R) : rodrigues_by_row<2>(R);
+}
+
+/// Modified Rodrigues parameters m = tan(theta/4) n, |m| <= 1. Up to 120 degrees by the skew part of R,
+/// k = 2 sin(theta) n, which vanishes at the half turn:
+///
+///   m = 4 k/(a + sqrt(a^2 + 16 k^2)),   a = (1 + trace)^2 + k^2  (= 8 (1 + cos(theta))).
+///
+/// The trace alone would give a too, but would err twice as much where R is a rotation to rounding only.
+template <class S>
+[[nodiscard, gnu::always_inline]] inline Components<S> rodrigues(const Matrix3<S>& R) {
+  using std::sqrt;
+  const S trace = R(0, 0) + R(1, 1) + R(2, 2);
+  if (!(trace > S(0))) return rodrigues_of_wide_turn(R);
+  const Components<S> k{S(R(2, 1) - R(1, 2)), S(R(0, 2) - R(2, 0)), S(R(1, 0) - R(0, 1))};
+  const S k2 = k.x * k.x + k.y * k.y + k.z * k.z;
+  const S a = (S(1) + trace) * (S(1) + trace) + k2;
+  return S(S(4) / (a + sqrt(a * a + S(16) * k2))) * k;
+}
+
+/// What the arc is less than its tangent, of p = tan^2(theta/4):  theta/4 = (1 - p h(p)) tan(theta/4).
+template <class S>
+[[nodiscard, gnu::always_inline]] inline S arc_less(const S& p) {
   using std::atan2;
   using std::sqrt;
-  const Eigen::Quaternion<S> q = quaternion(X.rotation);
-  const Vector3<S>& x = X.translation;
-  const Vector3<S> n = q.vec();
-  const S n2 = n.squaredNorm();
-  const S n1 = sqrt(n2);
-  const S ratio = atan2(n1, q.w()) / n1;  // theta / 2 / sin(theta/2)
-  return {S(2) * ratio * n,
-          ratio * (q.w() * x - n.cross(x)) + (S(1) - ratio * q.w()) / n2 * n.dot(x) * n};
+  if constexpr (std::is_same_v<S, double>) {
+    // Through h at Chebyshev's points of [0, 1], which leaves p h within 3e-17. About their middle,
+    // where the terms are small.
+    return polynomial(p - 0.5, 0.2591604972657936, -0.11081482513071414, 0.054814840604579904,
+                      -0.029135862645225958, 0.016172974900145312, -0.009243096224092707,
+                      0.005394792734515503, -0.0031991751955030576, 0.0019209389488175712,
+                      -0.0011650648417818904, 0.000712529877324769, -0.0004387712318266148,
+                      0.0002713884068435811, -0.00016895422802807932, 0.00010789905799306997,
+                      -6.77580169120214e-05, 3.504433556095341e-05, -2.2095024431396628e-05,
+                      2.8373324902198374e-05, -1.806195461861215e-05);
+  } else if (p < small_squared_angle<S>()) {
+    return S(1) / S(3) - p / S(5) * (S(1) - p * (S(5) / S(7)));
+  } else {
+    const S tangent = sqrt(p);
+    return (S(1) - atan2(tangent, S(1)) / tangent) / p;
+  }
 }
 
 }  // namespace detail
 
 /// The logarithm of a displacement: the motor A with exp(A) = X and |A.resultant| <= pi.
 ///
-/// Up to 120 degrees it is read off the skew part of R, sin(theta) times the axis, beyond from the
-/// quaternion, whose vector part does not vanish at the half turn: that takes longer, and errs half as
-/// much there. The moment is
+/// By the modified Rodrigues parameters m of R, whose length is tan(theta/4), M = skew(m):
 ///
-///   x - S x / 2 + c S^2 x,   S = skew(w),  c = (1 - gamma)/theta^2,  gamma = (theta/2) cot(theta/2).
+///   resultant = 4 f m,   moment = x - 2 f M x + g M^2 x = f (1 - p) x - 2 f M x + g m m.x,
+///   p = m.m,   f = 1 - p h = (theta/4)/tan(theta/4),   g = (1 - (1 - p) f)/p = 1 + h (1 - p).
+///
+/// Nothing in it cancels at small angles, and nothing vanishes at the half turn. Of the two forms of the
+/// moment each errs less on its side of theta = 1.
 ///
 /// Several answers: at the half turn both signs of the axis are right; the one returned has its
 /// largest component positive unless rounding says otherwise.
@@ -218,39 +316,25 @@ template <class S>
 /// Error  : of log(exp(A)), relative in each half, measured over 1e6 motors, in units of 1e-16
 ///          (tests/motor/displacement.cpp prints it)
 ///            theta      < 1e-8   1e-8..1e-3   1e-3..1   1..pi-1e-3   pi-1e-3..pi
-///            resultant     1          6.5        7           7.5           5
-///            moment        1          2          6.5         8.5           9
+///            resultant     1          9           9           7            5
+///            moment        1          2           4           9.5         10.5
 template <class S>
 [[nodiscard]] Motor<S> log(const Pose<S>& X) {
-  using std::atan2;
-  using std::sqrt;
-  const Matrix3<S>& R = X.rotation;
-  const S cosine = (R(0, 0) + R(1, 1) + R(2, 2) - S(1)) / S(2);
-  if (cosine > S(-0.5)) {
-    const auto x = detail::components(X.translation);
-    const detail::Components<S> sine{S((R(2, 1) - R(1, 2)) / S(2)), S((R(0, 2) - R(2, 0)) / S(2)),
-                                     S((R(1, 0) - R(0, 1)) / S(2))};
-    const S s2 = sine.x * sine.x + sine.y * sine.y + sine.z * sine.z;
-    S ratio;  // theta / sin(theta)
-    if (s2 < std::numeric_limits<S>::epsilon()) {
-      ratio = S(1) + s2 / S(6);
-    } else {
-      const S s = sqrt(s2);
-      ratio = atan2(s, cosine) / s;
-    }
-    const S ratio2 = ratio * ratio;
-    const S t2 = ratio2 * s2;
-    const S gamma = ratio * (S(1) + cosine) / S(2);
-    const S c = t2 < detail::small_squared_angle<S>()
-                    ? S(ratio2 * (S(1) / S(12) + t2 / S(720) * (S(1) + t2 / S(42))))
-                    : S((S(1) - gamma) / s2);
-    // By the sine, whose products do not wait for the angle: c is that of the formula by ratio^2.
-    const auto sx = cross(sine, x);
-    const auto w = ratio * sine;
-    const auto moment = x - (S(ratio / S(2)) * sx - c * cross(sine, sx));
-    return {detail::vector<S>(w), detail::vector<S>(moment)};
+  const auto m = detail::rodrigues(X.rotation);
+  const auto x = detail::components(X.translation);
+  const auto mx = cross(m, x);
+  const S p = m.x * m.x + m.y * m.y + m.z * m.z;
+  const S h = detail::arc_less(p);
+  const S f = S(1) - p * h;
+  const S g = S(1) + h * (S(1) - p);
+  detail::Components<S> moment;
+  if (p < S(0.0625)) {
+    moment = x - (S(S(2) * f) * mx - g * cross(m, mx));
+  } else {
+    const S along = g * (m.x * x.x + m.y * x.y + m.z * x.z);
+    moment = S(f * (S(1) - p)) * x - (S(S(2) * f) * mx - along * m);
   }
-  return detail::log_of_wide_turn(X);
+  return {detail::vector<S>(S(S(4) * f) * m), detail::vector<S>(moment)};
 }
 
 }  // namespace kreisel
