@@ -14,7 +14,7 @@
 #include "methods.hpp"
 #include "scenes.hpp"
 #include <tests/dynamics/scene/rotors_reference.hpp>
-#include <tests/support/reference_file.hpp>
+#include <tests/support/json.hpp>
 
 namespace work_precision {
 

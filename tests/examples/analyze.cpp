@@ -2,7 +2,6 @@
 // against closed forms and references.
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include <support/json.hpp>
 #include <support/program.hpp>
-#include <support/reference_file.hpp>
 #include <support/worst.hpp>
 
 using kreisel::test::number;
@@ -40,7 +39,7 @@ std::string scene(const std::string& name) {
 json answer(const std::string& arguments) {
   const Outcome outcome = run(arguments + " --json");
   BOOST_REQUIRE_MESSAGE(outcome.status == 0, arguments << ": " << outcome.err);
-  return json::parse(outcome.out);
+  return kreisel::test::parsed(outcome.out);
 }
 
 json answer_to(const std::string& text, const std::string& arguments = "") {

@@ -1,7 +1,6 @@
 // ensemble as a user runs it: a scene file with numbers of it varied.
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <support/json.hpp>
 #include <support/program.hpp>
 
 using namespace kreisel;
@@ -71,13 +71,13 @@ BOOST_AUTO_TEST_CASE(sweeps_a_number_of_the_file) {
     BOOST_TEST(std::abs(std::stod(row.at(4)) - wanted) <= 1e-12 * wanted);
     BOOST_TEST(std::stod(row.at(5)) <= 1e-12);
   }
-  const json summary = json::parse(outcome.out);
+  const json summary = test::parsed(outcome.out);
   BOOST_TEST(summary.at("complete") == 3);
   BOOST_TEST(summary.at("columns").at("wheel.rate").at("least").get<double>() ==
              std::stod(table.at(1).at(4)));
   // The first is the file as it stands.
   const json simulated =
-      json::parse(test::run(KREISEL_SIMULATE " " + scene("wheel_spun_up") + " --json").out);
+      test::parsed(test::run(KREISEL_SIMULATE " " + scene("wheel_spun_up") + " --json").out);
   const json& wheel = simulated.at("final").at("joints").at("wheel");
   BOOST_TEST(std::stod(table.at(1).at(3)) == wheel.at("coordinate").get<double>());
   BOOST_TEST(std::stod(table.at(1).at(4)) == wheel.at("rate").get<double>());

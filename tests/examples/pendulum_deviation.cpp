@@ -1,18 +1,17 @@
 // The program as its user meets it: command line in, numbers, files and exit status out.
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <sys/wait.h>
 #include <utility>
 
 #include <dynamics/file/csv.hpp>
 
+#include <support/json.hpp>
 #include <support/program.hpp>
 #include <support/scratch.hpp>
 
@@ -30,13 +29,10 @@ Outcome run(const std::string& arguments) {
 json answer(const std::string& arguments) {
   const Outcome outcome = run(arguments + " --json");
   BOOST_REQUIRE_MESSAGE(outcome.status == 0, arguments << ": " << outcome.err);
-  return json::parse(outcome.out);
+  return kreisel::test::parsed(outcome.out);
 }
 
-json references(const std::string& file) {
-  std::ifstream stream(std::string(KREISEL_TEST_DATA) + "/" + file);
-  return json::parse(stream).at("cases");
-}
+json references(const std::string& file) { return kreisel::test::reference_file(file).at("cases"); }
 
 /// The command line of a reference case.
 std::string options(const json& inputs) {

@@ -1,7 +1,6 @@
 // The program as its user meets it: scene file in, numbers, files and exit status out.
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +16,8 @@
 #include <dynamics/scene/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
 
+#include <support/json.hpp>
 #include <support/program.hpp>
-#include <support/reference_file.hpp>
 
 using namespace kreisel;
 using nlohmann::json;
@@ -40,7 +39,7 @@ std::string scene(const std::string& name) {
 json answer(const std::string& arguments) {
   const Outcome outcome = run(arguments + " --json");
   BOOST_REQUIRE_MESSAGE(outcome.status == 0, arguments << ": " << outcome.err);
-  return json::parse(outcome.out);
+  return test::parsed(outcome.out);
 }
 
 void check_near(const std::string& what, double found, double wanted, double bound) {
@@ -306,7 +305,7 @@ BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
   BOOST_TEST(outcome.status == 0, outcome.err);
   BOOST_TEST(outcome.err.find("going on from t = ") != std::string::npos, outcome.err);
   BOOST_TEST((folder.read("part.csv") == folder.read("whole.csv")));
-  const json resumed = json::parse(outcome.out);
+  const json resumed = test::parsed(outcome.out);
   for (const char* const key : {"final", "steps", "rejected", "evaluations", "all_evaluations",
                                 "error_estimate", "invariants", "method"}) {
     BOOST_TEST(resumed.at(key) == whole.at(key), key);
@@ -326,7 +325,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
   const Outcome outcome = run(file + " --json --resume --csv " + part.string());
   BOOST_TEST(outcome.status == 0, outcome.err);
   BOOST_TEST(outcome.err.find(" s with new steps, for ") != std::string::npos, outcome.err);
-  const json rest = json::parse(outcome.out);
+  const json rest = test::parsed(outcome.out);
   for (const char* const body : {"upper", "lower"}) {
     for (const char* const quantity : {"coordinate", "rate"}) {
       check_near(body, rest.at("final").at("joints").at(body).at(quantity),
@@ -745,7 +744,7 @@ BOOST_AUTO_TEST_CASE(draws) {
       run(scene("cardan_gyro_springs") + " --t-end 0.5 --reactions --json --plot " + pictures);
   BOOST_TEST(outcome.status == 0, outcome.err);
   BOOST_TEST(outcome.err == "");
-  BOOST_TEST(json::parse(outcome.out).contains("final"));
+  BOOST_TEST(test::parsed(outcome.out).contains("final"));
   for (const char* const name :
        {"coordinates", "rates", "reactions", "invariants", "error", "axis"}) {
     const std::string path = std::string("pictures/") + name;
@@ -771,7 +770,7 @@ BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
   const std::size_t begin = page.find(opening);
   BOOST_TEST_REQUIRE(begin != std::string::npos);
   const std::size_t length = page.find("</script>", begin) - begin - opening.size();
-  const json shown = json::parse(page.substr(begin + opening.size(), length));
+  const json shown = test::parsed(page.substr(begin + opening.size(), length));
   BOOST_TEST(shown.at("title") == title);
   BOOST_TEST(shown.at("up") == json({0, 0, 1}));
   BOOST_TEST(shown.at("bodies").at(1).at("parent") == 0);
@@ -795,7 +794,7 @@ BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
   // Relative, guide and Coriolis part of both rods, four digits of them; the guide rests.
   BOOST_TEST_REQUIRE(shown.at("terms").size() == rows.size() - 1);
   const json& parts = shown.at("terms").back();
-  const json wanted = json::parse(outcome.out).at("final").at("terms").at("lower");
+  const json wanted = test::parsed(outcome.out).at("final").at("terms").at("lower");
   BOOST_TEST_REQUIRE(parts.size() == 36U);
   for (std::size_t k = 0; k < 3; ++k) {
     const double force = wanted.at("relative").at("force").at(k);

@@ -2,7 +2,6 @@
 // the library. Skipped where there is no Chromium.
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <dynamics/scene/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
 
+#include <support/json.hpp>
 #include <support/program.hpp>
 
 using namespace kreisel;
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_where_the_library_has_it) {
   BOOST_REQUIRE_MESSAGE(begin != std::string::npos, shown.err);
   const std::size_t end = shown.out.find("</pre>", begin);
   const json found =
-      json::parse(shown.out.substr(begin + opening.size(), end - begin - opening.size()));
+      test::parsed(shown.out.substr(begin + opening.size(), end - begin - opening.size()));
   BOOST_TEST(found.at("painted").get<double>() > 0.01);
   BOOST_TEST(found.at("fetched") == 0);
   BOOST_TEST(found.at("words").get<std::string>().find("rad/s") != std::string::npos);

@@ -1,31 +1,21 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <nlohmann/json.hpp>
 
-#include <fstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <support/cast.hpp>
+#include <support/json.hpp>
 #include <support/reference.hpp>
 
 namespace kreisel::test {
 
 namespace {
 
-using Json = nlohmann::json;
-
-Json read() {
-  std::ifstream in(std::string(KREISEL_TEST_DATA) + "/inverse-dynamics.json");
-  if (!in) throw std::runtime_error("no inverse-dynamics.json in " KREISEL_TEST_DATA);
-  return Json::parse(in);
-}
-
 /// Numbers are strings of 25 and more decimal digits.
-Digits50 number(const Json& text) { return Digits50(text.get<std::string>()); }
+Digits50 digits(const Json& text) { return Digits50(text.get<std::string>()); }
 
 Vector3<Digits50> vector(const Json& list) {
-  return {number(list.at(0)), number(list.at(1)), number(list.at(2))};
+  return {digits(list.at(0)), digits(list.at(1)), digits(list.at(2))};
 }
 
 Matrix3<Digits50> matrix(const Json& rows) {
@@ -39,8 +29,8 @@ Motor<Digits50> motor(const Json& m) { return {vector(m.at("res")), vector(m.at(
 Motor<Digits50> couple(const Json& moment) { return {Vector3<Digits50>::Zero(), vector(moment)}; }
 
 Wave wave(const Json& w) {
-  return {number(w.at("c0")), number(w.at("c1")), number(w.at("c2")),
-          number(w.at("A")),  number(w.at("w")),  number(w.at("p"))};
+  return {digits(w.at("c0")), digits(w.at("c1")), digits(w.at("c2")),
+          digits(w.at("A")),  digits(w.at("w")),  digits(w.at("p"))};
 }
 
 Motion motion(const Json& m) {
@@ -52,7 +42,7 @@ std::vector<PointMass> masses(const Json& list) {
   std::vector<PointMass> masses;
   for (const Json& point : list) {
     const Vector3<Digits50> place = vector(point.at(1));
-    masses.push_back({static_cast<double>(number(point.at(0))), cast<double>(place)});
+    masses.push_back({static_cast<double>(digits(point.at(0))), cast<double>(place)});
   }
   return masses;
 }
@@ -64,9 +54,9 @@ ReferenceCase reference_case(const Json& c) {
       c.at("name").get<std::string>(),
       motion(c.at("guide")),
       motion(c.at("rel")),
-      number(c.at("t")),
+      digits(c.at("t")),
       masses(c.at("point_masses")),
-      number(c.at("mass")),
+      digits(c.at("mass")),
       vector(c.at("r_s")),
       matrix(c.at("Theta_O")),
       motor(c.at("F")),
@@ -82,7 +72,7 @@ ReferenceCase reference_case(const Json& c) {
 }  // namespace
 
 std::vector<ReferenceCase> reference_cases() {
-  const Json file = read();
+  const Json file = reference_file("inverse-dynamics.json");
   std::vector<ReferenceCase> cases;
   for (const Json& c : file.at("cases")) cases.push_back(reference_case(c));
   if (cases.size() != 2) throw std::runtime_error("inverse-dynamics.json should have two cases");
@@ -90,7 +80,7 @@ std::vector<ReferenceCase> reference_cases() {
 }
 
 HandExampleK hand_example_K() {
-  const Json file = read();
+  const Json file = reference_file("inverse-dynamics.json");
   const Json& K = file.at("hand_example_K");
   const Json& misread = K.at("force_if_Tafel1_columns_misread");
   return {K.at("true_force_x").get<double>(), misread.at("So").get<double>(),

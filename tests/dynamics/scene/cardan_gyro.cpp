@@ -20,8 +20,8 @@
 #include <dynamics/step/advance.hpp>
 #include <dynamics/step/jacobian.hpp>
 
+#include <support/json.hpp>
 #include <support/near.hpp>
-#include <support/reference_file.hpp>
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 

@@ -17,8 +17,8 @@
 #include <dynamics/step/advance.hpp>
 #include <motor/displacement.hpp>
 
+#include <support/json.hpp>
 #include <support/near.hpp>
-#include <support/reference_file.hpp>
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 

@@ -1,19 +1,18 @@
 // Cardan gyros with an inner bearing that is all but rigid.
 
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <string>
 
 #include <dynamics/scene/cardan_gyro.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/step/gsl.hpp>
 
+#include <support/json.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
@@ -22,7 +21,7 @@ BOOST_AUTO_TEST_SUITE(a_cardan_gyro_in_a_stiff_bearing)
 
 namespace {
 
-using Json = nlohmann::json;
+using test::Json;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 const CardanMoments moments{{5e-4, 5e-4, 8e-4}, {2e-4, 3e-4, 2.5e-4}, {4e-4, 4e-4, 4e-4}};
@@ -35,8 +34,7 @@ struct Outcome {
 };
 
 Json scene(const char* name) {
-  std::ifstream file(std::string(KREISEL_TEST_DATA) + "/ode-scenes.json");
-  return Json::parse(file).at("scenes").at(name);
+  return test::reference_file("ode-scenes.json").at("scenes").at(name);
 }
 
 double number(const Json& truth, std::size_t i, std::size_t k) {

@@ -19,8 +19,8 @@
 #include <dynamics/step/advance.hpp>
 #include <motor/attitude.hpp>
 
+#include <support/json.hpp>
 #include <support/near.hpp>
-#include <support/reference_file.hpp>
 #include <support/sample.hpp>
 
 using namespace kreisel;

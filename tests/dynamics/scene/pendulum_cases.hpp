@@ -2,9 +2,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
-#include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include <dynamics/scene/pendulum.hpp>
 #include <motor/error.hpp>
 
+#include <support/json.hpp>
 #include <support/near.hpp>
 #include <support/sample.hpp>
 
@@ -19,7 +18,7 @@
 namespace kreisel::test::pendulum {
 
 using Exact = boost::multiprecision::cpp_bin_float_50;
-using Json = nlohmann::json;
+using test::Json;
 
 constexpr double u = 0x1p-53;
 
@@ -40,8 +39,7 @@ inline const std::vector<Json>& cases() {
   static const std::vector<Json> all = [] {
     std::vector<Json> list;
     for (const char* name : {"pendulum.json", "pendulum-extra.json"}) {
-      std::ifstream stream(std::string(KREISEL_TEST_DATA) + "/" + name);
-      const Json file = Json::parse(stream);
+      const Json file = reference_file(name);
       for (const Json& one : file.at("cases")) list.push_back(one);
     }
     return list;

@@ -2,7 +2,6 @@
 #include <boost/test/data/monomorphic.hpp>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,8 +16,8 @@
 #include <dynamics/scene/physical_pendulum.hpp>
 #include <dynamics/solve/solve.hpp>
 
+#include <support/json.hpp>
 #include <support/near.hpp>
-#include <support/reference_file.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;

@@ -379,7 +379,7 @@ BOOST_AUTO_TEST_CASE(conserves_what_it_says) {
     names.insert(names.end(), momenta.begin(), momenta.end());
     return names;
   };
-  const Json springs = Json::parse(R"({"gimbal": {"k": "0.8", "d": "0", "Q0": "0"}})");
+  const Json springs = test::parsed(R"({"gimbal": {"k": "0.8", "d": "0", "Q0": "0"}})");
   for (const RotorMode mode : {RotorMode::free, RotorMode::regulated, RotorMode::torque}) {
     auto bodies = test::model_bodies("cmgsat", Root::free, springs, mode);
     if (mode == RotorMode::torque) bodies[2].rotor->torque = 3;

@@ -8,7 +8,7 @@
 
 #include <dynamics/scene/body_system.hpp>
 
-#include <support/reference_file.hpp>
+#include <support/json.hpp>
 
 /// The systems of tests/data/rotors.json: models with rotors in exact decimals, and what plain
 /// Newton-Euler says of them in 66 digits.

@@ -3,10 +3,8 @@
 
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -14,13 +12,14 @@
 #include <dynamics/scene/unsymmetric_rotor.hpp>
 #include <dynamics/study/departure.hpp>
 
+#include <support/json.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
 
 namespace {
 
-using Json = nlohmann::json;
+using test::Json;
 
 const CardanMoments symmetric{{.005, .005, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
 const CardanMoments unsymmetric{{.0055, .0045, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
@@ -28,10 +27,8 @@ const CardanBearings springs{{2}, {1.5}};
 constexpr double speed = 50;
 
 const Json& orders() {
-  static const Json json = [] {
-    std::ifstream file(KREISEL_TEST_DATA "/cardan-gyro.json");
-    return Json::parse(file).at("approximation_orders").at("data");
-  }();
+  static const Json json =
+      test::reference_file("cardan-gyro.json").at("approximation_orders").at("data");
   return json;
 }
 

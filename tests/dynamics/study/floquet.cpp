@@ -18,7 +18,7 @@
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/stability_boundaries.hpp>
 
-#include <support/reference_file.hpp>
+#include <support/json.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;

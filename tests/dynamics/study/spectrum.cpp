@@ -16,7 +16,7 @@
 #include <dynamics/study/spectrum.hpp>
 #include <motor/motor.hpp>
 
-#include <support/reference_file.hpp>
+#include <support/json.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
