@@ -145,8 +145,8 @@ struct OverPowers {
     using std::sqrt;
     if constexpr (std::is_same_v<S, double>) {
       if (t2 < 10) {
-        // Through them at Chebyshev's points of [0, 10], within 2e-17, 3e-17 and 2e-17: no root, no
-        // quotient, and nothing that cancels. About the middle, where the terms are small.
+        // Through them at Chebyshev's points of [0, 10], by as many as leave less than rounding: no
+        // root, no quotient, and nothing that cancels. About the middle, where the terms are small.
         const double x = t2 - 5;
         return {polynomial(x, 0.351844907875699, -0.09691177843328656, 0.005740644068100509,
                            -0.00014917585773936058, 2.186424820636489e-06, -2.0616823366817982e-08,
@@ -281,8 +281,8 @@ template <class S>
   using std::atan2;
   using std::sqrt;
   if constexpr (std::is_same_v<S, double>) {
-    // Through h at Chebyshev's points of [0, 1], which leaves p h within 3e-17. About their middle,
-    // where the terms are small.
+    // Through h at Chebyshev's points of [0, 1], by as many as leave p h less than rounding. About
+    // their middle, where the terms are small.
     return polynomial(p - 0.5, 0.2591604972657936, -0.11081482513071414, 0.054814840604579904,
                       -0.029135862645225958, 0.016172974900145312, -0.009243096224092707,
                       0.005394792734515503, -0.0031991751955030576, 0.0019209389488175712,
