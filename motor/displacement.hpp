@@ -180,7 +180,8 @@ struct OverPowers {
 ///   R = 1 + a S + b S^2,   x = v + b S v + c S^2 v = a v + b S v + c w w.v,   S = skew(w),
 ///   a = sin(theta)/theta,  b = (1 - cos(theta))/theta^2,  c = (1 - a)/theta^2,   theta = |w|.
 ///
-/// Of the two forms of x each errs less on its side of theta = 1.
+/// In doubles a, b and c are polynomials in theta^2 where it is below 10, so that no case of small
+/// angles is left. Of the two forms of x each errs less on its side of theta = 1.
 ///
 /// Source : Rodrigues; the exponential map of SE(3)
 /// Error  : |R - exact| <= 8u, |x - exact| <= 8u |v| up to theta = pi, beyond it both times
@@ -233,7 +234,8 @@ template <class S>
 namespace detail {
 
 /// Modified Rodrigues parameters tan(theta/4) n of a rotation by theta about n, by that row of 4 q q^t,
-/// q its quaternion, that has the i-th component of the vector throughout.
+/// q its quaternion, that has the i-th component of the vector throughout: as the quaternion, without
+/// its root and quotient.
 template <int i, class S>
 [[nodiscard]] Components<S> rodrigues_by_row(const Matrix3<S>& R) {
   using std::abs;
