@@ -26,7 +26,7 @@ int run(const Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return exit_status("analyze", [&] {
+  return exit_status::of("analyze", [&] {
     const std::optional<Request> request = read_request(argc, argv);
     return request ? run(*request) : 0;
   });

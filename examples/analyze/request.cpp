@@ -3,6 +3,7 @@
 #include <motor/error.hpp>
 
 #include "../shared/command_line.hpp"
+#include "../shared/exit_status.hpp"
 
 using kreisel::InvalidInput;
 
@@ -39,6 +40,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       "and\n"
       "whether it is stable, how far precession equations hold. SI units and radians.\n");
   app.name("analyze");
+  app.footer(exit_status::help);
   Request request;
   std::string scene;
   std::string body;

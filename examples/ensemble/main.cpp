@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <limits>
@@ -28,10 +27,6 @@
 namespace {
 
 using kreisel::RunStatus;
-
-volatile std::sig_atomic_t interrupted = 0;
-
-extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
 struct Member {
   RunStatus status = RunStatus::cancelled;
@@ -86,7 +81,7 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     if (task.times.empty() || task.times.back() < file.t_end) task.times.push_back(file.t_end);
     task.tolerance = file.tolerance;
     task.method = file.method;
-    const auto ends = [&stop] { return stop || interrupted != 0; };
+    const auto ends = [&stop] { return stop || signals::caught() != 0; };
     const auto run = model->solve(
         task, start_of(file), [&](double, const JointState&) { return !ends(); }, ends);
     if (ends() && run.times.size() < task.times.size()) return member;
@@ -97,6 +92,11 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     member.joints.erase(member.joints.begin());
     member.error = run.report.error_estimate;
     member.tolerance_kept = run.report.tolerance_kept;
+    const auto finite = [](double x) { return std::isfinite(x); };
+    if (!finite(member.error) || !std::all_of(member.joints.begin(), member.joints.end(), finite)) {
+      member.status = RunStatus::failed;
+      member.message = "the end of the motion or its error is not finite";
+    }
   } catch (const std::exception& error) {
     member.status = RunStatus::failed;
     member.message = error.what();  // of a scene several lines
@@ -112,7 +112,7 @@ std::vector<Member> compute(const Scene& scene) {
       members.size(), scene.request.threads,
       [&](double share) {
         progress.report(share, [&] { return fmt::format("of {} members", members.size()); });
-        return interrupted == 0;
+        return signals::caught() == 0;
       },
       [&](std::size_t i, const std::atomic<bool>& stop) { members[i] = compute(scene, i, stop); });
   return members;
@@ -237,20 +237,20 @@ int run(const Request& request) {
     fmt::print(stderr, "ensemble: {} of {} members did not reach the tolerance\n", all.off,
                request.members);
   }
-  if (interrupted != 0 && all.complete + all.failed < request.members) {
+  if (signals::caught() != 0 && all.complete + all.failed < request.members) {
     fmt::print(stderr, "ensemble: interrupted; {} of {} members were computed\n",
                all.complete + all.failed, request.members);
-    return 130;
+    return exit_status::of_signal();
   }
-  return all.complete > 0 ? 0 : 3;
+  if (all.failed > 0) return exit_status::failed;
+  return all.off > 0 ? exit_status::tolerance_missed : exit_status::complete;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  return exit_status("ensemble", [&] {
+  signals::watch();
+  return exit_status::of("ensemble", [&] {
     const std::optional<Request> request = read_request(argc, argv);
     return request ? run(*request) : 0;
   });

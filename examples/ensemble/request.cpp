@@ -5,6 +5,7 @@
 #include <motor/error.hpp>
 
 #include "../shared/command_line.hpp"
+#include "../shared/exit_status.hpp"
 
 using kreisel::InvalidInput;
 
@@ -71,6 +72,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       "Runs a scene file many times with numbers of it varied, and tells where the members end.\n"
       "SI units and radians, where a key does not end in _deg.\n");
   app.name("ensemble");
+  app.footer(exit_status::help);
   Request request;
   std::string scene;
   std::string csv;

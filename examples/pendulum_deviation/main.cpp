@@ -3,17 +3,17 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <dynamics/guide/normal_gravity.hpp>
 
+#include "../shared/exit_status.hpp"
 #include "../shared/progress.hpp"
 #include "request.hpp"
 
@@ -25,9 +25,27 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-volatile std::sig_atomic_t interrupted = 0;
+/// The numbers of an answer that are exact but for rounding; a period that does not exist is left
+/// out.
+std::vector<kreisel::Estimated<double>> exact_numbers(
+    const kreisel::PendulumAnswer<double>& answer) {
+  std::vector<kreisel::Estimated<double>> numbers{answer.equilibrium.exact};
+  const auto& period = answer.period;
+  for (const auto& number :
+       {period.exact_small, period.relative_change_exact, period.at_amplitude}) {
+    if (number) numbers.push_back(*number);
+  }
+  return numbers;
+}
 
-extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
+/// Throws : kreisel::ComputationFailed if a number of the answer is not finite
+void require_finite(const kreisel::PendulumAnswer<double>& answer) {
+  for (const auto& number : exact_numbers(answer)) {
+    if (!std::isfinite(number.value)) {
+      throw kreisel::ComputationFailed("the deviation or the period is not finite");
+    }
+  }
+}
 
 int run(const Request& request) {
   const Clock::time_point start = Clock::now();
@@ -36,7 +54,7 @@ int run(const Request& request) {
   {
     Progress progress;
     for (const Site& site : request.sites) {
-      if (interrupted != 0) break;
+      if (signals::caught() != 0) break;
       rows.push_back(compute(request, site));
       const std::size_t all = request.sites.size();
       progress.report(static_cast<double>(rows.size()) / static_cast<double>(all),
@@ -55,10 +73,18 @@ int run(const Request& request) {
     fmt::print(stderr,
                "pendulum_deviation: interrupted after {} of {} sites; what was computed is kept\n",
                rows.size(), request.sites.size());
-    return 130;
+    return exit_status::of_signal();
   }
   if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
-  return 0;
+  const auto unknown = std::count_if(rows.begin(), rows.end(), [](const Row& row) {
+    const auto numbers = exact_numbers(row.answer);
+    return std::any_of(numbers.begin(), numbers.end(),
+                       [](const auto& number) { return !std::isfinite(number.error); });
+  });
+  if (unknown == 0) return exit_status::complete;
+  fmt::print(stderr, "pendulum_deviation: the error of {} of {} sites has no bound\n", unknown,
+             rows.size());
+  return exit_status::tolerance_missed;
 }
 
 /// Normal gravity comes in double: u and g' are right to 4 epsilon, which the answer cannot know.
@@ -117,6 +143,7 @@ Row compute(const Request& request, const Site& site) {
             kreisel::deviation(request.body, guide, request.amplitude),
             effect_of_gradient(request.body, earth), 0};
     if (!request.gravity) add_rounding_of_normal_gravity(request, site, row.answer);
+    require_finite(row.answer);
     row.run_time_s = seconds_since(start);
     return row;
   } catch (const kreisel::InvalidInput& error) {
@@ -127,18 +154,9 @@ Row compute(const Request& request, const Site& site) {
 }
 
 int main(int argc, char** argv) {
-  const auto fail = [](const std::exception& error, int status) {
-    fmt::print(stderr, "pendulum_deviation: {}\n", error.what());
-    return status;
-  };
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, not a death
-  try {
+  signals::watch();
+  return exit_status::of("pendulum_deviation", [&] {
     const std::optional<Request> request = read_request(argc, argv);
-    return request ? run(*request) : 0;
-  } catch (const kreisel::InvalidInput& error) {
-    return fail(error, 2);
-  } catch (const std::exception& error) {
-    return fail(error, 3);
-  }
+    return request ? run(*request) : exit_status::complete;
+  });
 }

@@ -7,6 +7,7 @@
 #include <motor/error.hpp>
 
 #include "../shared/command_line.hpp"
+#include "../shared/exit_status.hpp"
 
 using kreisel::InvalidInput;
 
@@ -105,6 +106,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       "to\n"
       "trust each number. Angles of the site in degrees, all else in SI units and radians.\n");
   app.name("pendulum_deviation");
+  app.footer(exit_status::help);
   Request request;
   BodyOptions body;
   kreisel::EarthSite<Real> place;

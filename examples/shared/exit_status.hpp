@@ -7,23 +7,53 @@
 #include <dynamics/file/scene_file.hpp>
 #include <motor/error.hpp>
 
-/// What `program` returns; or, where it throws, 2 for what was put in and 3 for the rest, with the
-/// reason on standard error: a line, or one for each mistake of a scene file.
+#include "signals.hpp"
+
+/// Exit statuses of all programs.
+namespace exit_status {
+
+inline constexpr int complete = 0;
+inline constexpr int bad_input = 2;
+inline constexpr int failed = 3;
+inline constexpr int tolerance_missed = 4;
+
+/// 130 after SIGINT, 143 after SIGTERM, as shells count; `complete` if neither came.
+[[nodiscard]] inline int of_signal() {
+  return signals::caught() == 0 ? 0 : 128 + signals::caught();
+}
+
+/// The end of each --help.
+inline constexpr const char* help =
+    "Exit status:\n"
+    "  0    complete, the tolerance is kept\n"
+    "  2    the input is refused; nothing was computed\n"
+    "  3    the computation failed, or a result could not be written\n"
+    "  4    complete, but the tolerance was not reached\n"
+    "  130  interrupted by SIGINT (Ctrl-C), 143 by SIGTERM; what was computed is kept\n";
+
+/// Exit status of `program`. Where it throws, the reason is written to standard error, a line for
+/// each mistake, and the status is `bad_input`, `failed`, or that of a signal that came before.
 template <class Program>
-[[nodiscard]] int exit_status(const char* name, const Program& program) {
+[[nodiscard]] int of(const char* name, const Program& program) {
   const auto fail = [name](const std::exception& error, int status) {
+    if (of_signal() != 0) {
+      std::fprintf(stderr, "%s: interrupted\n", name);
+      return of_signal();
+    }
     std::fprintf(stderr, "%s: %s\n", name, error.what());  // fmt's may throw
     return status;
   };
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing, not a death
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing
   try {
     return program();
   } catch (const kreisel::SceneMistakes& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    return 2;
+    return bad_input;
   } catch (const kreisel::InvalidInput& error) {
-    return fail(error, 2);
+    return fail(error, bad_input);
   } catch (const std::exception& error) {
-    return fail(error, 3);
+    return fail(error, failed);
   }
 }
+
+}  // namespace exit_status

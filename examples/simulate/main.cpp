@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -24,10 +23,6 @@
 namespace {
 
 using kreisel::RunStatus;
-
-volatile std::sig_atomic_t interrupted = 0;
-
-extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
 /// Where a run begins, or goes on.
 struct Begin {
@@ -162,19 +157,19 @@ int run(const Request& request) {
       }
       progress.report(t / scene.t_end,
                       [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
-      return interrupted == 0;
+      return signals::caught() == 0;
     };
-    trajectory = model->solve(task, begin.state, listener, [] { return interrupted != 0; });
+    trajectory = model->solve(task, begin.state, listener, [] { return signals::caught() != 0; });
   }
   if (file) file->close();
   const kreisel::RunReport& report = trajectory.report;
   const double reached =
       trajectory.times.empty() ? std::max(0.0, begin.latest) : trajectory.times.back();
-  if (interrupted != 0 && !(reached == scene.t_end && report.status == RunStatus::complete)) {
+  if (signals::caught() != 0 && !(reached == scene.t_end && report.status == RunStatus::complete)) {
     fmt::print(stderr, "simulate: interrupted after t = {:.9g} of {:.9g} s{}\n", reached,
                scene.t_end,
                file ? "; rows up to there are kept, and --resume goes on with them" : "");
-    return 130;
+    return exit_status::of_signal();
   }
   if (report.status == RunStatus::failed) {
     throw kreisel::ComputationFailed(
@@ -183,6 +178,7 @@ int run(const Request& request) {
   if (resume) resume->remove();
   put_before(trajectory, *model, begin.rows);
   const Result result{scene, *model, trajectory, scene.reactions, scene.terms};
+  require_finite(result);
   if (request.plot) draw(result, *request.plot);
   if (request.json) {
     print_json(result);
@@ -195,15 +191,14 @@ int run(const Request& request) {
                "simulate: the tolerance {:.1e} was not reached, the error is about {:.1e}\n",
                report.tolerance, report.error_estimate);
   }
-  return 0;
+  return report.tolerance_kept ? exit_status::complete : exit_status::tolerance_missed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  return exit_status("simulate", [&] {
+  signals::watch();
+  return exit_status::of("simulate", [&] {
     const std::optional<Request> request = read_request(argc, argv);
     return request ? run(*request) : 0;
   });

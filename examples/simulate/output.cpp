@@ -4,8 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include <dynamics/solve/report.hpp>
+#include <motor/error.hpp>
 
 #include "../shared/joint_tables.hpp"
 
@@ -118,7 +121,9 @@ std::vector<Term> terms_dropped(const Result& result) {
   return terms;
 }
 
-void print_json(const Result& result) {
+namespace {
+
+ordered_json summary(const Result& result) {
   const kreisel::RunReport& r = report(result);
   ordered_json invariants = ordered_json::array();
   for (const auto& [name, start, largest] : r.invariants) {
@@ -126,23 +131,49 @@ void print_json(const Result& result) {
         {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
   }
   const auto whole = [](double count) { return static_cast<long long>(count); };
-  const ordered_json summary{{"title", result.scene.title},
-                             {"method", r.method},
-                             {"model", name(result.scene.model)},
-                             {"steps", whole(r.effort.steps)},
-                             {"rejected", whole(r.effort.rejected)},
-                             {"evaluations", whole(r.effort.evaluations)},
-                             {"all_evaluations", whole(r.all_evaluations)},
-                             {"run_time_s", r.run_time},
-                             {"tolerance", r.tolerance},
-                             {"error_estimate", json(r.error_estimate)},
-                             {"tolerance_kept", r.tolerance_kept},
-                             {"invariants", invariants},
-                             {"terms_kept", json(terms_kept(result))},
-                             {"terms_dropped", json(terms_dropped(result))},
-                             {"final", final_state(result)}};
-  fmt::print("{}\n", summary.dump(2));
+  return {{"title", result.scene.title},
+          {"method", r.method},
+          {"model", name(result.scene.model)},
+          {"steps", whole(r.effort.steps)},
+          {"rejected", whole(r.effort.rejected)},
+          {"evaluations", whole(r.effort.evaluations)},
+          {"all_evaluations", whole(r.all_evaluations)},
+          {"run_time_s", r.run_time},
+          {"tolerance", r.tolerance},
+          {"error_estimate", json(r.error_estimate)},
+          {"tolerance_kept", r.tolerance_kept},
+          {"invariants", invariants},
+          {"terms_kept", json(terms_kept(result))},
+          {"terms_dropped", json(terms_dropped(result))},
+          {"final", final_state(result)}};
 }
+
+/// Keys that lead to the first number that is not finite, null in JSON; nothing if all are finite.
+std::optional<std::string> path_to_null(const ordered_json& value) {
+  if (value.is_null()) return "";
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) return "";
+  if (!value.is_structured()) return std::nullopt;
+  for (const auto& [key, part] : value.items()) {
+    if (const auto path = path_to_null(part)) return path->empty() ? key : key + ", " + *path;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void require_finite(const Result& result) {
+  for (std::size_t i = 0; i < result.run.states.size(); ++i) {
+    const JointState& state = result.run.states[i];
+    if (state.coordinates.allFinite() && state.rates.allFinite()) continue;
+    throw kreisel::ComputationFailed(
+        fmt::format("the state at t = {:.9g} s is not finite", result.run.times[i]));
+  }
+  if (const auto path = path_to_null(summary(result))) {
+    throw kreisel::ComputationFailed("a number of the report is not finite: " + *path);
+  }
+}
+
+void print_json(const Result& result) { fmt::print("{}\n", summary(result).dump(2)); }
 
 void print_summary(const Result& result) {
   const kreisel::RunReport& r = report(result);

@@ -24,6 +24,10 @@ struct Term {
 std::vector<Term> terms_kept(const Result& result);
 std::vector<Term> terms_dropped(const Result& result);
 
+/// Throws : kreisel::ComputationFailed naming the first number of the report or of the states that
+///          is not finite
+void require_finite(const Result& result);
+
 void print_summary(const Result& result);
 void print_json(const Result& result);
 

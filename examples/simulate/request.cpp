@@ -5,6 +5,7 @@
 #include <motor/error.hpp>
 
 #include "../shared/command_line.hpp"
+#include "../shared/exit_status.hpp"
 
 using kreisel::InvalidInput;
 
@@ -26,6 +27,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       "Computes the motion that a scene file describes, to a tolerance of the global error.\n"
       "SI units and radians.\n");
   app.name("simulate");
+  app.footer(exit_status::help);
   Request request;
   std::string scene;
   std::string csv;

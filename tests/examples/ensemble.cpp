@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(lists_members_that_fail) {
                                     " --vary 'body.wheel.inertia[2]=linear(-0.01,0.01)' "
                                     "--members 3 --csv " +
                                     (folder.path() / "out.csv").string());
-  BOOST_TEST(outcome.status == 0);
+  BOOST_TEST(outcome.status == 3);
   BOOST_TEST(outcome.err.find("2 of 3 members failed; member 0: ") != std::string::npos,
              outcome.err);
   const auto table = rows(folder.read("out.csv"));
@@ -120,6 +120,26 @@ BOOST_AUTO_TEST_CASE(lists_members_that_fail) {
              table.at(1).at(5));
   BOOST_TEST(table.at(3).size() == 5U);  // and an empty message
   BOOST_TEST(outcome.out.find("1 of 3 members, 2 failed") != std::string::npos, outcome.out);
+}
+
+// Rounding alone makes more than 1e-15.
+BOOST_AUTO_TEST_CASE(members_that_miss_the_tolerance_exit_with_4) {
+  const test::Outcome outcome = run(scene("double_pendulum") +
+                                    " --vary 'body.upper.initial.angle=linear(2,2.1)' "
+                                    "--members 2 --tolerance 1e-15 --json");
+  BOOST_TEST(outcome.status == 4, outcome.err);
+  BOOST_TEST(outcome.err.find("2 of 2 members did not reach the tolerance") != std::string::npos,
+             outcome.err);
+  BOOST_TEST(test::parsed(outcome.out).at("tolerance_not_kept") == 2);
+}
+
+// A rate of 1.7e308 m/s leaves the range of doubles.
+BOOST_AUTO_TEST_CASE(a_member_that_is_not_finite_has_failed) {
+  const test::Outcome outcome =
+      run(scene("damped_slide") +
+          " --vary 'body.slide.initial.rate=linear(0,1.7e308)' --members 2 --json");
+  BOOST_TEST(outcome.status == 3, outcome.err);
+  BOOST_TEST(test::parsed(outcome.out).at("failed") == 1);
 }
 
 BOOST_AUTO_TEST_CASE(keeps_what_was_computed_when_interrupted) {
