@@ -1,35 +1,35 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
-#include <dynamics/file/csv.hpp>
+#include <dynamics/file/log_file.hpp>
 #include <dynamics/guide/tabulated.hpp>
 
 namespace kreisel {
 
-/// Reads a logged motion: columns t, qw, qx, qy, qz and, if the origin moves, x, y, z.
+/// A logged motion with the places and the spacing of its numbers in the file.
+struct LoggedMotion {
+  MotionLog<double> motion;
+  std::vector<std::size_t> lines = {};  ///< the line of each sample, from 1
+  double time_resolution = 0;           ///< s, spacing of the numbers as they were written
+  double attitude_resolution = 0;       ///< the same of the quaternion's components
+  double position_resolution = 0;       ///< m
+};
+
+/// The columns of a logged motion: qw, qx, qy, qz or yaw, pitch, roll; x, y, z if the origin moves.
+[[nodiscard]] std::vector<LogRequest> motion_log_columns();
+
+/// Reads a logged motion.
 ///
-/// Attitude G to I, position of G's origin on I's axes; TabulatedFrame checks the motion itself.
+/// Attitude G to I, position of G's origin on I's axes. Angles: a turn by yaw about z, then by pitch
+/// about the new y, then by roll about the new x.
 ///
-/// Units  : second, metre
-/// Throws : InvalidInput naming file, line and column
-[[nodiscard]] inline MotionLog<double> read_motion_log(const std::filesystem::path& path) {
-  const CsvTable table = CsvTable::read(path, {"t", "qw", "qx", "qy", "qz"});
-  const bool moves = table.has("x") || table.has("y") || table.has("z");
-  for (const char* const column : {"x", "y", "z"}) {
-    if (moves && !table.has(column)) {
-      throw InvalidInput(path.string() + ": a position needs x, y and z, but there is no column '" +
-                         column + "'");
-    }
-  }
-  MotionLog<double> log;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const auto number = [&](const char* column) { return table.number(i, column); };
-    log.times.push_back(number("t"));
-    log.attitudes.emplace_back(number("qw"), number("qx"), number("qy"), number("qz"));
-    if (moves) log.positions.emplace_back(number("x"), number("y"), number("z"));
-  }
-  return log;
-}
+/// Units  : second, metre, radian (degree by `options.degrees`)
+/// Throws : InvalidInput as read_log(), and where the attitude turns by more than 90 degrees from
+///          one row to the next
+[[nodiscard]] LoggedMotion read_motion_log(const std::filesystem::path& path,
+                                           const LogOptions& options = {});
 
 }  // namespace kreisel

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <dynamics/file/log_options.hpp>
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/inertia.hpp>
@@ -280,19 +281,43 @@ class SceneReader {
       return;
     }
     const std::filesystem::path file = path_.parent_path() / name;
+    const std::size_t before = mistakes_.count();
+    const LogOptions options = read_log_options(guide, motion_log_columns(), {0, scene_.t_end});
+    if (mistakes_.count() > before) return;
     try {
-      MotionLog<double> log = read_motion_log(file);
-      const TabulatedFrame<> checked(log);
-      if (checked.begin() > 0 || checked.end() < scene_.t_end) {
-        guide.refuse("file", "'" + name + "' goes from t = " + std::to_string(checked.begin()) +
-                                 " s to " + std::to_string(checked.end()) +
-                                 " s and does not cover the run, 0 to " +
-                                 std::to_string(scene_.t_end) + " s");
+      LoggedMotion log = read_motion_log(file, options);
+      const double begin = log.motion.times.front();
+      const double end = log.motion.times.back();
+      if (begin > 0 || end < scene_.t_end) {
+        guide.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
+                                 shown_time(end) + " s and does not cover the run, 0 to " +
+                                 shown_time(scene_.t_end) + " s" + time_hint(options, begin, end));
       }
-      scene_.guide.emplace_back(scene_guide::Table{file, std::move(log)});
+      scene_.guide.emplace_back(scene_guide::Table{file, std::move(log.motion)});
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
     }
+  }
+
+  static std::string shown_time(double t) {
+    std::ostringstream text;
+    text.precision(15);
+    text << t;
+    return text.str();
+  }
+
+  /// The keys that make a log cover a run from 0 on, as the end of a message.
+  static std::string time_hint(const LogOptions& options, double begin, double end) {
+    std::string keys;
+    constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
+    if (!options.time_unit && begin > 1e3 * since_1970) {
+      const char* const unit = begin > 1e9 * since_1970   ? "ns"
+                               : begin > 1e6 * since_1970 ? "us"
+                                                          : "ms";
+      keys = "time_unit = \"" + std::string(unit) + "\"  and  ";
+    }
+    if (begin > 0) return ": give  " + keys + "time_zero = \"first\"";
+    return ": give  t_end = " + shown_time(end) + "  in [solve]";
   }
 
   void read_gravity() {

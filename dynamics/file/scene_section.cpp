@@ -5,6 +5,7 @@
 #include <numeric>
 #include <sstream>
 
+#include <dynamics/file/quoted.hpp>
 #include <dynamics/file/scene_file.hpp>
 
 namespace kreisel::detail {
@@ -47,17 +48,6 @@ std::string shown(double value) {
   text.precision(10);
   text << value;
   return text.str();
-}
-
-/// A text of the file in a message: one line, and not too long.
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 60;
-  std::string result = "'";
-  for (const char c : text.substr(0, longest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7f ? '?' : c;
-  }
-  return result + (text.size() > longest ? "...'" : "'");
 }
 
 std::string listed(const std::vector<std::string>& words) {

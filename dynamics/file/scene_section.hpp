@@ -22,6 +22,7 @@ class Mistakes {
   void throw_any() const;
 
   [[nodiscard]] bool none() const { return list_.empty(); }
+  [[nodiscard]] std::size_t count() const { return list_.size(); }
 
  private:
   struct Mistake {

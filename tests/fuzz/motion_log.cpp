@@ -12,7 +12,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const kreisel::test::MemoryFile file(data, size);
   try {
-    const kreisel::TabulatedFrame<> frame(kreisel::read_motion_log(file.path()));
+    const kreisel::TabulatedFrame<> frame(kreisel::read_motion_log(file.path()).motion);
     for (const double t : {frame.begin(), (frame.begin() + frame.end()) / 2, frame.end()}) {
       (void)frame(t);
     }

@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(follow_a_log_beside_the_scene) {
   const auto file = folder.write("log.csv", log);
   const std::string text = "[guide]\nkind = \"table\"\nfile = \"log.csv\"\n" + body + run;
   const SceneFile read = parse_scene(text, folder.path() / "scene.toml");
-  check_same(make_guide(read), TabulatedFrame<>(read_motion_log(file)));
+  check_same(make_guide(read), TabulatedFrame<>(read_motion_log(file).motion));
   // It ends at 5 s.
   BOOST_CHECK_THROW((void)parse_scene(text, folder.path() / "scene.toml", {.t_end = 5.1}),
                     SceneMistakes);

@@ -3,20 +3,17 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <string>
 #include <type_traits>
 
-#include <dynamics/file/motion_log.hpp>
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/guide/tabulated.hpp>
 #include <motor/attitude.hpp>
 
 #include <support/near.hpp>
 #include <support/sample.hpp>
-#include <support/scratch.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
@@ -225,30 +222,6 @@ BOOST_AUTO_TEST_CASE(is_refused_if_it_is_none) {
   refused("more than 90 degrees", [](MotionLog<>& log) {
     log.attitudes[5] = log.attitudes[5] * Eigen::Quaterniond(0, 1, 0, 0);
   });
-}
-
-BOOST_AUTO_TEST_CASE(is_read_from_a_file) {
-  const test::Scratch scratch;
-  const auto path = scratch.path() / "log.csv";
-  const MotionLog<> log = logged(2, 9);
-  std::ofstream out(path);
-  out.precision(17);
-  out << "t, qw, qx, qy, qz, x, y, z\n";
-  for (std::size_t i = 0; i < log.times.size(); ++i) {
-    const Eigen::Quaterniond& q = log.attitudes[i];
-    const Vector3<double>& x = log.positions[i];
-    out << log.times[i] << ',' << q.w() << ',' << q.x() << ',' << q.y() << ',' << q.z() << ','
-        << x.x() << ',' << x.y() << ',' << x.z() << '\n';
-  }
-  out.close();
-  const MotionLog<> read = read_motion_log(path);
-  BOOST_TEST(read.times == log.times);
-  for (std::size_t i = 0; i < log.times.size(); ++i) {
-    BOOST_TEST(read.attitudes[i].coeffs() == log.attitudes[i].coeffs());
-    BOOST_TEST(read.positions[i] == log.positions[i]);
-  }
-  std::ofstream(path) << "t,qw,qx,qy,qz,x\n0,1,0,0,0,0\n";
-  BOOST_CHECK_THROW((void)read_motion_log(path), InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

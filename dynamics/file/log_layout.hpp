@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <dynamics/file/log_file.hpp>
+#include <dynamics/file/log_text.hpp>
+
+namespace kreisel::detail {
+
+/// One column that is read, and its position in the rows.
+struct PlacedColumn {
+  std::string name;
+  bool is_time = false;
+  LogQuantity quantity = LogQuantity::number;
+  std::size_t position = 0;
+  bool has_unit = false;  ///< the header or an option gives the unit of angles
+};
+
+/// The way in which a log is written.
+struct LogLayout {
+  char separator = ',';
+  std::vector<PlacedColumn> columns;  ///< t first
+  std::size_t first_row = 1;          ///< the line from which on lines are rows, from 1
+  FieldCount fields;                  ///< of each row
+};
+
+/// Finds header, separator and first row in the first lines of a log.
+///
+/// Throws : InvalidInput naming file and line if nothing fits the options, or several columns do
+[[nodiscard]] LogLayout find_layout(const LogLines& lines, const std::string& path,
+                                    const std::vector<LogRequest>& requests,
+                                    const LogOptions& options);
+
+/// The reason why a field is not the number that it should be, and the key that may help.
+[[nodiscard]] std::string why_no_number(std::string_view field, const std::string& column,
+                                        const LogOptions& options);
+
+}  // namespace kreisel::detail

@@ -1,0 +1,170 @@
+#include "log_options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <dynamics/file/log_text.hpp>
+
+namespace kreisel::detail {
+
+namespace {
+
+/// The columns that a log may have, by name.
+std::vector<std::string> column_names(const std::vector<LogRequest>& requests) {
+  std::vector<std::string> names{"t"};
+  for (const LogRequest& request : requests) {
+    for (const LogColumnGroup& group : request.one_of) {
+      names.insert(names.end(), group.names.begin(), group.names.end());
+    }
+  }
+  return names;
+}
+
+void read_column(Section& columns, const std::string& name, LogOptions& options) {
+  const toml::node* const node = columns.find(name);
+  if (node == nullptr) return;
+  constexpr std::int64_t most = 100'000;
+  if (const auto* const text = node->as_string()) {
+    if (text->get().empty()) columns.refuse(name, "is empty");
+    options.columns[name] = text->get();
+  } else if (const auto* const number = node->as_integer()) {
+    if (number->get() < 1 || number->get() > most) {
+      columns.refuse(name, "is no column: they are numbered from 1 to 100000");
+      return;
+    }
+    options.columns[name] = static_cast<std::size_t>(number->get());
+  } else {
+    columns.refuse(name, "must be the name of a column, or its number from 1");
+  }
+}
+
+void read_columns(Section& section, const std::vector<LogRequest>& requests, LogOptions& options) {
+  auto columns = section.section("columns");
+  if (!columns) return;
+  for (const std::string& name : column_names(requests)) read_column(*columns, name, options);
+  columns->finish();
+}
+
+/// The groups of columns that `columns` names must be whole, one for each quantity.
+void check_groups(Section& section, const std::vector<LogRequest>& requests,
+                  const LogOptions& options) {
+  for (const LogRequest& request : requests) {
+    std::string given;
+    for (const LogColumnGroup& group : request.one_of) {
+      std::string missing;
+      std::string present;
+      for (const std::string& name : group.names) {
+        std::string& list = options.columns.contains(name) ? present : missing;
+        list += (list.empty() ? "" : ", ") + name;
+      }
+      if (present.empty()) continue;
+      if (!missing.empty()) {
+        section.refuse("columns", "names " + present + " but not " + missing);
+      }
+      if (!given.empty()) {
+        section.refuse("columns",
+                       "gives the " + request.title + " twice, by " + given + " and by " + present);
+      }
+      given = present;
+    }
+  }
+}
+
+std::size_t read_count(Section& section, std::string_view key) {
+  const toml::node* const node = section.find(key);
+  if (node == nullptr) return 0;
+  const auto* const number = node->as_integer();
+  constexpr std::int64_t most = 1'000'000;
+  if (number == nullptr || number->get() < 0 || number->get() > most) {
+    section.refuse(key, "must be a whole number of lines, 0 to 1000000");
+    return 0;
+  }
+  return static_cast<std::size_t>(number->get());
+}
+
+/// The digits of the number as they stand in the file, as far as 15 of them are significant.
+std::string shortest(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(std::begin(text), std::end(text), value);
+  return {std::begin(text), end};
+}
+
+void read_time_zero(Section& section, LogOptions& options) {
+  const toml::node* const node = section.find("time_zero");
+  if (node == nullptr) return;
+  if (const auto* const text = node->as_string()) {
+    if (text->get() == "first" || written_number(text->get(), '.')) {
+      options.time_zero = text->get();
+    } else {
+      section.refuse("time_zero", "must be a number in time_unit, or \"first\"");
+    }
+  } else if (const auto* const whole = node->as_integer()) {
+    options.time_zero = std::to_string(whole->get());
+  } else if (const auto number = section.number("time_zero")) {
+    options.time_zero = shortest(*number);
+  }
+}
+
+void read_time(Section& section, LogOptions& options) {
+  const bool has_unit = section.has("time_unit");
+  const std::string unit = section.choice("time_unit", {"s", "ms", "us", "ns"});
+  if (has_unit) {
+    options.time_unit = unit == "ms"   ? LogTimeUnit::ms
+                        : unit == "us" ? LogTimeUnit::us
+                        : unit == "ns" ? LogTimeUnit::ns
+                                       : LogTimeUnit::s;
+  }
+  read_time_zero(section, options);
+  if (const auto window = section.numbers("window", 2)) {
+    options.window = {(*window)[0], (*window)[1]};
+    if (!((*window)[0] < (*window)[1])) section.refuse("window", "must increase: [from, to]");
+  }
+  const toml::node* const gap = section.find("longest_gap");
+  if (gap != nullptr && gap->is_string()) {
+    (void)section.choice("longest_gap", {"any"});
+    options.longest_gap = std::numeric_limits<double>::infinity();
+  } else {
+    options.longest_gap = section.number("longest_gap", Range::positive);
+  }
+  const std::string duplicates = section.choice("duplicates", {"error", "first", "last", "mean"});
+  options.duplicates = duplicates == "first"  ? LogDuplicates::first
+                       : duplicates == "last" ? LogDuplicates::last
+                       : duplicates == "mean" ? LogDuplicates::mean
+                                              : LogDuplicates::error;
+}
+
+void read_writing(Section& section, LogOptions& options) {
+  const std::string separator = section.choice("separator", {"auto", ",", ";", "tab", "blanks"});
+  options.separator = separator == "auto"     ? '\0'
+                      : separator == "tab"    ? '\t'
+                      : separator == "blanks" ? ' '
+                                              : separator.front();
+  options.decimal = section.choice("decimal", {".", ","}).front();
+  if (options.separator == ',' && options.decimal == ',') {
+    section.refuse("decimal", "',' is the separator too");
+  }
+  options.skip = read_count(section, "skip");
+  options.header = section.choice("header", {"auto", "none"}) == "auto";
+  options.skip_after_header = read_count(section, "skip_after_header");
+  if (!options.header && options.skip_after_header > 0) {
+    section.refuse("skip_after_header", "needs a header; without one give 'skip'");
+  }
+}
+
+}  // namespace
+
+LogOptions read_log_options(Section& section, const std::vector<LogRequest>& requests,
+                            const std::array<double, 2>& run) {
+  LogOptions options;
+  options.run = run;
+  read_columns(section, requests, options);
+  check_groups(section, requests, options);
+  if (section.has("angles")) options.degrees = section.choice("angles", {"rad", "deg"}) == "deg";
+  read_writing(section, options);
+  read_time(section, options);
+  return options;
+}
+
+}  // namespace kreisel::detail

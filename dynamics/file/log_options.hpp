@@ -1,0 +1,19 @@
+#pragma once
+
+// Knows toml++: for the .cpp files of this folder alone.
+#include <array>
+#include <vector>
+
+#include <dynamics/file/log_file.hpp>
+#include <dynamics/file/scene_section.hpp>
+
+namespace kreisel::detail {
+
+/// The keys of a log in a section of a scene file: `columns`, `separator`, `time_unit`, ...
+///
+/// `run` is [from, to] of the scene in seconds. Mistakes are noted in the section. The keys `file`
+/// and `sigma` are not read here.
+[[nodiscard]] LogOptions read_log_options(Section& section, const std::vector<LogRequest>& requests,
+                                          const std::array<double, 2>& run);
+
+}  // namespace kreisel::detail
