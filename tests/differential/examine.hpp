@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "judge.hpp"
+
+namespace differential {
+
+/// What came of a scene.
+struct Verdict {
+  std::vector<Fault> faults = {};
+  bool answered = false;    ///< by one method at least
+  bool referenced = false;  ///< the independent integrator came to the end
+};
+
+struct Examination {
+  std::vector<std::string> methods = {"auto", "verner98", "radau13"};
+  Limits limits = {};
+  std::filesystem::path folder = {};  ///< for logs
+};
+
+/// Runs and judges a scene in a process of its own, so that a crash or a hang is a fault as well.
+[[nodiscard]] Verdict examine(const Scene& scene, const Examination& how);
+
+}  // namespace differential

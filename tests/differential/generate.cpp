@@ -1,0 +1,395 @@
+#include "generate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace differential {
+
+namespace {
+
+/// Rounded to so many digits, as typed.
+double rounded(double x, int digits) {
+  if (x == 0) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(x))) - digits + 1);
+  const double scaled = std::round(x / unit);
+  return unit < 1 ? scaled / std::round(1 / unit) : scaled * unit;
+}
+
+/// A size that people write: 1 above all.
+double plain(Random& r, double least = 0.01, double most = 100) {
+  if (r.chance(0.4)) return 1;
+  if (r.chance(0.4)) return std::clamp(r.pick({0.1, 0.2, 0.5, 2.0, 5.0, 10.0}), least, most);
+  return rounded(r.spread(least, most), r.chance(0.7) ? 2 : 15);
+}
+
+double sign(Random& r) { return r.chance(0.5) ? 1 : -1; }
+
+Vector unit(Random& r) {
+  Vector v = Vector::Zero();
+  v[r.below(3)] = sign(r);
+  return v;
+}
+
+/// Along an axis mostly.
+Vector direction(Random& r) {
+  if (r.chance(0.75)) return unit(r);
+  if (r.chance(0.5)) return {sign(r), sign(r), r.chance(0.5) ? 0 : 1.0};
+  Vector v;
+  do {
+    for (double& x : v) x = rounded(r.between(-1, 1), 3);
+  } while (v.norm() < 0.1);
+  return v;
+}
+
+Vector vector(Random& r, double least = 0.01, double most = 10) {
+  if (r.chance(0.2)) return Vector::Zero();
+  return plain(r, least, most) * direction(r);
+}
+
+Eigen::Vector4d attitude(Random& r) {
+  const double half = std::sqrt(0.5);
+  if (r.chance(0.15)) return {1, 0, 0, 0};
+  if (r.chance(0.3)) {
+    Eigen::Vector4d q = Eigen::Vector4d::Zero();
+    q[r.below(3) + 1] = r.chance(0.5) ? 1 : half;  // half or quarter turns
+    q[0] = q.squaredNorm() < 0.9 ? sign(r) * half : 0;
+    return q;
+  }
+  Eigen::Vector4d q;
+  for (double& x : q) x = r.between(-1, 1);
+  return q.normalized();
+}
+
+Angle phase(Random& r) {
+  if (r.chance(0.7)) return {90.0 * r.below(5), true};
+  return {rounded(r.between(-3, 3), 3), false};
+}
+
+Angle angle(Random& r) {
+  if (r.chance(0.3)) return {0, r.chance(0.5)};
+  if (r.chance(0.3)) return {r.pick({90.0, -90.0, 180.0, 45.0, 360.0, 30.0}), true};
+  if (r.chance(0.15)) return {sign(r) * r.pick({1e-20, 1e-14, 1e-9, 1e-6}), false};
+  return {rounded(r.between(-3, 3), 2), false};
+}
+
+double rate(Random& r) {
+  if (r.chance(0.5)) return 0;
+  if (r.chance(0.08)) return sign(r) * r.pick({1e-12, 1e-6, 1e3});
+  return sign(r) * plain(r, 0.01, 30);
+}
+
+/// Oscillations, often of one frequency.
+Series series(Random& r, double size, double frequency) {
+  Series s;
+  if (r.chance(0.25)) s.constant = size * vector(r, 0.1, 3);
+  const int terms = r.below(3) + (s.constant.isZero(0) ? 1 : 0);
+  for (int i = 0; i < terms; ++i) {
+    const double w = r.chance(0.6) ? frequency : plain(r, 0.1, 10);
+    s.terms.push_back({size * plain(r, 0.1, 3) * direction(r), w, phase(r)});
+  }
+  return s;
+}
+
+Link rotating(Random& r) {
+  Link link{.kind = LinkKind::rotating};
+  link.angular_velocity = vector(r, 0.01, 30);
+  if (r.chance(0.3)) link.origin_acceleration = vector(r, 0.1, 20);
+  return link;
+}
+
+Link harmonic(Random& r) {
+  Link link{.kind = LinkKind::harmonic};
+  const double frequency = plain(r, 0.1, 10);
+  const bool turns = r.chance(0.8);
+  if (turns) link.turning = series(r, r.pick({0.1, 0.157, 1.0}), frequency);
+  if (!turns || r.chance(0.3)) link.pushing = series(r, 1, frequency);
+  return link;
+}
+
+Link earth(Random& r) {
+  Link link{.kind = LinkKind::earth};
+  link.latitude =
+      r.chance(0.5) ? r.pick({0.0, 30.0, 45.0, 50.0, 90.0, -90.0}) : rounded(r.between(-90, 90), 3);
+  link.azimuth = r.chance(0.7) ? 90.0 * r.below(4) : rounded(r.between(0, 360), 3);
+  link.height = r.chance(0.7) ? 0 : r.pick({100.0, 1000.0, 10000.0});
+  if (r.chance(0.1)) link.rate = r.pick({0.0, 1e-4, 1e-3});
+  link.gravity = r.pick<const char*>({"\"normal\"", "\"normal\"", "9.81", "\"none\"", ""});
+  return link;
+}
+
+Link table(Random& r) {
+  Link link{.kind = LinkKind::table};
+  link.log.axis = unit(r);
+  link.log.amplitude = r.pick({0.05, 0.1, 0.2});
+  link.log.frequency = plain(r, 0.3, 3);
+  link.log.phase = phase(r).radian();
+  if (r.chance(0.5)) link.log.shift = vector(r, 0.1, 2);
+  link.log.step = 0.01 / link.log.frequency;
+  return link;
+}
+
+Link any_link(Random& r, bool first) {
+  const double u = r.uniform();
+  if (u < 0.25) return rotating(r);
+  if (u < 0.55) return harmonic(r);
+  if (u < 0.75 && first) return earth(r);
+  if (u < 0.85) return table(r);
+  return u < 0.9 ? Link{} : rotating(r);
+}
+
+void add_guide(Random& r, Scene& scene) {
+  if (r.chance(0.3)) return;
+  scene.guide.push_back(any_link(r, true));
+  while (scene.guide.size() < 3 && r.chance(0.15)) scene.guide.push_back(any_link(r, false));
+}
+
+void add_gravity(Random& r, Scene& scene) {
+  const bool on_earth = !scene.guide.empty() && scene.guide.front().kind == LinkKind::earth;
+  if (on_earth) {
+    if (scene.guide.front().gravity == "\"none\"" && r.chance(0.5)) {
+      scene.gravity = GravityKind::earth;
+    }
+    return;
+  }
+  if (r.chance(0.3)) return;
+  scene.gravity = r.chance(0.1)   ? GravityKind::none
+                  : r.chance(0.5) ? GravityKind::uniform
+                                  : GravityKind::inertial;
+  scene.gravity_vector = r.pick({1.0, 9.81, 9.81, 9.81}) * direction(r);
+}
+
+/// Principal moments, often equal ones, or six entries of a tensor that a body may have.
+std::vector<double> inertia(Random& r, double size) {
+  const auto moment = [&r, size] { return size * plain(r, 0.1, 10); };
+  const double a = moment();
+  if (r.chance(0.3)) return {a, a, a};
+  if (r.chance(0.3)) return {a, a, a * r.pick({0.1, 0.5, 1.5, 1.9})};
+  const double A = moment();
+  const double B = moment();
+  if (r.chance(0.75)) return {A + a, B + a, A + B};
+  const double least = std::min({a, A, B});
+  const auto product = [&r, least] { return least * rounded(r.between(-0.4, 0.4), 2); };
+  return {A + a, B + a, A + B, product(), product(), product()};
+}
+
+void add_mass(Random& r, Body& body) {
+  body.mass = plain(r);
+  const double size = body.mass * r.pick({0.1, 0.01, 1.0});
+  body.inertia = inertia(r, size);
+  if (r.chance(0.7)) body.centre = vector(r, 0.01, 1);
+}
+
+void add_joint(Random& r, Body& body) {
+  const double u = r.uniform();
+  body.kind = u < 0.45   ? JointKind::revolute
+              : u < 0.60 ? JointKind::prismatic
+              : u < 0.75 ? JointKind::universal
+              : u < 0.87 ? JointKind::spherical
+              : u < 0.96 ? JointKind::free
+                         : JointKind::fixed;
+  body.axis = direction(r);
+  do {
+    body.second_axis = direction(r);
+  } while (body.axis.normalized().cross(body.second_axis.normalized()).norm() < 0.1);
+  if (r.chance(0.5)) body.position = vector(r, 0.1, 2);
+  if (r.chance(0.1)) body.orientation = attitude(r);
+}
+
+void add_initial(Random& r, Body& body) {
+  if (r.chance(0.15)) return;
+  const int n = single_coordinates(body.kind);
+  const bool moves = r.chance(0.5);
+  for (int i = 0; i < n; ++i) {
+    if (body.kind == JointKind::prismatic) {
+      body.displacement = r.chance(0.5) ? 0 : angle(r).radian();
+    } else {
+      body.angle.push_back(angle(r));
+      body.angle.back().degrees = body.angle.front().degrees;
+    }
+    if (moves) body.rate.push_back(rate(r));
+  }
+  if (n > 0 || body.kind == JointKind::fixed) return;
+  if (r.chance(0.5)) body.attitude = attitude(r);
+  if (moves) body.angular_velocity = rate(r) * direction(r);
+  if (body.kind != JointKind::free) return;
+  if (r.chance(0.5)) body.place = vector(r, 0.1, 3);
+  if (moves) body.velocity = rate(r) * direction(r);
+}
+
+/// A number for each coordinate.
+std::vector<double> for_each_coordinate(int n, double first, double second) {
+  return n == 1 ? std::vector<double>{first} : std::vector<double>{first, second};
+}
+
+/// A damper by its ratio to the critical one of a joint of that inertia.
+void add_damping(Random& r, Body& body, int n) {
+  const double ratio =
+      r.chance(0.6) ? r.pick({1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0}) : r.spread(1e-4, 10);
+  const double stiffness = body.stiffness.empty() ? 1 : std::abs(body.stiffness.front());
+  const double inertia = body.kind == JointKind::prismatic ? body.mass : body.inertia.front();
+  const double damping = rounded(2 * ratio * std::sqrt(stiffness * inertia), 3);
+  body.damping = for_each_coordinate(std::max(n, 1), damping, r.chance(0.5) ? damping : 0);
+}
+
+void add_joint_forces(Random& r, Body& body) {
+  const int n = single_coordinates(body.kind);
+  if (n > 0 && r.chance(0.3)) {
+    const double stiffness =
+        r.chance(0.7) ? plain(r, 0.1, 100) : r.pick({1e3, 1e4, 1e6, 1e8, 1e10});
+    body.stiffness = for_each_coordinate(n, stiffness, r.chance(0.5) ? stiffness : 1);
+    if (r.chance(0.3)) {
+      body.rest = for_each_coordinate(n, rounded(r.between(-1, 1), 1), 0);
+    }
+  }
+  const double damped = body.stiffness.empty() ? 0.2 : 0.6;
+  if ((n > 0 || body.kind == JointKind::spherical) && r.chance(damped)) add_damping(r, body, n);
+  if (n > 0 && r.chance(0.1)) {
+    body.force = for_each_coordinate(n, sign(r) * plain(r, 0.1, 10), 0);
+  }
+}
+
+void add_loads(Random& r, Body& body) {
+  if (r.chance(0.85)) return;
+  do {
+    Load load;
+    load.force = vector(r, 0.1, 10);
+    if (r.chance(0.5)) load.torque = vector(r, 0.01, 3);
+    if (r.chance(0.3)) load.point = vector(r, 0.1, 1);
+    load.axes = r.pick({Axes::body, Axes::guide, Axes::inertial});
+    body.loads.push_back(load);
+  } while (r.chance(0.15));
+}
+
+/// Locks the joint or drives it.
+void add_rule(Random& r, Body& body) {
+  if (r.chance(0.04)) {
+    body.hold = true;
+    body.rate.clear();
+    body.angular_velocity.setZero();
+    body.velocity.setZero();
+  } else if (body.kind == JointKind::revolute && r.chance(0.08)) {
+    body.drive = true;
+  }
+}
+
+/// A wheel on the body before it.
+Body rotor(Random& r, int carrier) {
+  Body body;
+  body.parent = carrier;
+  body.kind = JointKind::revolute;
+  const int along = r.below(3);
+  body.axis = Vector::Unit(along);
+  if (r.chance(0.3)) body.position = vector(r, 0.1, 1);
+  body.mass = plain(r, 0.1, 10);
+  const double about = r.pick({0.001, 0.01, 0.1, 1.0});
+  const double across = about * r.pick({0.5, 0.6, 1.0, 3.0});
+  body.inertia = {across, across, across};
+  body.inertia[static_cast<std::size_t>(along)] = about;
+  Rotor rotor;
+  rotor.mode = r.pick({RotorMode::free, RotorMode::regulated, RotorMode::torque});
+  rotor.speed = sign(r) * r.pick({1.0, 10.0, 50.0, 100.0, 300.0});
+  if (rotor.mode == RotorMode::torque) rotor.torque = r.chance(0.5) ? 0 : sign(r) * about;
+  if (rotor.mode != RotorMode::free && r.chance(0.2)) body.damping = {0.01 * about};
+  body.rotor = rotor;
+  return body;
+}
+
+void add_body(Random& r, Scene& scene) {
+  Body body;
+  const int before = static_cast<int>(scene.bodies.size());
+  if (before > 0) {
+    body.parent = r.chance(0.7) ? before - 1 : r.below(before + 1) - 1;
+    if (body.parent >= 0 && scene.bodies[static_cast<std::size_t>(body.parent)].rotor) {
+      body.parent = -1;
+    }
+  }
+  add_joint(r, body);
+  add_mass(r, body);
+  add_initial(r, body);
+  add_joint_forces(r, body);
+  add_loads(r, body);
+  add_rule(r, body);
+  scene.bodies.push_back(body);
+}
+
+void add_bodies(Random& r, Scene& scene) {
+  const int bodies = r.chance(0.45) ? 1 : r.chance(0.7) ? 2 : 3;
+  for (int i = 0; i < bodies; ++i) add_body(r, scene);
+  if (r.chance(0.2)) {
+    const int carrier = static_cast<int>(scene.bodies.size()) - 1;
+    scene.bodies.push_back(rotor(r, carrier));
+  }
+}
+
+/// A pendulum or a chain of two on whatever moves, as most people begin.
+void add_pendulums(Random& r, Scene& scene) {
+  const Vector axis = unit(r);
+  const int links = r.chance(0.7) ? 1 : 2;
+  Vector down = scene.gravity_vector.isZero(0) ? -Vector::UnitZ() : scene.gravity_vector;
+  down.normalize();
+  const double length = plain(r, 0.1, 10);
+  for (int i = 0; i < links; ++i) {
+    Body body;
+    body.parent = i - 1;
+    body.axis = axis;
+    body.mass = plain(r, 0.1, 10);
+    body.centre = length * down;
+    if (i > 0) body.position = length * down;
+    const bool points = r.chance(0.3) && std::abs(axis.dot(down)) < 0.1;
+    body.inertia = points ? std::vector<double>{0, 0, 0} : inertia(r, 0.1 * length * length);
+    if (r.chance(0.6)) body.angle = {angle(r)};
+    if (r.chance(0.2)) body.rate = {rate(r)};
+    if (r.chance(0.4)) body.damping = {r.pick({1e-3, 0.01, 0.1, 1.0})};
+    scene.bodies.push_back(body);
+  }
+}
+
+/// Two rings and a rotor.
+void add_cardan_gyro(Random& r, Scene& scene) {
+  const int first = r.below(3);
+  for (int i = 0; i < 2; ++i) {
+    Body ring;
+    ring.parent = i - 1;
+    ring.axis = Vector::Unit((first + i) % 3);
+    ring.mass = plain(r, 0.1, 2);
+    ring.inertia = inertia(r, 0.005);
+    ring.angle = {angle(r)};
+    if (r.chance(0.3)) ring.rate = {rate(r)};
+    add_joint_forces(r, ring);
+    scene.bodies.push_back(ring);
+  }
+  Body wheel = rotor(r, 1);
+  const auto along = static_cast<std::size_t>((first + 2) % 3);
+  wheel.axis = Vector::Unit(static_cast<int>(along));
+  wheel.inertia = {0.005, 0.005, 0.005};
+  wheel.inertia[along] = 0.008;
+  scene.bodies.push_back(wheel);
+}
+
+void add_solve(Random& r, Scene& scene) {
+  scene.tolerance = r.pick({1e-10, 1e-10, 1e-8, 1e-6, 1e-9, 1e-3, 1e-12});
+  scene.t_end =
+      r.chance(0.85) ? r.pick({0.1, 1.0, 2.0, 5.0, 10.0}) : r.pick({1e-6, 1e-3, 60.0, 1e3, 1e4});
+  if (scene.has_log()) scene.t_end = std::min(scene.t_end, 10.0);
+  scene.outputs = r.pick({1, 2, 20, 20, 20, 100});
+}
+
+}  // namespace
+
+Scene generate(Random r) {
+  Scene scene;
+  add_guide(r, scene);
+  add_gravity(r, scene);
+  const double u = r.uniform();
+  if (u < 0.2) {
+    add_pendulums(r, scene);
+  } else if (u < 0.35) {
+    add_cardan_gyro(r, scene);
+  } else {
+    add_bodies(r, scene);
+  }
+  add_solve(r, scene);
+  return scene;
+}
+
+}  // namespace differential

@@ -1,0 +1,224 @@
+#include "judge.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
+namespace differential {
+
+namespace {
+
+/// Numbers become #, so that messages of one kind are the same.
+std::string without_numbers(const std::string& text) {
+  static const std::regex number("[-+]?[0-9]+(\\.[0-9]*)?(e[-+]?[0-9]+)?");
+  return std::regex_replace(text, number, "#").substr(0, 160);
+}
+
+bool finite(const Answer& answer) {
+  const auto all = [](const JointValues& y) {
+    return std::all_of(y.begin(), y.end(), [](double x) { return std::isfinite(x); });
+  };
+  return std::isfinite(answer.estimate) &&
+         std::all_of(answer.states.begin(), answer.states.end(), all) &&
+         std::all_of(answer.drifts.begin(), answer.drifts.end(), [](const Drift& drift) {
+           return std::isfinite(drift.start) && std::isfinite(drift.largest);
+         });
+}
+
+/// The state of an answer at one of its times.
+const JointValues* state_at(const Answer& answer, double t) {
+  const auto found = std::find(answer.times.begin(), answer.times.end(), t);
+  if (found == answer.times.end()) return nullptr;
+  return &answer.states[static_cast<std::size_t>(found - answer.times.begin())];
+}
+
+class Judge {
+ public:
+  Judge(const Scene& scene, const Answers& answers, const ReferenceMotion& reference)
+      : scene_(scene), answers_(answers), reference_(reference) {}
+
+  std::vector<Fault> all() {
+    if (!answers_.refused.empty()) {
+      const std::string& why = answers_.refused;
+      add("refused: " + without_numbers(why.substr(why.find(": ") + 2)), why);
+      return faults_;
+    }
+    for (const std::string& term : answers_.contradictions) {
+      add("report: a term is both kept and dropped", term);
+    }
+    for (const Answer& answer : answers_.by_method) {
+      judge_failure(answer);
+      if (!answer.answered) continue;
+      judge_report(answer);
+      if (!finite(answer)) continue;
+      judge_invariants(answer);
+      judge_by_reference(answer);
+    }
+    if (faults_.empty()) judge_pairs();
+    judge_cost();
+    return faults_;
+  }
+
+ private:
+  void add(const std::string& kind, const std::string& detail) {
+    faults_.push_back({kind, detail});
+  }
+
+  [[nodiscard]] bool another_answers(const Answer& than) const {
+    return reference_.complete ||
+           std::any_of(answers_.by_method.begin(), answers_.by_method.end(),
+                       [&than](const Answer& other) {
+                         return &other != &than && other.answered && other.kept;
+                       });
+  }
+
+  void judge_failure(const Answer& answer) {
+    if (answer.answered || answer.out_of_budget || !another_answers(answer)) return;
+    add(answer.asked + " fails: " + without_numbers(answer.message), answer.message);
+  }
+
+  void judge_report(const Answer& answer) {
+    if (!finite(answer)) {
+      add(answer.asked + ": complete, and not finite", fmt::format("{}", answer.estimate));
+    }
+    if (answer.kept != (answer.estimate <= answer.tolerance)) {
+      add("report: tolerance_kept contradicts the estimate",
+          fmt::format("{} {}", answer.estimate, answer.tolerance));
+    }
+    if (answer.states.size() != scene_.times().size()) {
+      add("report: complete, and outputs are missing", fmt::format("{}", answer.states.size()));
+    }
+  }
+
+  void judge_invariants(const Answer& answer) {
+    if (!reference_.complete || !answer.kept) return;
+    for (const Drift& drift : answer.drifts) {
+      const bool energy = drift.name.find("energy") != std::string::npos;
+      const auto size =
+          static_cast<double>(energy ? reference_.sizes.energy : reference_.sizes.momentum);
+      const double scale = std::max(std::abs(drift.start), size) + 1e-6;
+      if (drift.largest <= 1e3 * std::max(answer.tolerance, 1e-13) * scale) continue;
+      add("report: an invariant drifts: " + drift.name,
+          fmt::format("{} by {}, {} from {}, kept to {}", answer.asked, answer.method,
+                      drift.largest, drift.start, answer.tolerance));
+    }
+  }
+
+  /// What the samples of a log leave unknown of its motion.
+  [[nodiscard]] double unknown() const { return scene_.has_log() ? 1e-5 : 0; }
+
+  void judge_by_reference(const Answer& answer) {
+    Distance distance(scene_);
+    for (std::size_t i = 0; i < reference_.others.size(); ++i) {
+      const JointValues* const y = state_at(answer, reference_.times[i]);
+      const JointValues& truth = reference_.others[i];
+      distance.note(truth);
+      if (y == nullptr) continue;
+      const double own = 5 * distance(reference_.states[i], truth) + 1e-13 + unknown();
+      const double off = distance(*y, truth);
+      if (off <= own || !(own <= 0.1)) continue;
+      if (tells(answer, off - own)) continue;
+      add(fmt::format("{} is wrong{}", name(answer), answer.kept ? " and told kept" : ""),
+          fmt::format("at t = {} off by {:.3g} from the independent motion (known to {:.1g}), "
+                      "told {:.3g}, asked {:.1g}",
+                      reference_.times[i], off, own, answer.estimate, answer.tolerance));
+      return;
+    }
+  }
+
+  /// Whether an error is within what is told of it.
+  [[nodiscard]] static bool tells(const Answer& answer, double off) {
+    if (!answer.kept) return off <= 10 * answer.estimate;
+    return off <= 2 * answer.tolerance || off <= 2 * answer.estimate;
+  }
+
+  [[nodiscard]] static std::string name(const Answer& answer) {
+    return answer.asked == answer.method ? answer.asked : answer.asked + " (" + answer.method + ")";
+  }
+
+  void judge_pairs() {
+    const auto& all = answers_.by_method;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t k = i + 1; k < all.size(); ++k) {
+        if (all[i].answered && all[k].answered) judge_pair(all[i], all[k]);
+      }
+    }
+  }
+
+  void judge_pair(const Answer& a, const Answer& b) {
+    Distance distance(scene_);
+    for (std::size_t i = 0; i < std::min(a.states.size(), b.states.size()); ++i) {
+      distance.note(a.states[i]);
+      distance.note(b.states[i]);
+      const double off = distance(a.states[i], b.states[i]);
+      const double told = std::max(a.estimate, a.kept ? a.tolerance : 0) +
+                          std::max(b.estimate, b.kept ? b.tolerance : 0);
+      if (off <= 3 * told + 1e-13) continue;
+      add(fmt::format("{} and {} differ", name(a), name(b)),
+          fmt::format("at t = {} by {:.3g}, told {:.3g} and {:.3g}, asked {:.1g}", a.times[i], off,
+                      a.estimate, b.estimate, a.tolerance));
+      return;
+    }
+  }
+
+  void judge_cost() {
+    const auto& all = answers_.by_method;
+    const auto automatic =
+        std::find_if(all.begin(), all.end(), [](const Answer& a) { return a.asked == "auto"; });
+    if (automatic == all.end()) return;
+    const Answer* best = nullptr;
+    for (const Answer& answer : all) {
+      if (answer.asked == "auto" || !answer.answered || !answer.kept) continue;
+      if (best == nullptr || answer.evaluations < best->evaluations) best = &answer;
+    }
+    constexpr double few = 5000;  // a tiny run
+    if (best == nullptr || !(automatic->evaluations > 8 * best->evaluations + few)) return;
+    add(fmt::format("auto costs over 8 times what {} costs", best->asked),
+        fmt::format("{:.3g}{} evaluations by {}, {:.3g} by {}", automatic->evaluations,
+                    automatic->answered ? "" : " (and no answer)", automatic->method,
+                    best->evaluations, best->asked));
+  }
+
+  const Scene& scene_;
+  const Answers& answers_;
+  const ReferenceMotion& reference_;
+  std::vector<Fault> faults_;
+};
+
+}  // namespace
+
+void Distance::note(const JointValues& y) {
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    double square = 0;
+    for (int k = 0; k < blocks_[i]; ++k) square += y[begin] * y[begin], ++begin;
+    sizes_[i] = std::max(sizes_[i], std::sqrt(square));
+  }
+}
+
+double Distance::operator()(const JointValues& a, const JointValues& b) const {
+  double worst = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const auto n = static_cast<Eigen::Index>(blocks_[i]);
+    const Eigen::Map<const Eigen::VectorXd> x(a.data() + begin, n);
+    const Eigen::Map<const Eigen::VectorXd> y(b.data() + begin, n);
+    const double off =
+        n == 4 ? 4 * std::asin(std::min(1.0, std::min((x.normalized() - y.normalized()).norm(),
+                                                      (x.normalized() + y.normalized()).norm()) /
+                                                 2))
+               : (x - y).norm() / sizes_[i];
+    if (!(off <= worst)) worst = off;
+    begin += static_cast<std::size_t>(n);
+  }
+  return worst;
+}
+
+std::vector<Fault> judge(const Scene& scene, const Answers& answers,
+                         const ReferenceMotion& reference) {
+  return Judge(scene, answers, reference).all();
+}
+
+}  // namespace differential

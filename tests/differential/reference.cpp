@@ -1,0 +1,176 @@
+#include "reference.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "reference_tree.hpp"
+
+namespace differential {
+
+namespace {
+
+using reference::Real;
+using reference::State;
+using reference::Tree;
+
+constexpr int columns = 8;  // 2, 4, .. 16 parts of a step: order 16, 73 evaluations
+
+/// Gragg's steps by the modified midpoint rule, extrapolated.
+class Steps {
+ public:
+  Steps(Tree& tree, State start) : tree_(tree), y_(std::move(start)) { note(); }
+
+  [[nodiscard]] const State& state() const { return y_; }
+  [[nodiscard]] double evaluations() const { return evaluations_; }
+
+  /// From t by h; the error against the column before, relative to the greatest sizes so far.
+  [[nodiscard]] Real attempt(Real t, Real h) {
+    tree_.rates(t, y_, first_);
+    evaluations_ += 1;
+    std::array<State, columns> table;
+    State before;
+    for (int j = 0; j < columns; ++j) {
+      table[static_cast<std::size_t>(j)] = midpoint(t, h, 2 * (j + 1));
+      before = table[0];
+      for (int k = j - 1; k >= 0; --k) {
+        const Real ratio = Real(j + 1) / Real(k + 1);
+        auto& coarse = table[static_cast<std::size_t>(k)];
+        const auto& fine = table[static_cast<std::size_t>(k + 1)];
+        coarse = fine + (fine - coarse) / (ratio * ratio - 1);
+      }
+    }
+    next_ = table[0];
+    Real worst = 0;
+    for (Eigen::Index i = 0; i < y_.size(); ++i) {
+      const Real off = std::abs(next_[i] - before[i]) / size_[i];
+      if (!(off <= worst)) worst = off;
+    }
+    return worst;
+  }
+
+  void accept(Real t) {
+    y_ = next_;
+    tree_.project(t, y_);
+    note();
+  }
+
+ private:
+  [[nodiscard]] State midpoint(Real t, Real h, int parts) {
+    const Real s = h / Real(parts);
+    State before = y_;
+    State now = y_ + s * first_;
+    for (int i = 1; i <= parts; ++i) {
+      tree_.rates(t + s * Real(i), now, rate_);
+      evaluations_ += 1;
+      if (i == parts) break;
+      State after = before + 2 * s * rate_;
+      before = std::move(now);
+      now = std::move(after);
+    }
+    return (before + now + s * rate_) / 2;
+  }
+
+  void note() {
+    if (size_.size() == 0) size_ = State::Constant(y_.size(), 1e-3L);
+    size_ = size_.cwiseMax(y_.cwiseAbs());
+  }
+
+  Tree& tree_;
+  State y_;
+  State next_;
+  State first_;
+  State rate_;
+  State size_;
+  double evaluations_ = 0;
+};
+
+/// The same state, each number off by about its last digit as a double.
+State moved(const State& y) {
+  State result = y;
+  for (Eigen::Index i = 0; i < y.size(); ++i) result[i] *= 1 + (i % 2 == 0 ? 1 : -1) * 0x1p-53L;
+  return result;
+}
+
+struct Step {
+  Real begin;
+  Real length;
+  bool output;
+};
+
+/// Adaptive steps to the times; those that were taken go into `taken`.
+void run(const Scene& scene, const std::vector<double>& times, double most_evaluations,
+         ReferenceMotion& motion, std::vector<Step>& taken) {
+  constexpr Real tolerance = 1e-15;
+  Tree tree(scene);
+  Steps steps(tree, tree.start());
+  Real t = 0;
+  Real h = times.back() / 64;
+  for (const double time : times) {
+    while (t < Real(time)) {
+      if (steps.evaluations() > most_evaluations) return;
+      const bool last = t + h * Real(1.01) >= Real(time);
+      const Real length = last ? Real(time) - t : h;
+      const Real off = steps.attempt(t, length);
+      const Real factor = Real(0.8) * std::pow(tolerance / (off + Real(1e-19)), Real(1) / 15);
+      if (!(off <= tolerance)) {
+        h = length * (factor > Real(0.1) ? factor : Real(0.1));
+        if (h < Real(1e-14) * times.back()) return;
+        continue;
+      }
+      taken.push_back({t, length, last});
+      t = last ? Real(time) : t + length;
+      steps.accept(t);
+      const Sizes sizes = tree.sizes(t, steps.state());
+      motion.sizes.energy = std::max(motion.sizes.energy, sizes.energy);
+      motion.sizes.momentum = std::max(motion.sizes.momentum, sizes.momentum);
+      h = std::max(last ? h : length, length) * std::min(factor, Real(3));
+    }
+    motion.times.push_back(time);
+    motion.states.push_back(tree.values(t, steps.state()));
+  }
+  motion.complete = true;
+}
+
+/// The same steps, each in two halves.
+void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion& motion) {
+  Tree tree(scene);
+  State start = moved(tree.start());
+  tree.project(0, start);
+  Steps steps(tree, start);
+  for (const Step& step : taken) {
+    if (motion.others.size() == motion.states.size()) break;
+    for (const int half : {0, 1}) {
+      const Real begin = step.begin + Real(half) * step.length / 2;
+      [[maybe_unused]] const Real off = steps.attempt(begin, step.length / 2);
+      steps.accept(begin + step.length / 2);
+    }
+    if (step.output) motion.others.push_back(tree.values(step.begin + step.length, steps.state()));
+  }
+}
+
+}  // namespace
+
+std::vector<int> blocks(const Scene& scene) {
+  std::vector<int> result;
+  for (const Body& body : scene.bodies) {
+    switch (body.kind) {
+      case JointKind::fixed: break;
+      case JointKind::revolute:
+      case JointKind::prismatic: result.insert(result.end(), {1, 1}); break;
+      case JointKind::universal: result.insert(result.end(), {1, 1, 1, 1}); break;
+      case JointKind::spherical: result.insert(result.end(), {4, 3}); break;
+      case JointKind::free: result.insert(result.end(), {4, 3, 3, 3}); break;
+    }
+  }
+  return result;
+}
+
+ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times, double work) {
+  ReferenceMotion motion;
+  std::vector<Step> taken;
+  run(scene, times, work / (3 * Tree(scene).work()), motion, taken);
+  repeat(scene, taken, motion);
+  return motion;
+}
+
+}  // namespace differential

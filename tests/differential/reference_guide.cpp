@@ -1,0 +1,228 @@
+#include "reference_guide.hpp"
+
+#include <cmath>
+
+namespace differential::reference {
+
+namespace {
+
+constexpr Real pi = 3.14159265358979323846264338327950288L;
+constexpr Real equator = 6378137;
+constexpr Real flattening = 1 / 298.257223563L;
+constexpr Real earth_rate = 7.292115e-5;  // as double, for the site's is one too
+
+Vec wide(const Vector& v) { return v.cast<Real>(); }
+
+struct Oscillation {
+  Vec value;
+  Vec rate;
+};
+
+Oscillation at(const Series& s, Real t) {
+  Oscillation sum{wide(s.constant), Vec::Zero()};
+  for (const Series::Term& term : s.terms) {
+    const Real w = term.frequency;
+    const Real angle = w * t + Real(term.phase.radian());
+    sum.value += std::sin(angle) * wide(term.amplitude);
+    sum.rate += w * std::cos(angle) * wide(term.amplitude);
+  }
+  return sum;
+}
+
+bool has_state(const Link& link) {
+  return link.kind == LinkKind::rotating || link.kind == LinkKind::harmonic;
+}
+
+/// Sine and cosine of degrees, exact at multiples of 90.
+std::pair<Real, Real> sine_cosine(double degrees) {
+  const Real quarter = std::round(Real(degrees) / 90);
+  const Real rest = (Real(degrees) - 90 * quarter) * (pi / 180);
+  Real s = std::sin(rest);
+  Real c = std::cos(rest);
+  for (int i = (static_cast<int>(quarter) % 4 + 4) % 4; i > 0; --i) {
+    const Real old = s;
+    s = c;
+    c = -old;
+  }
+  return {s, c};
+}
+
+Real rate_of(const Link& link) { return link.rate ? Real(*link.rate) : earth_rate; }
+
+bool has_number(const Link& link) { return !link.gravity.empty() && link.gravity.front() != '"'; }
+
+/// Axes of the guide, whose plumb line is turned by `tilt` from the normal at the latitude, on axes
+/// of the earth: z to the pole, x in the meridian.
+Mat site_axes(const Link& link, Real tilt) {
+  const auto [sl, cl] = sine_cosine(link.latitude);
+  const auto [sa, ca] = sine_cosine(link.azimuth);
+  const Vec up0(cl, 0, sl);
+  const Vec north0(-sl, 0, cl);
+  const Vec down = std::sin(tilt) * north0 - std::cos(tilt) * up0;
+  const Vec north = std::cos(tilt) * north0 + std::sin(tilt) * up0;
+  const Vec east(0, 1, 0);
+  Mat axes;
+  axes.col(0) = down;
+  axes.col(2) = ca * north + sa * east;
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+Motion earth(const Link& link, Real t) {
+  const Real u = rate_of(link);
+  Motion motion;
+  if (has_number(link)) {
+    // The guide's own axes at t = 0 are the inertial ones; the origin rests.
+    const Mat axes = site_axes(link, 0);
+    const Vec w = axes.transpose() * Vec(0, 0, u);
+    motion.w = w;
+    if (u != 0) {
+      motion.R = Eigen::AngleAxis<Real>(w.norm() * t, w.normalized()).toRotationMatrix();
+    }
+    return motion;
+  }
+  const auto [sl, cl] = sine_cosine(link.latitude);
+  const Real e2 = flattening * (2 - flattening);
+  const Real n = equator / std::sqrt(1 - e2 * sl * sl);
+  const Real h = link.height;
+  const Vec place((n + h) * cl, 0, (n * (1 - e2) + h) * sl);
+  const Vec effective = ellipsoid_gravitation(place) + Vec(u * u * place.x(), 0, 0);
+  const Vec up(cl, 0, sl);
+  const Vec north(-sl, 0, cl);
+  const Real tilt = std::atan2(effective.dot(north), -effective.dot(up));
+  const Mat turn = Eigen::AngleAxis<Real>(u * t, Vec::UnitZ()).toRotationMatrix();
+  motion.R = turn * site_axes(link, tilt);
+  motion.w = Vec(0, 0, u);
+  motion.x = turn * place;
+  motion.v = motion.w.cross(motion.x);
+  motion.a = motion.w.cross(motion.v);
+  return motion;
+}
+
+Motion logged(const Log& log, Real t) {
+  const Real f = log.frequency;
+  const Real angle = f * t + Real(log.phase);
+  const Real s = std::sin(angle);
+  const Real ds = f * std::cos(angle);
+  const Real dds = -f * f * s;
+  const Vec axis = wide(log.axis).normalized();
+  const Real A = log.amplitude;
+  return {Eigen::AngleAxis<Real>(A * s, axis).toRotationMatrix(),
+          A * ds * axis,
+          A * dds * axis,
+          s * wide(log.shift),
+          ds * wide(log.shift),
+          dds * wide(log.shift)};
+}
+
+/// A motion against a frame that moves itself.
+Motion on(const Motion& base, const Motion& own) {
+  const Vec x = base.R * own.x;
+  const Vec v = base.R * own.v;
+  const Vec w = base.R * own.w;
+  Motion sum;
+  sum.R = base.R * own.R;
+  sum.w = base.w + w;
+  sum.dw = base.dw + base.R * own.dw + base.w.cross(w);
+  sum.x = base.x + x;
+  sum.v = base.v + base.w.cross(x) + v;
+  sum.a = base.a + base.dw.cross(x) + base.w.cross(base.w.cross(x)) + 2 * base.w.cross(v) +
+          base.R * own.a;
+  return sum;
+}
+
+}  // namespace
+
+Vec ellipsoid_gravitation(const Vec& place) {
+  constexpr Real gm = 3.986004418e14L;
+  constexpr Real rate = 7.292115e-5L;
+  const Real b = equator * (1 - flattening);
+  const Real E = std::sqrt(equator * equator - b * b);
+  const auto q_of = [E](Real u) {
+    return ((1 + 3 * u * u / (E * E)) * std::atan(E / u) - 3 * u / E) / 2;
+  };
+  const Real rho = std::hypot(place.x(), place.y());
+  const Real d = place.squaredNorm() - E * E;
+  const Real u = std::sqrt((d + std::sqrt(d * d + 4 * E * E * place.z() * place.z())) / 2);
+  const Real v = std::sqrt(u * u + E * E);
+  const Real sin_beta = place.z() / u;
+  const Real cos_beta = rho / v;
+  const Real w = std::sqrt((u * u + E * E * sin_beta * sin_beta) / (v * v));
+  const Real q = q_of(u);
+  const Real q0 = q_of(b);
+  const Real dq = 3 * (1 + u * u / (E * E)) * (1 - u / E * std::atan(E / u)) - 1;
+  const Real spin = rate * rate * equator * equator;
+  const Real along_u =
+      -(gm / (v * v) + spin * E / (v * v) * dq / q0 * (sin_beta * sin_beta / 2 - 1 / Real(6))) / w;
+  const Real along_beta = spin / v * q / q0 * sin_beta * cos_beta / w;
+  const Real outwards = (along_u * u / v * cos_beta - along_beta * sin_beta) / w;
+  const Real poleward = (along_u * sin_beta + along_beta * u / v * cos_beta) / w;
+  const Real x = rho > 0 ? place.x() / rho : 1;
+  const Real y = rho > 0 ? place.y() / rho : 0;
+  return {outwards * x, outwards * y, poleward};
+}
+
+Guide::Guide(const Scene& scene) : scene_(scene) {
+  for (const Link& link : scene.guide) size_ += has_state(link) ? 10 : 0;
+}
+
+void Guide::start(State& y) const {
+  y.head(size_).setZero();
+  for (Eigen::Index i = 0; i < size_; i += 10) y[i + 3] = 1;  // quaternion x, y, z, w
+}
+
+Motion Guide::own(const Link& link, Real t, const Real* y, Real* rates) const {
+  if (link.kind == LinkKind::earth) return earth(link, t);
+  if (link.kind == LinkKind::table) return logged(link.log, t);
+  if (link.kind == LinkKind::inertial) return {};
+  const Oscillation u = link.kind == LinkKind::harmonic
+                            ? differential::reference::at(link.turning, t)
+                            : Oscillation{wide(link.angular_velocity), Vec::Zero()};
+  const Vec push = link.kind == LinkKind::harmonic
+                       ? differential::reference::at(link.pushing, t).value
+                       : wide(link.origin_acceleration);
+  const Quat q(y[3], y[0], y[1], y[2]);
+  const Mat R = q.normalized().toRotationMatrix();
+  const Vec v(y[7], y[8], y[9]);
+  Motion motion{R, R * u.value, R * u.rate, Vec(y[4], y[5], y[6]), v, R * push};
+  const Quat dq = q * Quat(0, u.value.x() / 2, u.value.y() / 2, u.value.z() / 2);
+  for (int i = 0; i < 4; ++i) rates[i] = dq.coeffs()[i];
+  for (int i = 0; i < 3; ++i) {
+    rates[4 + i] = v[i];
+    rates[7 + i] = motion.a[i];
+  }
+  return motion;
+}
+
+Motion Guide::at(Real t, const State& y, State& rates) const {
+  Motion whole;
+  Eigen::Index begin = 0;
+  for (const Link& link : scene_.guide) {
+    whole = on(whole, own(link, t, y.data() + begin, rates.data() + begin));
+    if (has_state(link)) begin += 10;
+  }
+  return whole;
+}
+
+void Guide::project(State& y) const {
+  for (Eigen::Index i = 0; i < size_; i += 10) y.segment<4>(i).normalize();
+}
+
+Vec Guide::gravity(Real t, const Motion& motion, const Vec& place) const {
+  const Vec given = wide(scene_.gravity_vector);
+  const bool on_earth = !scene_.guide.empty() && scene_.guide.front().kind == LinkKind::earth;
+  switch (scene_.gravity) {
+    case GravityKind::none: return Vec::Zero();
+    case GravityKind::uniform: return motion.R * given;
+    case GravityKind::inertial: return given;
+    case GravityKind::earth: return ellipsoid_gravitation(motion.x + place);
+    case GravityKind::not_given: break;
+  }
+  if (!on_earth) return Vec::Zero();
+  const Link& site = scene_.guide.front();
+  if (site.gravity == "\"normal\"") return ellipsoid_gravitation(motion.x + place);
+  if (!has_number(site)) return Vec::Zero();
+  return earth(site, t).R * Vec(std::stold(site.gravity), 0, 0);
+}
+
+}  // namespace differential::reference

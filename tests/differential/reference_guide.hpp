@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "scene.hpp"
+
+/// Guides and gravity of the independent integrator, from the definitions in docs/scene_files.md and
+/// nothing of dynamics/.
+
+namespace differential::reference {
+
+using Real = long double;
+using Vec = Eigen::Matrix<Real, 3, 1>;
+using Mat = Eigen::Matrix<Real, 3, 3>;
+using Quat = Eigen::Quaternion<Real>;
+using State = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+/// How the guide moves against the inertial frame, all on inertial axes.
+struct Motion {
+  Mat R = Mat::Identity();  ///< guide to inertial
+  Vec w = Vec::Zero();
+  Vec dw = Vec::Zero();
+  Vec x = Vec::Zero();  ///< the guide's origin
+  Vec v = Vec::Zero();
+  Vec a = Vec::Zero();
+};
+
+/// The guide of a scene. What of it has no closed form belongs to the state: attitude, place and
+/// velocity of each rotating or harmonic link against the one before, ten numbers.
+class Guide {
+ public:
+  explicit Guide(const Scene& scene);
+
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  void start(State& y) const;
+
+  /// Motion and rates of the state's first size() numbers.
+  [[nodiscard]] Motion at(Real t, const State& y, State& rates) const;
+
+  /// Makes the attitudes unit quaternions again.
+  void project(State& y) const;
+
+  /// Gravity at a place on inertial axes from the guide's origin, on inertial axes.
+  [[nodiscard]] Vec gravity(Real t, const Motion& motion, const Vec& place) const;
+
+ private:
+  [[nodiscard]] Motion own(const Link& link, Real t, const Real* y, Real* rates) const;
+
+  const Scene& scene_;
+  Eigen::Index size_ = 0;
+};
+
+/// The gravitation of the WGS84 ellipsoid, its rotation left out, at a place from the earth's
+/// centre, z to the pole.
+///
+/// Source : W. Heiskanen, H. Moritz, Physical Geodesy (1967), (2-66) to (2-68), in spheroidal
+///          coordinates
+[[nodiscard]] Vec ellipsoid_gravitation(const Vec& place);
+
+}  // namespace differential::reference

@@ -1,0 +1,540 @@
+#include "reference_tree.hpp"
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace differential::reference {
+
+namespace {
+
+constexpr Real two_pi = 2 * 3.14159265358979323846264338327950288L;
+
+Vec wide(const Vector& v) { return v.cast<Real>(); }
+
+Mat turn_by(const std::optional<Eigen::Vector4d>& q) {
+  if (!q) return Mat::Identity();
+  const Eigen::Quaterniond unit =
+      Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
+  return unit.cast<Real>().normalized().toRotationMatrix();
+}
+
+Mat about(const Vec& axis, Real angle) {
+  return Eigen::AngleAxis<Real>(angle, axis).toRotationMatrix();
+}
+
+Mat tensor(const std::vector<double>& t) {
+  Mat result = Mat::Zero();
+  for (int i = 0; i < 3; ++i) result(i, i) = t[static_cast<std::size_t>(i)];
+  if (t.size() == 6) {
+    result(0, 1) = result(1, 0) = t[3];
+    result(0, 2) = result(2, 0) = t[4];
+    result(1, 2) = result(2, 1) = t[5];
+  }
+  return result;
+}
+
+Quat attitude(const Real* q) { return {q[3], q[0], q[1], q[2]}; }
+
+/// Two unit vectors across a third.
+std::pair<Vec, Vec> across(const Vec& axis) {
+  const Vec first = axis.unitOrthogonal();
+  return {first, axis.cross(first)};
+}
+
+/// From e2 to its image, about e1.
+Real turn_between(const Vec& axis, const Vec& from, const Vec& to) {
+  const Vec a = from - axis.dot(from) * axis;
+  const Vec b = to - axis.dot(to) * axis;
+  return std::atan2(axis.dot(a.cross(b)), a.dot(b));
+}
+
+Real at_or(const std::vector<double>& list, std::size_t i) {
+  return i < list.size() ? Real(list[i]) : Real(0);
+}
+
+Real nearest_turn(Real measured, Real near) {
+  return near + std::remainder(measured - near, two_pi);
+}
+
+int rows_of(const Body& body, bool held, bool driven) {
+  if (held) return 6;
+  switch (body.kind) {
+    case JointKind::fixed: return 6;
+    case JointKind::revolute: return driven ? 6 : 5;
+    case JointKind::prismatic: return 5;
+    case JointKind::universal: return 4;
+    case JointKind::spherical: return 3;
+    case JointKind::free: break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodies.size()) {
+  const auto n = static_cast<Eigen::Index>(scene.bodies.size());
+  size_ = guide_.size() + 13 * n;
+  Eigen::Index rows = 0;
+  for (const Body& body : scene.bodies) {
+    Part part;
+    part.mass = body.mass;
+    part.centre = wide(body.centre);
+    part.inertia = tensor(body.inertia);
+    part.zero = turn_by(body.orientation);
+    part.axis = wide(body.axis).normalized();
+    part.second_axis = wide(body.second_axis).normalized();
+    part.position = wide(body.position);
+    part.angles = size_;
+    part.held = body.hold || body.kind == JointKind::fixed;
+    part.driven = body.drive || (body.rotor && body.rotor->mode == RotorMode::regulated);
+    part.speed = body.rotor ? Real(body.rotor->speed) : at_or(body.rate, 0);
+    if (body.kind == JointKind::revolute) size_ += 1;
+    if (body.kind == JointKind::universal) size_ += 2;
+    rows += rows_of(body, part.held, part.driven);
+    parts_.push_back(part);
+    parents_.push_back(body.parent);
+  }
+  matrix_.resize(6 * n + rows, 6 * n + rows);
+  right_.resize(6 * n + rows);
+  off_place_.resize(static_cast<std::size_t>(rows));
+  off_velocity_.resize(static_cast<std::size_t>(rows));
+}
+
+double Tree::work() const {
+  const auto n = static_cast<double>(matrix_.rows());
+  return n * n * n / 3 + 30 * n * n + 1000;
+}
+
+State Tree::start() {
+  State y = State::Zero(size_);
+  guide_.start(y);
+  std::vector<Pose> poses(scene_.bodies.size());
+  for (int i = 0; i < static_cast<int>(scene_.bodies.size()); ++i) start_body(i, y, poses);
+  return y;
+}
+
+void Tree::start_body(int body, State& y, std::vector<Pose>& poses) {
+  State none(size_);
+  const Motion guide = guide_.at(0, y, none);
+  const Body& b = scene_.bodies[static_cast<std::size_t>(body)];
+  Part& part = parts_[static_cast<std::size_t>(body)];
+  const Pose base = b.parent < 0 ? Pose{guide.R, Vec::Zero(), Vec::Zero(), guide.w}
+                                 : poses[static_cast<std::size_t>(b.parent)];
+  const Vec from =
+      b.parent < 0 ? Vec(Vec::Zero()) : parts_[static_cast<std::size_t>(b.parent)].centre;
+  Mat turn = part.zero;
+  Vec place = part.position;
+  Vec v = Vec::Zero();
+  Vec w = Vec::Zero();  // on the parent's axes
+  const auto angle = [&b](std::size_t i) {
+    return i < b.angle.size() ? Real(b.angle[i].radian()) : Real(0);
+  };
+  switch (b.kind) {
+    case JointKind::revolute:
+      turn = about(part.axis, angle(0)) * part.zero;
+      w = part.axis * part.speed;
+      y[part.angles] = angle(0);
+      break;
+    case JointKind::universal: {
+      const Mat first = about(part.axis, angle(0));
+      turn = first * about(part.second_axis, angle(1)) * part.zero;
+      w = part.axis * at_or(b.rate, 0) + first * part.second_axis * at_or(b.rate, 1);
+      y[part.angles] = angle(0);
+      y[part.angles + 1] = angle(1);
+      break;
+    }
+    case JointKind::prismatic:
+      place += part.axis * Real(b.displacement);
+      v = part.axis * at_or(b.rate, 0);
+      break;
+    case JointKind::free:
+      if (b.place) place = wide(*b.place);
+      v = wide(b.velocity);
+      [[fallthrough]];
+    case JointKind::spherical:
+      if (b.attitude) turn = turn_by(b.attitude);
+      w = turn * wide(b.angular_velocity);
+      break;
+    case JointKind::fixed: break;
+  }
+  Pose& pose = poses[static_cast<std::size_t>(body)];
+  pose.R = base.R * turn;
+  pose.w = base.w + base.R * w;
+  const Vec reach = base.R * (place - from);
+  const Vec arm = -(pose.R * part.centre);
+  pose.x = base.x + reach - arm;
+  pose.v = base.v + base.w.cross(reach) + base.R * v - pose.w.cross(arm);
+  const Eigen::Index k = at(body);
+  y.segment<3>(k) = pose.x;
+  y.segment<4>(k + 3) = Quat(pose.R).normalized().coeffs();
+  y.segment<3>(k + 7) = pose.v;
+  y.segment<3>(k + 10) = pose.R.transpose() * pose.w;
+  part.start_turn = part.held && b.kind != JointKind::fixed ? turn : part.zero;
+  part.start_place = part.held ? Vec(place - part.position) : Vec(Vec::Zero());
+}
+
+Tree::Pose Tree::pose(const State& y, int body) const {
+  const Eigen::Index k = at(body);
+  Pose result;
+  result.R = attitude(y.data() + k + 3).normalized().toRotationMatrix();
+  result.x = y.segment<3>(k);
+  result.v = y.segment<3>(k + 7);
+  result.w = result.R * y.segment<3>(k + 10);
+  return result;
+}
+
+void Tree::read(const State& y, const Motion& guide) {
+  guide_pose_ = {guide.R, Vec::Zero(), Vec::Zero(), guide.w};
+  for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = pose(y, static_cast<int>(i));
+}
+
+const Tree::Pose& Tree::parent(int body) const {
+  const int index = parents_[static_cast<std::size_t>(body)];
+  return index < 0 ? guide_pose_ : poses_[static_cast<std::size_t>(index)];
+}
+
+Tree::Relative Tree::relative(int body) const {
+  const Part& part = parts_[static_cast<std::size_t>(body)];
+  const Pose& b = poses_[static_cast<std::size_t>(body)];
+  const Pose& p = parent(body);
+  const int index = parents_[static_cast<std::size_t>(body)];
+  const Vec from = index < 0 ? Vec(Vec::Zero()) : parts_[static_cast<std::size_t>(index)].centre;
+  Relative r;
+  r.arm = -(b.R * part.centre);
+  const Vec origin = b.x + r.arm;
+  r.reach = origin - p.x;
+  r.place = r.reach - p.R * (part.position - from);
+  r.v = b.v + b.w.cross(r.arm) - p.v - p.w.cross(r.reach);
+  r.w = b.w - p.w;
+  r.turn = p.R.transpose() * b.R * part.zero.transpose();
+  r.axis = p.R * part.axis;
+  r.second_axis = b.R * (part.zero.transpose() * part.second_axis);
+  return r;
+}
+
+std::pair<Real, Real> Tree::angles_of(int body, const Relative& r) const {
+  const Part& part = parts_[static_cast<std::size_t>(body)];
+  if (scene_.bodies[static_cast<std::size_t>(body)].kind == JointKind::revolute) {
+    const Vec side = across(part.axis).first;
+    return {turn_between(part.axis, side, r.turn * side), 0};
+  }
+  const Real first = turn_between(part.axis, part.second_axis, r.turn * part.second_axis);
+  const Mat rest = about(part.axis, first).transpose() * r.turn;
+  const Vec side = across(part.second_axis).first;
+  return {first, turn_between(part.second_axis, side, rest * side)};
+}
+
+Vec Tree::turned_off(int body, const Relative& r) const {
+  const Part& part = parts_[static_cast<std::size_t>(body)];
+  const Mat wanted = part.start_turn * part.zero.transpose();  // of r.turn
+  Quat q(Mat(r.turn * wanted.transpose()));
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  return parent(body).R * (2 * q.vec());
+}
+
+void Tree::add_translation(int body, const Relative& r, const Motion& guide, const Vec& n) {
+  const auto N = static_cast<Eigen::Index>(6 * poses_.size());
+  const Eigen::Index row = N + rows_;
+  const Pose& b = poses_[static_cast<std::size_t>(body)];
+  const Pose& p = parent(body);
+  const int index = parents_[static_cast<std::size_t>(body)];
+  const auto put = [&](int to, const Vec& force, const Vec& torque) {
+    matrix_.block<1, 3>(row, 6 * to) = force.transpose();
+    matrix_.block<1, 3>(row, 6 * to + 3) = torque.transpose();
+  };
+  put(body, n, r.arm.cross(n));
+  right_[row] =
+      n.dot(p.w.cross(p.w.cross(r.reach)) + 2 * p.w.cross(r.v) - b.w.cross(b.w.cross(r.arm)));
+  if (index >= 0) {
+    put(index, -n, -r.reach.cross(n));
+  } else {
+    right_[row] += n.dot(guide.dw.cross(r.reach));
+  }
+  const auto at_row = static_cast<std::size_t>(rows_);
+  off_place_[at_row] = n.dot(r.place - p.R * parts_[static_cast<std::size_t>(body)].start_place);
+  off_velocity_[at_row] = n.dot(r.v);
+  rows_ += 1;
+}
+
+void Tree::add_rotation(int body, const Relative& r, const Motion& guide, const Vec& n, Real extra,
+                        Real off, Real speed) {
+  const auto N = static_cast<Eigen::Index>(6 * poses_.size());
+  const Eigen::Index row = N + rows_;
+  const int index = parents_[static_cast<std::size_t>(body)];
+  matrix_.block<1, 3>(row, 6 * body + 3) = n.transpose();
+  const Pose& p = parent(body);
+  right_[row] = n.dot(p.w.cross(poses_[static_cast<std::size_t>(body)].w)) - extra;
+  if (index >= 0) {
+    matrix_.block<1, 3>(row, 6 * index + 3) = -n.transpose();
+  } else {
+    right_[row] += n.dot(guide.dw);
+  }
+  const auto at_row = static_cast<std::size_t>(rows_);
+  off_place_[at_row] = off;
+  off_velocity_[at_row] = n.dot(r.w) - speed;
+  rows_ += 1;
+}
+
+void Tree::add_rows(int body, const Relative& r, const Motion& guide) {
+  const Part& part = parts_[static_cast<std::size_t>(body)];
+  const JointKind kind = scene_.bodies[static_cast<std::size_t>(body)].kind;
+  const bool stiff = part.held || kind == JointKind::prismatic;
+  if (!part.held && kind == JointKind::free) return;
+  const auto [first, second] = across(r.axis);
+  for (int i = 0; i < 3; ++i) {
+    if (!part.held && kind == JointKind::prismatic) continue;
+    add_translation(body, r, guide, Vec::Unit(i));
+  }
+  if (!part.held && kind == JointKind::prismatic) {
+    add_translation(body, r, guide, first);
+    add_translation(body, r, guide, second);
+  }
+  if (stiff) {
+    const Vec off = turned_off(body, r);
+    for (int i = 0; i < 3; ++i) add_rotation(body, r, guide, Vec::Unit(i), 0, off[i], 0);
+  } else if (kind == JointKind::revolute) {
+    const Vec image = parent(body).R * (r.turn * part.axis);
+    const Vec off = r.axis.cross(image);
+    add_rotation(body, r, guide, first, 0, off.dot(first), 0);
+    add_rotation(body, r, guide, second, 0, off.dot(second), 0);
+    if (part.driven) add_rotation(body, r, guide, r.axis, 0, 0, part.speed);
+  } else if (kind == JointKind::universal) {
+    const Vec n = r.axis.cross(r.second_axis);
+    const Real off = part.axis.dot(part.second_axis) - r.axis.dot(r.second_axis);
+    add_rotation(body, r, guide, n, r.w.dot(r.axis.cross(r.w.cross(r.second_axis))), off, 0);
+  }
+}
+
+void Tree::assemble(const Motion& guide) {
+  matrix_.setZero();
+  right_.setZero();
+  rows_ = 0;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(6 * i);
+    const Part& part = parts_[i];
+    const Pose& b = poses_[i];
+    const Mat I = b.R * part.inertia * b.R.transpose();
+    matrix_.block<3, 3>(k, k) = part.mass * Mat::Identity();
+    matrix_.block<3, 3>(k + 3, k + 3) = I;
+    right_.segment<3>(k + 3) = -b.w.cross(I * b.w);
+    const int body = static_cast<int>(i);
+    add_rows(body, relative(body), guide);
+  }
+  const auto N = static_cast<Eigen::Index>(6 * poses_.size());
+  matrix_.topRightCorner(N, rows_) = matrix_.bottomLeftCorner(rows_, N).transpose();
+}
+
+void Tree::add_torque(int body, const Vec& torque) {
+  right_.segment<3>(6 * body + 3) += torque;
+  const int index = parents_[static_cast<std::size_t>(body)];
+  if (index >= 0) right_.segment<3>(6 * index + 3) -= torque;
+}
+
+void Tree::add_load(const Load& load, int body, const Motion& guide) {
+  const Pose& b = poses_[static_cast<std::size_t>(body)];
+  const Mat axes = load.axes == Axes::body    ? b.R
+                   : load.axes == Axes::guide ? guide.R
+                                              : Mat(Mat::Identity());
+  const Vec force = axes * wide(load.force);
+  const Vec lever = b.R * (wide(load.point) - parts_[static_cast<std::size_t>(body)].centre);
+  right_.segment<3>(6 * body) += force;
+  right_.segment<3>(6 * body + 3) += axes * wide(load.torque) + lever.cross(force);
+}
+
+void Tree::add_joint_force(int body, const State& y) {
+  const Body& b = scene_.bodies[static_cast<std::size_t>(body)];
+  const Part& part = parts_[static_cast<std::size_t>(body)];
+  if (b.stiffness.empty() && b.damping.empty() && b.force.empty() && !b.rotor) return;
+  const Relative r = relative(body);
+  const auto force = [&b](std::size_t i, Real q, Real rate) {
+    const auto one = [i](const std::vector<double>& list) {
+      return list.size() == 1 ? Real(list.front()) : at_or(list, i);
+    };
+    return one(b.force) - one(b.stiffness) * (q - one(b.rest)) - one(b.damping) * rate;
+  };
+  if (b.kind == JointKind::spherical) {
+    add_torque(body, -at_or(b.damping, 0) * r.w);
+  } else if (b.kind == JointKind::revolute) {
+    const Real motor = b.rotor && b.rotor->mode == RotorMode::torque ? b.rotor->torque : 0;
+    add_torque(body, (motor + force(0, y[part.angles], r.axis.dot(r.w))) * r.axis);
+  } else if (b.kind == JointKind::prismatic) {
+    const Vec f = force(0, r.axis.dot(r.place), r.axis.dot(r.v)) * r.axis;
+    right_.segment<3>(6 * body) += f;
+    right_.segment<3>(6 * body + 3) += r.arm.cross(f);
+    const int index = parents_[static_cast<std::size_t>(body)];
+    if (index >= 0) {
+      right_.segment<3>(6 * index) -= f;
+      right_.segment<3>(6 * index + 3) -= r.reach.cross(f);
+    }
+  } else if (b.kind == JointKind::universal) {
+    // A torque in the plane of both axes that does the work of both forces.
+    const Real c = r.axis.dot(r.second_axis);
+    const Real left = r.axis.dot(r.w);
+    const Real right = r.second_axis.dot(r.w);
+    const Real d = 1 - c * c;
+    const Real first = force(0, y[part.angles], (left - c * right) / d);
+    const Real second = force(1, y[part.angles + 1], (right - c * left) / d);
+    add_torque(body, (first - c * second) / d * r.axis + (second - c * first) / d * r.second_axis);
+  }
+}
+
+void Tree::add_forces(Real t, const State& y, const Motion& guide) {
+  for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    const Vec& x = poses_[static_cast<std::size_t>(i)].x;
+    if (part.mass > 0) {
+      right_.segment<3>(6 * i) += part.mass * (guide_.gravity(t, guide, x) - guide.a);
+    }
+    for (const Load& load : scene_.bodies[static_cast<std::size_t>(i)].loads) {
+      add_load(load, i, guide);
+    }
+    if (!part.held) add_joint_force(i, y);
+  }
+}
+
+void Tree::solve() { solution_ = matrix_.partialPivLu().solve(right_); }
+
+void Tree::rates(Real t, const State& y, State& result) {
+  result.setZero(size_);
+  const Motion guide = guide_.at(t, y, result);
+  read(y, guide);
+  assemble(guide);
+  add_forces(t, y, guide);
+  solve();
+  for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
+    const Eigen::Index k = at(i);
+    const Vec w = y.segment<3>(k + 10);
+    const Quat q = attitude(y.data() + k + 3);
+    result.segment<3>(k) = y.segment<3>(k + 7);
+    result.segment<4>(k + 3) = (q * Quat(0, w.x() / 2, w.y() / 2, w.z() / 2)).coeffs();
+    result.segment<3>(k + 7) = solution_.segment<3>(6 * i);
+    const Mat R = poses_[static_cast<std::size_t>(i)].R;
+    result.segment<3>(k + 10) = R.transpose() * solution_.segment<3>(6 * i + 3);
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    const JointKind kind = scene_.bodies[static_cast<std::size_t>(i)].kind;
+    if (kind != JointKind::revolute && kind != JointKind::universal) continue;
+    const Relative r = relative(i);
+    const Real left = r.axis.dot(r.w);
+    if (kind == JointKind::revolute) {
+      result[part.angles] = left;
+      continue;
+    }
+    const Real c = r.axis.dot(r.second_axis);
+    const Real right = r.second_axis.dot(r.w);
+    result[part.angles] = (left - c * right) / (1 - c * c);
+    result[part.angles + 1] = (right - c * left) / (1 - c * c);
+  }
+}
+
+void Tree::project(Real t, State& y) {
+  guide_.project(y);
+  State none(size_);
+  const Motion guide = guide_.at(t, y, none);
+  const auto N = static_cast<Eigen::Index>(6 * poses_.size());
+  const auto respond = [&](const std::vector<Real>& off) {
+    right_.setZero();
+    for (Eigen::Index i = 0; i < rows_; ++i) right_[N + i] = -off[static_cast<std::size_t>(i)];
+    solve();
+  };
+  for (int iteration = 0; iteration < 2; ++iteration) {
+    read(y, guide);
+    assemble(guide);
+    respond(off_place_);
+    for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
+      const Eigen::Index k = at(i);
+      y.segment<3>(k) += solution_.segment<3>(6 * i);
+      const Vec turn = solution_.segment<3>(6 * i + 3) / 2;
+      const Quat q = Quat(1, turn.x(), turn.y(), turn.z()) * attitude(y.data() + k + 3);
+      y.segment<4>(k + 3) = q.normalized().coeffs();
+    }
+  }
+  read(y, guide);
+  assemble(guide);
+  respond(off_velocity_);
+  for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
+    const Eigen::Index k = at(i);
+    y.segment<3>(k + 7) += solution_.segment<3>(6 * i);
+    const Mat R = poses_[static_cast<std::size_t>(i)].R;
+    y.segment<3>(k + 10) += R.transpose() * solution_.segment<3>(6 * i + 3);
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    const JointKind kind = scene_.bodies[static_cast<std::size_t>(i)].kind;
+    if (kind != JointKind::revolute && kind != JointKind::universal) continue;
+    const auto [first, second] = angles_of(i, relative(i));
+    y[part.angles] = nearest_turn(first, y[part.angles]);
+    if (kind == JointKind::universal) {
+      y[part.angles + 1] = nearest_turn(second, y[part.angles + 1]);
+    }
+  }
+}
+
+Sizes Tree::sizes(Real t, const State& y) {
+  State none(size_);
+  const Motion guide = guide_.at(t, y, none);
+  read(y, guide);
+  Sizes sum;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const Part& part = parts_[i];
+    const Pose& b = poses_[i];
+    const Body& body = scene_.bodies[i];
+    const Vec spin = part.inertia * (b.R.transpose() * b.w);
+    const Real g = guide_.gravity(t, guide, b.x).norm();
+    sum.energy += part.mass * (b.v.squaredNorm() / 2 + g * b.x.norm()) + b.w.norm() * spin.norm();
+    sum.momentum += part.mass * b.v.norm() * (1 + b.x.norm()) + spin.norm();
+    for (std::size_t k = 0; k < body.stiffness.size(); ++k) {
+      const Real stretch = body.kind == JointKind::prismatic
+                               ? relative(static_cast<int>(i)).place.norm()
+                               : std::abs(y[part.angles + static_cast<Eigen::Index>(k)]);
+      const Real whole = stretch + std::abs(at_or(body.rest, k));
+      sum.energy += std::abs(Real(body.stiffness[k])) * whole * whole;
+    }
+  }
+  return sum;
+}
+
+JointValues Tree::values(Real t, const State& y) {
+  State none(size_);
+  read(y, guide_.at(t, y, none));
+  JointValues result;
+  const auto put = [&result](Real x) { result.push_back(static_cast<double>(x)); };
+  const auto put_all = [&put](const auto& v) {
+    for (Eigen::Index i = 0; i < v.size(); ++i) put(v[i]);
+  };
+  for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
+    const Relative r = relative(i);
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    const Mat P = parent(i).R;
+    const Real left = r.axis.dot(r.w);
+    const Real right = r.second_axis.dot(r.w);
+    const Real c = r.axis.dot(r.second_axis);
+    switch (scene_.bodies[static_cast<std::size_t>(i)].kind) {
+      case JointKind::fixed: break;
+      case JointKind::revolute:
+        put(y[part.angles]);
+        put(left);
+        break;
+      case JointKind::prismatic:
+        put(r.axis.dot(r.place));
+        put(r.axis.dot(r.v));
+        break;
+      case JointKind::universal:
+        put(y[part.angles]);
+        put(y[part.angles + 1]);
+        put((left - c * right) / (1 - c * c));
+        put((right - c * left) / (1 - c * c));
+        break;
+      case JointKind::spherical:
+      case JointKind::free: {
+        const Mat R = poses_[static_cast<std::size_t>(i)].R;
+        put_all(Quat(Mat(part.zero.transpose() * P.transpose() * R)).coeffs());
+        const bool free = scene_.bodies[static_cast<std::size_t>(i)].kind == JointKind::free;
+        if (free) put_all(Vec(P.transpose() * r.place));
+        put_all(Vec(R.transpose() * r.w));
+        if (free) put_all(Vec(P.transpose() * r.v));
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace differential::reference

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <vector>
+
+#include "reference.hpp"
+#include "reference_guide.hpp"
+
+namespace differential::reference {
+
+/// The bodies of a scene in the frame that does not turn and whose origin is the guide's.
+///
+/// State  : that of the guide; of each body place of the centre of mass, attitude (x, y, z, w),
+///          velocity, and angular velocity on body axes; angles of revolute and universal joints,
+///          for whole turns count in springs
+/// Method : M a + J^t l = f, J a = g, solved as one system; g from differentiating each joint's
+///          conditions twice
+class Tree {
+ public:
+  explicit Tree(const Scene& scene);
+
+  [[nodiscard]] State start();
+  void rates(Real t, const State& y, State& result);
+  /// Brings places and velocities back to what the joints allow, by the least change in the metric
+  /// of the masses.
+  void project(Real t, State& y);
+  [[nodiscard]] JointValues values(Real t, const State& y);
+  /// How large the parts of energy and of momenta are, all counted as positive.
+  [[nodiscard]] Sizes sizes(Real t, const State& y);
+  /// About the operations of one evaluation.
+  [[nodiscard]] double work() const;
+
+ private:
+  /// What stays of a body.
+  struct Part {
+    Real mass = 0;
+    Vec centre = Vec::Zero();
+    Mat inertia = Mat::Zero();
+    Mat zero = Mat::Identity();  ///< the body's axes at zero coordinates, in the parent's
+    Vec axis = Vec::Zero();      ///< unit vectors on the parent's axes
+    Vec second_axis = Vec::Zero();
+    Vec position = Vec::Zero();
+    Vec start_place = Vec::Zero();  ///< of the joint's start, on the parent's axes
+    Mat start_turn = Mat::Identity();
+    Eigen::Index angles = 0;  ///< place of the joint's angles in the state
+    bool held = false;
+    bool driven = false;
+    Real speed = 0;
+  };
+
+  /// A body, or the guide, at one time.
+  struct Pose {
+    Mat R = Mat::Identity();
+    Vec x = Vec::Zero();
+    Vec v = Vec::Zero();
+    Vec w = Vec::Zero();  ///< on inertial axes
+  };
+
+  /// A body against its parent, on inertial axes.
+  struct Relative {
+    Vec arm;    ///< the body's origin from its centre of mass
+    Vec reach;  ///< the same point from the parent's centre of mass
+    Vec place;  ///< the body's origin from the joint's place on the parent
+    Vec v;      ///< seen from the parent
+    Vec w;
+    Mat turn;  ///< parent's axes from the body's, divided by `zero`
+    Vec axis;
+    Vec second_axis;
+  };
+
+  void read(const State& y, const Motion& guide);
+  [[nodiscard]] Pose pose(const State& y, int body) const;
+  [[nodiscard]] const Pose& parent(int body) const;
+  [[nodiscard]] Relative relative(int body) const;
+  [[nodiscard]] Eigen::Index at(int body) const { return guide_.size() + 13 * body; }
+
+  void assemble(const Motion& guide);
+  void add_rows(int body, const Relative& r, const Motion& guide);
+  void add_translation(int body, const Relative& r, const Motion& guide, const Vec& n);
+  void add_rotation(int body, const Relative& r, const Motion& guide, const Vec& n, Real extra,
+                    Real off, Real speed);
+  void add_forces(Real t, const State& y, const Motion& guide);
+  void add_joint_force(int body, const State& y);
+  void add_torque(int body, const Vec& torque);
+  void add_load(const Load& load, int body, const Motion& guide);
+  void solve();
+  [[nodiscard]] Vec turned_off(int body, const Relative& r) const;
+  [[nodiscard]] std::pair<Real, Real> angles_of(int body, const Relative& r) const;
+  void start_body(int body, State& y, std::vector<Pose>& poses);
+
+  const Scene& scene_;
+  Guide guide_;
+  std::vector<Part> parts_;
+  std::vector<int> parents_;
+  Eigen::Index size_ = 0;
+  // Of one evaluation.
+  Pose guide_pose_;
+  std::vector<Pose> poses_;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> matrix_;
+  State right_;
+  State solution_;
+  std::vector<Real> off_place_;  ///< by how much each condition is not fulfilled
+  std::vector<Real> off_velocity_;
+  Eigen::Index rows_ = 0;
+};
+
+}  // namespace differential::reference

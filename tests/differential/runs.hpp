@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "reference.hpp"
+
+namespace differential {
+
+/// How much a scene may cost.
+struct Limits {
+  double evaluations = 2e5;  ///< of each run of adaptive steps
+  double seconds = 2;        ///< of processor time for each method
+  double work = 1.5e8;       ///< operations of the independent integrator
+};
+
+/// A number that a run says stays the same.
+struct Drift {
+  std::string name;
+  double start;
+  double largest;
+};
+
+/// What the library says of a scene, by one method.
+struct Answer {
+  std::string asked;      ///< the method
+  bool answered = false;  ///< else `message` says why not
+  bool out_of_budget = false;
+  std::string message = {};
+  std::string method = {};  ///< that was taken
+  double estimate = 0;
+  double tolerance = 0;
+  bool kept = false;
+  double evaluations = 0;
+  std::vector<double> times = {};
+  std::vector<JointValues> states = {};
+  std::vector<Drift> drifts = {};
+};
+
+/// The same scene by several methods.
+struct Answers {
+  std::string refused = {};  ///< by the reader or when the system was made
+  std::vector<Answer> by_method = {};
+  std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
+};
+
+/// Runs the scene's text by the library, by each method in turn. `folder` is where its logs lie;
+/// `begin` is told before each part of the work what it is.
+[[nodiscard]] Answers run(const Scene& scene, const std::vector<std::string>& methods,
+                          const Limits& limits, const std::filesystem::path& folder,
+                          const std::function<void(const std::string&)>& begin);
+
+}  // namespace differential

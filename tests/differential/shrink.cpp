@@ -1,0 +1,184 @@
+#include "shrink.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+namespace differential {
+
+namespace {
+
+using Change = std::function<void(Scene&)>;
+
+void for_each(Vector& v, const std::function<void(double&)>& f) {
+  for (double& x : v) f(x);
+}
+
+void for_each(Series& s, const std::function<void(double&)>& f) {
+  for_each(s.constant, f);
+  for (Series::Term& term : s.terms) {
+    for_each(term.amplitude, f);
+    f(term.frequency);
+    f(term.phase.value);
+  }
+}
+
+void for_each(Body& body, const std::function<void(double&)>& f) {
+  for (Vector* const v : {&body.axis, &body.second_axis, &body.position, &body.centre,
+                          &body.angular_velocity, &body.velocity}) {
+    for_each(*v, f);
+  }
+  f(body.mass);
+  f(body.displacement);
+  for (auto* const list :
+       {&body.inertia, &body.rate, &body.stiffness, &body.rest, &body.damping, &body.force}) {
+    for (double& x : *list) f(x);
+  }
+  for (Angle& angle : body.angle) f(angle.value);
+  if (body.place) for_each(*body.place, f);
+  if (body.rotor) f(body.rotor->speed);
+  if (body.rotor) f(body.rotor->torque);
+  for (Load& load : body.loads) {
+    for (Vector* const v : {&load.force, &load.torque, &load.point}) for_each(*v, f);
+  }
+}
+
+/// Calls f with every number of the scene.
+void for_each_number(Scene& scene, const std::function<void(double&)>& f) {
+  for (Link& link : scene.guide) {
+    for_each(link.angular_velocity, f);
+    for_each(link.origin_acceleration, f);
+    for_each(link.turning, f);
+    for_each(link.pushing, f);
+    f(link.latitude);
+    f(link.height);
+    f(link.azimuth);
+  }
+  for_each(scene.gravity_vector, f);
+  for (Body& body : scene.bodies) for_each(body, f);
+  f(scene.t_end);
+}
+
+double rounded(double x, int digits) {
+  if (x == 0) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(x))) - digits + 1);
+  return unit < 1 ? std::round(x / unit) / std::round(1 / unit) : std::round(x / unit) * unit;
+}
+
+/// Takes a body away that carries nothing.
+void drop_body(Scene& scene, std::size_t index) {
+  for (const Body& body : scene.bodies) {
+    if (body.parent == static_cast<int>(index)) return;
+  }
+  if (scene.bodies.size() == 1) return;
+  scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(index));
+  for (Body& body : scene.bodies) {
+    if (body.parent > static_cast<int>(index)) body.parent -= 1;
+  }
+}
+
+void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
+  changes.emplace_back([](Scene& s) { s.guide.clear(); });
+  changes.emplace_back([](Scene& s) { s.gravity = GravityKind::not_given; });
+  for (std::size_t i = 0; i < scene.guide.size(); ++i) {
+    changes.emplace_back(
+        [i](Scene& s) { s.guide.erase(s.guide.begin() + static_cast<std::ptrdiff_t>(i)); });
+    changes.emplace_back([i](Scene& s) { s.guide[i].turning = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].pushing = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].rate.reset(); });
+    for (std::size_t k = 0; k < scene.guide[i].turning.terms.size(); ++k) {
+      changes.emplace_back([i, k](Scene& s) {
+        auto& terms = s.guide[i].turning.terms;
+        terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(k));
+      });
+    }
+  }
+}
+
+void add_body_changes(std::size_t i, std::vector<Change>& changes) {
+  const auto add = [&changes, i](const std::function<void(Body&)>& change) {
+    changes.emplace_back([i, change](Scene& s) { change(s.bodies[i]); });
+  };
+  changes.emplace_back([i](Scene& s) { drop_body(s, i); });
+  add([](Body& b) { b.parent = -1; });
+  add([](Body& b) { b.orientation.reset(); });
+  add([](Body& b) { b.loads.clear(); });
+  add([](Body& b) {
+    if (!b.loads.empty()) b.loads.pop_back();
+  });
+  add([](Body& b) { b.stiffness.clear(), b.rest.clear(); });
+  add([](Body& b) { b.rest.clear(); });
+  add([](Body& b) { b.damping.clear(); });
+  add([](Body& b) { b.force.clear(); });
+  add([](Body& b) { b.rotor.reset(); });
+  add([](Body& b) { b.drive = false; });
+  add([](Body& b) { b.hold = false; });
+  add([](Body& b) { b.angle.clear(); });
+  add([](Body& b) { b.rate.clear(); });
+  add([](Body& b) { b.attitude.reset(); });
+  add([](Body& b) { b.place.reset(); });
+  add([](Body& b) { b.inertia = {1, 1, 1}; });
+  add([](Body& b) { b.inertia.resize(3); });
+  add([](Body& b) { b.centre.setZero(); });
+  add([](Body& b) { b.position.setZero(); });
+  add([](Body& b) { b.kind = JointKind::spherical, b.drive = false; });
+  add([](Body& b) { b.angular_velocity.setZero(), b.velocity.setZero(); });
+}
+
+void add_number_changes(Scene scene, std::vector<Change>& changes) {
+  int count = 0;
+  for_each_number(scene, [&count](double& x) { count += std::isfinite(x) ? 1 : 0; });
+  for (int i = 0; i < count; ++i) {
+    const auto add = [&changes, i](const std::function<double(double)>& change) {
+      changes.emplace_back([i, change](Scene& s) {
+        int k = 0;
+        for_each_number(s, [&](double& x) {
+          if (k++ == i) x = change(x);
+        });
+      });
+    };
+    add([](double) { return 0.0; });
+    add([](double x) { return x == 0 ? 0.0 : 1.0; });
+    add([](double x) { return rounded(x, 1); });
+    add([](double x) { return rounded(x, 2); });
+  }
+}
+
+std::vector<Change> changes_of(const Scene& scene) {
+  std::vector<Change> changes;
+  add_guide_changes(scene, changes);
+  for (std::size_t i = scene.bodies.size(); i-- > 0;) add_body_changes(i, changes);
+  changes.emplace_back([](Scene& s) { s.outputs = 1; });
+  changes.emplace_back([](Scene& s) { s.tolerance = 1e-10; });
+  for (const double factor : {0.1, 0.5}) {
+    changes.emplace_back([factor](Scene& s) { s.t_end *= factor; });
+  }
+  add_number_changes(scene, changes);
+  return changes;
+}
+
+}  // namespace
+
+Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  for (bool smaller = true; smaller;) {
+    smaller = false;
+    const std::vector<Change> changes = changes_of(scene);
+    std::string text = to_toml(scene);
+    for (const Change& change : changes) {
+      if (Clock::now() > end) return scene;
+      Scene tried = scene;
+      change(tried);
+      const std::string now = to_toml(tried);
+      if (now == text || now.size() > text.size() || !fails(tried)) continue;
+      scene = std::move(tried);
+      text = now;
+      smaller = true;
+      break;
+    }
+  }
+  return scene;
+}
+
+}  // namespace differential

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+
+#include "scene.hpp"
+
+namespace differential {
+
+/// The scene with all taken away, one thing after the other, without which it still fails.
+///
+/// fails   : whether a scene has the fault
+/// seconds : after so many it has to do with what it has
+[[nodiscard]] Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails,
+                           double seconds);
+
+}  // namespace differential
