@@ -50,7 +50,7 @@ std::string shown(double value) {
 /// The value rounded up to two digits.
 std::string rounded_up(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  return shown(std::ceil(value / unit * (1 + 1e-12)) * unit);
+  return shown(std::ceil(value / unit * (1 - 1e-12)) * unit);
 }
 
 /// The coarseness with which the numbers of a column were written.

@@ -10,309 +10,9 @@ namespace kreisel::detail {
 
 namespace {
 
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-/// A column's name in three degrees of likeness, and its unit.
-struct HeaderName {
-  explicit HeaderName(std::string_view text) {
-    text = trimmed(text);
-    while (is_comment(text)) text = trimmed(text.substr(1));
-    as_written = text;
-    any_case = lower_case(text);
-    const std::size_t open = text.find_first_of("[(");
-    plain = trimmed(std::string_view(any_case).substr(0, open));
-    if (open == std::string_view::npos) return;
-    const std::size_t close = text.find_first_of("])", open);
-    unit = trimmed(std::string_view(any_case).substr(open + 1, close - open - 1));
-  }
-
-  std::string as_written;
-  std::string any_case;
-  std::string plain;
-  std::string unit;  ///< in lower case, without brackets
-};
-
-using Names = std::vector<HeaderName>;
-
-/// The positions of the columns that fit a name best: those written alike, else those that differ
-/// in capitals, else those that differ in a unit.
-std::vector<std::size_t> positions(const Names& header, std::string_view wanted) {
-  const HeaderName name(wanted);
-  for (const auto part : {&HeaderName::as_written, &HeaderName::any_case, &HeaderName::plain}) {
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < header.size(); ++i) {
-      if (!(header[i].*part).empty() && header[i].*part == name.*part) found.push_back(i);
-    }
-    if (!found.empty()) return found;
-  }
-  return {};
-}
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string result;
-  for (const std::string& word : words) result += (result.empty() ? "" : ", ") + word;
-  return result;
-}
-
-std::string in_toml(std::string_view name) {
-  std::string result = "\"";
-  for (const char c : name) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return result + '"';
-}
-
-const LogColumnGroup& time_group() {
-  static const LogColumnGroup group{LogQuantity::number,
-                                    {"t"},
-                                    {{"time"},
-                                     {"timestamp"},
-                                     {"time stamp"},
-                                     {"time_s"},
-                                     {"t_s"},
-                                     {"seconds"},
-                                     {"sec"},
-                                     {"zeit"}}};
-  return group;
-}
-
-/// A group of which columns are wanted: by the options, or by the usual names.
-struct WantedGroup {
-  std::string title;
-  std::vector<const LogColumnGroup*> one_of;  ///< one where the options name it
-  bool by_option = false;
-  bool required = true;
-};
-
 [[noreturn]] void refuse(const std::string& where, const std::string& reason) {
   throw InvalidInput(where + ": " + reason);
 }
-
-bool is_named(const LogColumnGroup& group, const LogOptions& options) {
-  return std::any_of(group.names.begin(), group.names.end(),
-                     [&](const std::string& name) { return options.columns.contains(name); });
-}
-
-void check_whole(const LogColumnGroup& group, const std::string& path, const LogOptions& options) {
-  for (const std::string& name : group.names) {
-    if (!options.columns.contains(name)) {
-      refuse(path, "columns: " + listed(group.names) + " belong together, but '" + name +
-                       "' is not given");
-    }
-  }
-}
-
-std::vector<WantedGroup> wanted_groups(const std::string& path,
-                                       const std::vector<LogRequest>& requests,
-                                       const LogOptions& options) {
-  std::vector<WantedGroup> wanted{{"time", {&time_group()}, options.columns.contains("t"), true}};
-  bool names_a_group = false;
-  for (const LogRequest& request : requests) {
-    WantedGroup group{request.title, {}, false, request.required};
-    for (const LogColumnGroup& columns : request.one_of) {
-      if (!is_named(columns, options)) continue;
-      check_whole(columns, path, options);
-      if (group.by_option) {
-        refuse(path, "columns: the " + request.title + " is given twice, by " +
-                         listed(group.one_of.front()->names) + " and by " + listed(columns.names));
-      }
-      group.by_option = names_a_group = true;
-      group.one_of = {&columns};
-    }
-    if (!group.by_option) {
-      for (const LogColumnGroup& columns : request.one_of) group.one_of.push_back(&columns);
-    }
-    wanted.push_back(std::move(group));
-  }
-  // Who names the columns of one quantity does not want others without being asked.
-  std::erase_if(wanted, [names_a_group](const WantedGroup& group) {
-    return names_a_group && !group.required && !group.by_option;
-  });
-  return wanted;
-}
-
-bool all_by_number(const std::vector<WantedGroup>& wanted, const LogOptions& options) {
-  return std::all_of(wanted.begin(), wanted.end(),
-                     [](const WantedGroup& g) { return g.by_option; }) &&
-         std::all_of(options.columns.begin(), options.columns.end(), [](const auto& column) {
-           return std::holds_alternative<std::size_t>(column.second);
-         });
-}
-
-/// The units of a quantity as headers have them: the one that is read, and others.
-struct UnitNames {
-  std::vector<std::string> read;
-  std::vector<std::string> other;
-};
-
-UnitNames units_of(LogQuantity quantity) {
-  switch (quantity) {
-    case LogQuantity::length: return {{"m"}, {"mm", "cm", "km", "ft", "in", "nm", "um"}};
-    case LogQuantity::angle:
-      return {{"rad"}, {"deg", "degree", "degrees", "\xC2\xB0", "\xB0", "grad"}};
-    case LogQuantity::angular_rate:
-      return {{"rad/s"},
-              {"deg/s", "dps", "degree/s", "degrees/s", "\xC2\xB0/s", "\xB0/s", "deg s^-1",
-               "deg/sec", "deg/h", "deg/hr", "grad/s"}};
-    case LogQuantity::acceleration: return {{"m/s^2"}, {"g", "mg", "cm/s^2", "ft/s^2", "gal"}};
-    default: return {};
-  }
-}
-
-const char* name(LogTimeUnit unit) {
-  switch (unit) {
-    case LogTimeUnit::s: return "s";
-    case LogTimeUnit::ms: return "ms";
-    case LogTimeUnit::us: return "us";
-    case LogTimeUnit::ns: return "ns";
-  }
-  return "s";
-}
-
-std::optional<LogTimeUnit> time_unit(const std::string& unit) {
-  if (unit == "ms" || unit == "msec") return LogTimeUnit::ms;
-  if (unit == "us" || unit == "usec" || unit == "\xC2\xB5s" || unit == "\xCE\xBCs") {
-    return LogTimeUnit::us;
-  }
-  if (unit == "ns" || unit == "nsec") return LogTimeUnit::ns;
-  return std::nullopt;
-}
-
-/// The reason why the unit in a header is not read as it stands, or nothing.
-std::string wrong_unit(const PlacedColumn& column, const HeaderName& header,
-                       const LogOptions& options) {
-  const std::string found =
-      "column " + in_quotes(header.as_written) + " for '" + column.name + "' is in " + header.unit;
-  if (column.is_time) {
-    const auto unit = time_unit(header.unit);
-    if (!unit || options.time_unit) return {};
-    return found + ": give  time_unit = \"" + name(*unit) + "\"  (or the unit that is right)";
-  }
-  const UnitNames units = units_of(column.quantity);
-  if (std::find(units.other.begin(), units.other.end(), header.unit) == units.other.end()) {
-    return {};
-  }
-  const bool turns =
-      column.quantity == LogQuantity::angle || column.quantity == LogQuantity::angular_rate;
-  if (!turns) return found + ", and is read in " + units.read.front() + ": convert the file";
-  if (options.degrees) return {};
-  return found + ": give  angles = \"deg\"  (or \"rad\" if the header is wrong)";
-}
-
-/// How a line fits as a header.
-struct Match {
-  std::vector<PlacedColumn> columns;
-  std::vector<std::string> missing;  ///< names of wanted columns that it has not
-  std::string ambiguous;             ///< the reason why two of its columns fit
-  std::string wrong_unit;
-
-  [[nodiscard]] bool fits() const { return missing.empty(); }
-};
-
-class Matcher {
- public:
-  Matcher(const Names& header, const LogOptions& options) : header_(&header), options_(&options) {}
-
-  Match match(const std::vector<WantedGroup>& wanted) {
-    for (const WantedGroup& group : wanted) {
-      if (group.by_option) {
-        for (const std::string& name : group.one_of.front()->names) {
-          place_by_option(*group.one_of.front(), name);
-        }
-      } else {
-        place_by_usual_names(group);
-      }
-    }
-    return std::move(match_);
-  }
-
- private:
-  void place(const LogColumnGroup& group, const std::string& name, std::size_t position) {
-    PlacedColumn column{name, &group == &time_group(), group.quantity, position, false};
-    if (position < header_->size()) {
-      const HeaderName& header = (*header_)[position];
-      const std::string wrong = wrong_unit(column, header, *options_);
-      if (match_.wrong_unit.empty()) match_.wrong_unit = wrong;
-      const UnitNames units = units_of(column.quantity);
-      column.has_unit =
-          std::find(units.read.begin(), units.read.end(), header.unit) != units.read.end();
-    }
-    match_.columns.push_back(std::move(column));
-  }
-
-  void note_several(const std::string& name, const std::vector<std::size_t>& found) {
-    if (found.size() < 2 || !match_.ambiguous.empty()) return;
-    std::vector<std::string> numbers;
-    for (const std::size_t i : found) numbers.push_back(std::to_string(i + 1));
-    match_.ambiguous = "columns " + listed(numbers) + " all fit '" + name +
-                       "': give its number,  columns = { .., " + name + " = " + numbers.front() +
-                       " }";
-  }
-
-  void place_by_option(const LogColumnGroup& group, const std::string& name) {
-    const auto& given = options_->columns.find(name)->second;
-    if (const auto* const number = std::get_if<std::size_t>(&given)) {
-      if (*number > header_->size()) return match_.missing.push_back(name);
-      return place(group, name, *number - 1);
-    }
-    const auto found = positions(*header_, std::get<std::string>(given));
-    if (found.empty()) return match_.missing.push_back(name);
-    note_several(name, found);
-    place(group, name, found.front());
-  }
-
-  [[nodiscard]] std::size_t count_found(const std::vector<std::string>& names) const {
-    return static_cast<std::size_t>(std::count_if(
-        names.begin(), names.end(),
-        [this](const std::string& name) { return !positions(*header_, name).empty(); }));
-  }
-
-  void place_all(const LogColumnGroup& group, const std::vector<std::string>& headers) {
-    for (std::size_t i = 0; i < headers.size(); ++i) {
-      const auto found = positions(*header_, headers[i]);
-      note_several(group.names[i], found);
-      place(group, group.names[i], found.front());
-    }
-  }
-
-  /// Takes the first alternative that the header has whole, by its own names or by other usual ones.
-  void place_by_usual_names(const WantedGroup& wanted) {
-    bool has_some = false;
-    for (const LogColumnGroup* const group : wanted.one_of) {
-      std::vector<const std::vector<std::string>*> whole;
-      std::vector<const std::vector<std::string>*> spellings{&group->names};
-      for (const auto& names : group->other_headers) spellings.push_back(&names);
-      for (const auto* const names : spellings) {
-        const std::size_t found = count_found(*names);
-        has_some = has_some || found > 0;
-        if (found == names->size()) whole.push_back(names);
-        if (found == names->size() && names == &group->names) break;
-      }
-      if (whole.empty()) continue;
-      if (whole.size() > 1 && match_.ambiguous.empty()) {
-        match_.ambiguous = "the " + wanted.title + " may be " + listed(*whole[0]) + " or " +
-                           listed(*whole[1]) + ": name the columns,  columns = { .., " +
-                           group->names.front() + " = " + in_toml(whole[0]->front()) + ", .. }";
-      }
-      return place_all(*group, *whole.front());
-    }
-    if (!wanted.required && !has_some) return;
-    for (const std::string& name : wanted.one_of.front()->names) {
-      if (positions(*header_, name).empty()) match_.missing.push_back(name);
-    }
-  }
-
-  const Names* header_;
-  const LogOptions* options_;
-  Match match_;
-};
 
 /// A line of the file's beginning that is neither empty nor skipped.
 struct HeadLine {
@@ -357,12 +57,12 @@ class LayoutSearch {
 
   Attempt by_name() {
     std::optional<std::size_t> header;
-    Match best;
+    HeaderMatch best;
     std::size_t fields_of_row = 0;
     std::optional<std::size_t> comment;  // the last one
     for (std::size_t i = 0; i < lines_->size(); ++i) {
       const HeadLine& line = (*lines_)[i];
-      const Match match = match_header(line);
+      const HeaderMatch match = match_line(line);
       if (match.fits()) {
         header = i;
         best = match;
@@ -391,7 +91,7 @@ class LayoutSearch {
       const LogColumnGroup& only = *group.one_of.front();
       for (const std::string& name : only.names) {
         const auto number = std::get<std::size_t>(options_->columns.find(name)->second);
-        columns.push_back({name, &only == &time_group(), only.quantity, number - 1, false});
+        columns.push_back({name, name == "t", only.quantity, number - 1, false});
       }
     }
     std::size_t begin = 0;
@@ -406,13 +106,13 @@ class LayoutSearch {
     return split_fields(line, separator_, fields_) && !fields_.empty();
   }
 
-  Match match_header(const HeadLine& line) {
+  HeaderMatch match_line(const HeadLine& line) {
     std::string_view text = line.text;
     if (line.comment) {
       text = trimmed(text);
       while (is_comment(text)) text = trimmed(text.substr(1));
     }
-    Names names;
+    HeaderNames names;
     if (split(text)) {
       for (const std::string_view field : fields_) {
         const bool is_unit = field.starts_with('[') || field.starts_with('(');
@@ -427,9 +127,8 @@ class LayoutSearch {
     }
     counts_ = count_fields(fields_);
     if (names.size() < counts_.all) counts_ = {names.size(), names.size()};
-    names_.clear();
-    for (const HeaderName& name : names) names_.push_back(name.as_written);
-    return Matcher(names, *options_).match(*wanted_);
+    names_ = std::move(names);
+    return match_header(names_, *wanted_, *options_);
   }
 
   bool is_all_numbers(const HeadLine& line) {
@@ -441,12 +140,12 @@ class LayoutSearch {
 
   /// A comment with as many fields as the rows below it may have been meant as a header.
   void note_comment(const HeadLine& comment, std::size_t fields_of_row) {
-    const Match match = match_header(comment);
+    const HeaderMatch match = match_line(comment);
     if (names_.size() == fields_of_row) note_missing(comment, match);
   }
 
   /// Remembers the line that lacks the fewest columns, for the complaint.
-  void note_missing(const HeadLine& line, const Match& match) {
+  void note_missing(const HeadLine& line, const HeaderMatch& match) {
     const bool nearer =
         nearest_names_.empty() || match.missing.size() < nearest_.missing.size() ||
         (match.missing.size() == nearest_.missing.size() && names_.size() > nearest_names_.size());
@@ -459,74 +158,26 @@ class LayoutSearch {
   Attempt no_header(std::size_t fields_of_row) {
     Attempt attempt;
     attempt.fields = std::max(nearest_names_.size(), fields_of_row);
+    const std::size_t missing = nearest_names_.empty()
+                                    ? match_header({}, *wanted_, *options_).missing.size()
+                                    : nearest_.missing.size();
+    attempt.found = 100 - std::min<std::size_t>(missing, 100);
     if (nearest_names_.empty()) {
       attempt.line = lines_->empty() ? 1 : lines_->front().number;
-      attempt.complaint =
-          "no line names the columns: give their numbers from 1, for example  " + pasted({});
+      attempt.complaint = "no line names the columns: give their numbers from 1, for example  " +
+                          columns_key({}, {}, *wanted_);
       return attempt;
     }
-    attempt.found = 100 - std::min<std::size_t>(nearest_.missing.size(), 100);
     attempt.line = nearest_line_;
     std::vector<std::string> found;
     for (std::size_t i = 0; i < nearest_names_.size() && i < 20; ++i) {
-      found.push_back(in_quotes(nearest_names_[i]));
+      found.push_back(in_quotes(nearest_names_[i].as_written));
     }
     if (found.size() < nearest_names_.size()) found.emplace_back("..");
     attempt.complaint = "no column for " + listed(nearest_.missing) + " among " + listed(found) +
                         ": name the columns, or give their numbers from 1, for example  " +
-                        pasted(nearest_);
+                        columns_key(nearest_, nearest_names_, *wanted_);
     return attempt;
-  }
-
-  /// The alternative whose columns were found, else the first.
-  [[nodiscard]] static const LogColumnGroup& likeliest(const WantedGroup& wanted,
-                                                       const Match& match) {
-    for (const LogColumnGroup* const group : wanted.one_of) {
-      for (const PlacedColumn& column : match.columns) {
-        if (column.name == group->names.front()) return *group;
-      }
-    }
-    return *wanted.one_of.front();
-  }
-
-  /// The key `columns` with the names that were found or are likely; numbers stand for the rest.
-  [[nodiscard]] std::string pasted(const Match& match) const {
-    std::vector<std::string> entries;
-    for (const WantedGroup& group : *wanted_) {
-      if (!group.required && !group.by_option) continue;
-      for (const std::string& name : likeliest(group, match).names) {
-        std::string value = likely_header(name);
-        for (const PlacedColumn& column : match.columns) {
-          if (column.name == name && column.position < nearest_names_.size()) {
-            value = nearest_names_[column.position];
-          }
-        }
-        value = value.empty() ? std::to_string(entries.size() + 1) : in_toml(value);
-        entries.push_back(name + " = " + value);
-      }
-    }
-    return "columns = { " + listed(entries) + " }";
-  }
-
-  /// The only header that sounds like the column, or nothing.
-  [[nodiscard]] std::string likely_header(const std::string& column) const {
-    std::string only;
-    for (const std::string& header : nearest_names_) {
-      const std::string plain = HeaderName(header).plain;
-      if (plain.empty()) continue;
-      const auto holds = [&plain](const std::string& part) {
-        return plain.find(part) != std::string::npos;
-      };
-      const bool sounds_alike =
-          column == "t"        ? holds("time") || holds("stamp") || holds("tow") || holds("sec")
-          : column.size() == 2 ? (plain.front() == column.front() || holds("orient")) &&
-                                     plain.back() == column.back()
-                               : holds(column);
-      if (!sounds_alike) continue;
-      if (!only.empty()) return {};
-      only = header;
-    }
-    return only;
   }
 
   [[nodiscard]] static Attempt failed(const HeadLine& line, std::string complaint,
@@ -560,17 +211,27 @@ class LayoutSearch {
   }
 
   FieldCount counts_of_header(std::size_t header) {
-    (void)match_header((*lines_)[header]);
+    (void)match_line((*lines_)[header]);
     return counts_;
+  }
+
+  [[nodiscard]] bool is_number(const PlacedColumn& column, char decimal) const {
+    return column.position < fields_.size() &&
+           written_number(fields_[column.position], decimal).has_value();
   }
 
   /// How many of the columns hold a number in the fields.
   [[nodiscard]] std::size_t numbers_in(const std::vector<PlacedColumn>& columns) const {
     return static_cast<std::size_t>(
-        std::count_if(columns.begin(), columns.end(), [this](const PlacedColumn& column) {
-          return column.position < fields_.size() &&
-                 written_number(fields_[column.position], options_->decimal);
-        }));
+        std::count_if(columns.begin(), columns.end(),
+                      [this](const PlacedColumn& c) { return is_number(c, options_->decimal); }));
+  }
+
+  /// The same with either decimal mark.
+  [[nodiscard]] std::size_t likely_numbers_in(const std::vector<PlacedColumn>& columns) const {
+    return static_cast<std::size_t>(std::count_if(
+        columns.begin(), columns.end(),
+        [this](const PlacedColumn& c) { return is_number(c, '.') || is_number(c, ','); }));
   }
 
   /// Looks for the first row; text may stand above it only where `passes_text`.
@@ -606,7 +267,7 @@ class LayoutSearch {
 
   Attempt partly_numbers(const HeadLine& line, const std::vector<PlacedColumn>& columns) {
     if (!split(line.text)) return failed(line, "a quote is not closed", 1);
-    const std::size_t numbers = numbers_in(columns);
+    const std::size_t numbers = likely_numbers_in(columns);
     for (const PlacedColumn& column : columns) {
       if (column.position >= fields_.size()) {
         return failed(line,
@@ -632,19 +293,18 @@ class LayoutSearch {
                       std::to_string(row.number - 1 - header_line_));
   }
 
-  Attempt no_numbers(const HeadLine& line, const std::vector<PlacedColumn>& columns) {
+  Attempt no_numbers(const HeadLine& text, const std::vector<PlacedColumn>& columns) {
+    const HeadLine& line = lines_->back().comment ? text : lines_->back();
     if (!split(line.text)) return failed(line, "a quote is not closed", 0);
-    std::string reason = "no row with a number in every column that is wanted";
-    const HeadLine& last = lines_->back();
-    if (!last.comment && split(last.text)) {
-      for (const PlacedColumn& column : columns) {
-        if (column.position < fields_.size()) {
-          return failed(last, why_no_number(fields_[column.position], column.name, *options_), 0);
-        }
-      }
-      reason += ": the line has " + std::to_string(fields_.size()) + " fields";
+    const std::size_t numbers = likely_numbers_in(columns);
+    for (const PlacedColumn& column : columns) {
+      if (column.position >= fields_.size()) continue;
+      return failed(line, why_no_number(fields_[column.position], column.name, *options_), numbers);
     }
-    return failed(last, reason, 0);
+    return failed(line,
+                  "the row has " + std::to_string(fields_.size()) +
+                      " fields, and none is a column that is wanted",
+                  0);
   }
 
   const std::vector<HeadLine>* lines_;
@@ -652,10 +312,10 @@ class LayoutSearch {
   const LogOptions* options_;
   char separator_;
   std::vector<std::string_view> fields_;
-  std::vector<std::string> names_;  ///< of the line that was matched last
-  FieldCount counts_;               ///< the same
-  Match nearest_;                   ///< of the line that fits best, where none fits
-  std::vector<std::string> nearest_names_;
+  HeaderNames names_;    ///< of the line that was matched last
+  FieldCount counts_;    ///< the same
+  HeaderMatch nearest_;  ///< of the line that fits best, where none fits
+  HeaderNames nearest_names_;
   std::size_t nearest_line_ = 1;
   std::size_t header_line_ = 0;
 };

@@ -6,18 +6,10 @@
 #include <vector>
 
 #include <dynamics/file/log_file.hpp>
+#include <dynamics/file/log_header.hpp>
 #include <dynamics/file/log_text.hpp>
 
 namespace kreisel::detail {
-
-/// One column that is read, and its position in the rows.
-struct PlacedColumn {
-  std::string name;
-  bool is_time = false;
-  LogQuantity quantity = LogQuantity::number;
-  std::size_t position = 0;
-  bool has_unit = false;  ///< the header or an option gives the unit of angles
-};
 
 /// The way in which a log is written.
 struct LogLayout {

@@ -11,6 +11,7 @@ namespace kreisel {
 namespace {
 
 void take_attitudes(const Log& log, LoggedMotion& result) {
+  result.motion.attitudes.reserve(log.size());
   const auto resolution = [&log, &result](const char* name, double factor) {
     result.attitude_resolution =
         std::max(result.attitude_resolution, factor * log.column(name).resolution);
@@ -42,6 +43,7 @@ void take_positions(const Log& log, LoggedMotion& result) {
   const LogColumn& x = log.column("x");
   const LogColumn& y = log.column("y");
   const LogColumn& z = log.column("z");
+  result.motion.positions.reserve(log.size());
   for (std::size_t i = 0; i < log.size(); ++i) {
     result.motion.positions.emplace_back(x.values[i], y.values[i], z.values[i]);
   }
