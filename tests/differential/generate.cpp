@@ -344,6 +344,58 @@ void add_pendulums(Random& r, Scene& scene) {
   }
 }
 
+Link aligned_link(Random& r) {
+  const double u = r.uniform();
+  if (u < 0.3) return earth(r);
+  Link link{.kind = u < 0.5 ? LinkKind::rotating : LinkKind::harmonic};
+  link.angular_velocity = r.pick({1.0, 0.5, 0.1, 3.0}) * unit(r);
+  if (r.chance(0.3)) link.angular_velocity += unit(r);
+  const double frequency = r.pick({1.0, 0.785, 2.0});
+  const int terms = 1 + r.below(2);
+  for (int i = 0; i < terms; ++i) {
+    const double amplitude = r.pick({0.157, 0.1, 1.0});
+    const Angle phase{90.0 * r.below(4), true};
+    (r.chance(0.8) ? link.turning : link.pushing)
+        .terms.push_back({amplitude * unit(r), frequency, phase});
+  }
+  return link;
+}
+
+/// Bodies at rest, or nearly, all axes along those of the guide: what is on the edge between 0 and
+/// something.
+void add_resting_bodies(Random& r, Scene& scene) {
+  scene.guide = {aligned_link(r)};
+  scene.gravity = GravityKind::not_given;
+  const Vector down = scene.guide.front().kind == LinkKind::earth ? Vector::UnitX() : unit(r);
+  if (scene.guide.front().kind != LinkKind::earth && r.chance(0.7)) {
+    scene.gravity = r.pick({GravityKind::inertial, GravityKind::uniform});
+    scene.gravity_vector = 9.81 * down;
+  }
+  const int bodies = r.chance(0.7) ? 1 : 2;
+  for (int i = 0; i < bodies; ++i) {
+    Body body;
+    body.parent = i - 1;
+    body.kind = r.pick({JointKind::revolute, JointKind::revolute, JointKind::universal,
+                        JointKind::spherical, JointKind::prismatic});
+    const int along = r.below(3);
+    body.axis = sign(r) * Vector::Unit(along);
+    body.second_axis = Vector::Unit((along + 1 + r.below(2)) % 3);
+    body.inertia = inertia(r, 1);
+    if (r.chance(0.6)) body.centre = 0.5 * down;
+    if (i > 0) body.position = down;
+    const int n = single_coordinates(body.kind);
+    const bool slides = body.kind == JointKind::prismatic;
+    for (int k = 0; k < n && !slides; ++k) {
+      const bool off = r.chance(0.2);
+      body.angle.push_back(
+          {off ? sign(r) * r.pick({1e-20, 1e-14, 1e-9, 1e-6}) : 90.0 * r.below(4), !off});
+      body.angle.back().degrees = body.angle.front().degrees;
+    }
+    if (n > 0 && r.chance(0.3)) add_damping(r, body, n);
+    scene.bodies.push_back(body);
+  }
+}
+
 /// Two rings and a rotor.
 void add_cardan_gyro(Random& r, Scene& scene) {
   const int first = r.below(3);
@@ -368,8 +420,12 @@ void add_cardan_gyro(Random& r, Scene& scene) {
 
 void add_solve(Random& r, Scene& scene) {
   scene.tolerance = r.pick({1e-10, 1e-10, 1e-8, 1e-6, 1e-9, 1e-3, 1e-12});
-  scene.t_end =
-      r.chance(0.85) ? r.pick({0.1, 1.0, 2.0, 5.0, 10.0}) : r.pick({1e-6, 1e-3, 60.0, 1e3, 1e4});
+  scene.t_end = r.chance(0.85) ? r.pick({0.1, 1.0, 2.0, 5.0, 10.0, 20.0})
+                               : r.pick({1e-6, 1e-3, 60.0, 1e3, 1e4});
+  const bool harmonic = std::any_of(scene.guide.begin(), scene.guide.end(), [](const Link& link) {
+    return link.kind == LinkKind::harmonic;
+  });
+  if (harmonic) scene.t_end = std::min(scene.t_end, 1e3);
   if (scene.has_log()) scene.t_end = std::min(scene.t_end, 10.0);
   scene.outputs = r.pick({1, 2, 20, 20, 20, 100});
 }
@@ -385,6 +441,8 @@ Scene generate(Random r) {
     add_pendulums(r, scene);
   } else if (u < 0.35) {
     add_cardan_gyro(r, scene);
+  } else if (u < 0.5) {
+    add_resting_bodies(r, scene);
   } else {
     add_bodies(r, scene);
   }

@@ -1,8 +1,7 @@
 #include "reference_tree.hpp"
 
-#include <Eigen/LU>
-
 #include <cmath>
+#include <utility>
 
 namespace differential::reference {
 
@@ -103,7 +102,7 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
 
 double Tree::work() const {
   const auto n = static_cast<double>(matrix_.rows());
-  return n * n * n / 3 + 30 * n * n + 1000;
+  return n * n * n / 10 + 10 * n * n + 500;
 }
 
 State Tree::start() {
@@ -393,7 +392,32 @@ void Tree::add_forces(Real t, const State& y, const Motion& guide) {
   }
 }
 
-void Tree::solve() { solution_ = matrix_.partialPivLu().solve(right_); }
+// Eigen's blocks are slow in long double, and most factors are 0 here.
+void Tree::solve() {
+  const Eigen::Index n = matrix_.rows();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = 0;
+    matrix_.col(k).tail(n - k).cwiseAbs().maxCoeff(&pivot);
+    if (pivot != 0) {
+      matrix_.row(k).swap(matrix_.row(k + pivot));
+      std::swap(right_[k], right_[k + pivot]);
+    }
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      const Real factor = matrix_(i, k) / matrix_(k, k);
+      if (factor == 0) continue;
+      const Real* const from = &matrix_(k, 0);
+      Real* const to = &matrix_(i, 0);
+      for (Eigen::Index j = k + 1; j < n; ++j) to[j] -= factor * from[j];
+      right_[i] -= factor * right_[k];
+    }
+  }
+  solution_.resize(n);
+  for (Eigen::Index k = n; k-- > 0;) {
+    Real sum = right_[k];
+    for (Eigen::Index j = k + 1; j < n; ++j) sum -= matrix_(k, j) * solution_[j];
+    solution_[k] = sum / matrix_(k, k);
+  }
+}
 
 void Tree::rates(Real t, const State& y, State& result) {
   result.setZero(size_);

@@ -95,7 +95,7 @@ class Tree {
   // Of one evaluation.
   Pose guide_pose_;
   std::vector<Pose> poses_;
-  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> matrix_;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;
   State right_;
   State solution_;
   std::vector<Real> off_place_;  ///< by how much each condition is not fulfilled
