@@ -260,7 +260,7 @@ class LayoutSearch {
       if (numbers == 0 && text == nullptr) text = &line;
     }
     if (partial != nullptr) return partly_numbers(*partial, columns);
-    if (text != nullptr) return no_numbers(*text, columns);
+    if (text != nullptr) return no_numbers(begin, columns);
     return {std::nullopt, lines_->empty() ? 1 : lines_->back().number,
             "the log has no rows below this line", columns.size(), 0};
   }
@@ -293,15 +293,25 @@ class LayoutSearch {
                       std::to_string(row.number - 1 - header_line_));
   }
 
-  Attempt no_numbers(const HeadLine& text, const std::vector<PlacedColumn>& columns) {
-    const HeadLine& line = lines_->back().comment ? text : lines_->back();
-    if (!split(line.text)) return failed(line, "a quote is not closed", 0);
-    const std::size_t numbers = likely_numbers_in(columns);
+  /// The complaint about the line, from `begin` on, that is most like a row of numbers.
+  Attempt no_numbers(std::size_t begin, const std::vector<PlacedColumn>& columns) {
+    const HeadLine* likeliest = nullptr;
+    std::size_t most = 0;
+    for (std::size_t i = begin; i < lines_->size(); ++i) {
+      const HeadLine& line = (*lines_)[i];
+      if (line.comment || !split(line.text)) continue;
+      const std::size_t numbers = likely_numbers_in(columns);
+      if (likeliest == nullptr || numbers > most) likeliest = &line;
+      most = std::max(most, numbers);
+    }
+    if (likeliest == nullptr) return failed((*lines_)[begin], "a quote is not closed", 0);
+    (void)split(likeliest->text);
     for (const PlacedColumn& column : columns) {
       if (column.position >= fields_.size()) continue;
-      return failed(line, why_no_number(fields_[column.position], column.name, *options_), numbers);
+      return failed(*likeliest, why_no_number(fields_[column.position], column.name, *options_),
+                    most);
     }
-    return failed(line,
+    return failed(*likeliest,
                   "the row has " + std::to_string(fields_.size()) +
                       " fields, and none is a column that is wanted",
                   0);

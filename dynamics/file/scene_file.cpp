@@ -275,15 +275,14 @@ class SceneReader {
   }
 
   void read_table(Section& guide) {
-    const std::string name = guide.required_text("file");
-    if (name.empty()) {
-      if (guide.has("file") && guide.find("file")->is_string()) guide.refuse("file", "is empty");
-      return;
-    }
-    const std::filesystem::path file = path_.parent_path() / name;
     const std::size_t before = mistakes_.count();
+    const std::string name = guide.required_text("file");
     const LogOptions options = read_log_options(guide, motion_log_columns(), {0, scene_.t_end});
+    if (name.empty() && guide.has("file") && guide.find("file")->is_string()) {
+      guide.refuse("file", "is empty");
+    }
     if (mistakes_.count() > before) return;
+    const std::filesystem::path file = path_.parent_path() / name;
     try {
       LoggedMotion log = read_motion_log(file, options);
       const double begin = log.motion.times.front();
