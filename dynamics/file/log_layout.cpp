@@ -62,7 +62,7 @@ class LayoutSearch {
     std::optional<std::size_t> comment;  // the last one
     for (std::size_t i = 0; i < lines_->size(); ++i) {
       const HeadLine& line = (*lines_)[i];
-      const HeaderMatch match = match_line(line);
+      const HeaderMatch match = match_line(i);
       if (match.fits()) {
         header = i;
         best = match;
@@ -72,7 +72,7 @@ class LayoutSearch {
         break;
       } else if (is_all_numbers(line)) {
         fields_of_row = fields_.size();
-        if (comment) note_comment((*lines_)[*comment], fields_of_row);
+        if (comment) note_comment(*comment, fields_of_row);
         break;
       } else {
         note_missing(line, match);
@@ -106,29 +106,39 @@ class LayoutSearch {
     return split_fields(line, separator_, fields_) && !fields_.empty();
   }
 
-  HeaderMatch match_line(const HeadLine& line) {
-    std::string_view text = line.text;
-    if (line.comment) {
+  HeaderMatch match_line(std::size_t index) {
+    std::string_view text = (*lines_)[index].text;
+    if ((*lines_)[index].comment) {
       text = trimmed(text);
       while (is_comment(text)) text = trimmed(text.substr(1));
     }
-    HeaderNames names;
-    if (split(text)) {
-      for (const std::string_view field : fields_) {
-        const bool is_unit = field.starts_with('[') || field.starts_with('(');
-        // Between blanks a unit is a field of its own.
-        if (separator_ == ' ' && is_unit && !names.empty()) {
-          const std::string with_unit = names.back().as_written + " " + std::string(field);
-          names.back() = HeaderName(with_unit);
-        } else {
-          names.emplace_back(field);
-        }
+    names_.clear();
+    if (!split(text)) fields_.clear();
+    counts_ = count_fields(fields_);
+    for (const std::string_view field : fields_) {
+      const bool is_unit = field.starts_with('[') || field.starts_with('(');
+      // Between blanks a unit is a field of its own.
+      if (separator_ == ' ' && is_unit && !names_.empty()) {
+        const std::string with_unit = names_.back().as_written + " " + std::string(field);
+        names_.back() = HeaderName(with_unit);
+      } else {
+        names_.emplace_back(field);
       }
     }
-    counts_ = count_fields(fields_);
-    if (names.size() < counts_.all) counts_ = {names.size(), names.size()};
-    names_ = std::move(names);
+    if (names_.size() < counts_.all) counts_ = {names_.size(), names_.size()};
+    if (options_->skip_after_header > 0) take_units(index + 1);
     return match_header(names_, *wanted_, *options_);
+  }
+
+  /// Takes the units in a skipped line below the header, for names without a unit of their own.
+  void take_units(std::size_t index) {
+    if (index >= lines_->size() || !split((*lines_)[index].text)) return;
+    if (fields_.size() != names_.size()) return;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      std::string_view unit = fields_[i];
+      if (unit.starts_with('[') || unit.starts_with('(')) unit = unit.substr(1, unit.size() - 2);
+      if (names_[i].unit.empty()) names_[i].unit = HeaderName(unit).any_case;
+    }
   }
 
   bool is_all_numbers(const HeadLine& line) {
@@ -139,9 +149,9 @@ class LayoutSearch {
   }
 
   /// A comment with as many fields as the rows below it may have been meant as a header.
-  void note_comment(const HeadLine& comment, std::size_t fields_of_row) {
+  void note_comment(std::size_t comment, std::size_t fields_of_row) {
     const HeaderMatch match = match_line(comment);
-    if (names_.size() == fields_of_row) note_missing(comment, match);
+    if (names_.size() == fields_of_row) note_missing((*lines_)[comment], match);
   }
 
   /// Remembers the line that lacks the fewest columns, for the complaint.
@@ -180,9 +190,9 @@ class LayoutSearch {
     return attempt;
   }
 
-  [[nodiscard]] static Attempt failed(const HeadLine& line, std::string complaint,
-                                      std::size_t found = fits_as_header) {
-    return {std::nullopt, line.number, std::move(complaint), found, 0};
+  [[nodiscard]] Attempt failed(const HeadLine& line, std::string complaint,
+                               std::size_t found = fits_as_header) const {
+    return {std::nullopt, line.number, std::move(complaint), found, fields_.size()};
   }
 
   /// The index of the first line after a header and the lines that are skipped behind it.
@@ -211,7 +221,7 @@ class LayoutSearch {
   }
 
   FieldCount counts_of_header(std::size_t header) {
-    (void)match_line((*lines_)[header]);
+    (void)match_line(header);
     return counts_;
   }
 
@@ -247,7 +257,12 @@ class LayoutSearch {
       const std::size_t numbers = whole ? numbers_in(columns) : 0;
       if (numbers == columns.size()) {
         if (partial != nullptr && (!passes_text || agree(partial_counts, counts))) {
-          return partly_numbers(*partial, columns);
+          Attempt attempt = partly_numbers(*partial, columns);
+          if (passes_text) {
+            attempt.complaint +=
+                "; if it is above the rows, give  skip = " + std::to_string(line.number - 1);
+          }
+          return attempt;
         }
         if (text != nullptr && !passes_text) return text_above(*text, line);
         LogLayout layout{separator_, std::move(columns), line.number, counts};

@@ -13,6 +13,7 @@ namespace kreisel::detail {
 namespace {
 
 constexpr std::size_t block = 1U << 20U;
+constexpr std::size_t smallest_block = 1U << 14U;
 
 void refuse_what_is_no_file(const std::filesystem::path& path) {
   std::error_code error;
@@ -106,11 +107,32 @@ LogLines::LogLines(const std::filesystem::path& path) : path_(path.string()) {
   refuse_what_is_no_file(path);
   file_.open(path, std::ios::binary);
   if (!file_) throw InvalidInput(path_ + ": cannot be read");
-  buffer_.resize(block);
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  buffer_.resize(unknown ? block : std::clamp<std::uintmax_t>(size + 1, smallest_block, block));
   fill();
+  refuse_other_text();
+}
+
+void LogLines::refuse_other_text() const {
   if (head().starts_with("\xFF\xFE") || head().starts_with("\xFE\xFF")) {
     throw InvalidInput(path_ + ":1: the text is in UTF-16; save it as UTF-8 or ASCII");
   }
+  const std::size_t zero = head().find('\0');
+  if (zero != std::string_view::npos) {
+    refuse_zero_byte(
+        1 + static_cast<std::size_t>(std::count(
+                head().begin(), head().begin() + static_cast<std::ptrdiff_t>(zero), '\n')));
+  }
+  if (head().find('\n') == std::string_view::npos &&
+      trimmed(head()).find('\r') != std::string_view::npos) {
+    throw InvalidInput(path_ + ":1: the lines end in CR alone; save the text with LF or CR LF");
+  }
+}
+
+void LogLines::refuse_zero_byte(std::size_t line) const {
+  throw InvalidInput(path_ + ":" + std::to_string(line) +
+                     ": the file is not text: the line holds a zero byte");
 }
 
 void LogLines::fill() {
@@ -143,10 +165,7 @@ bool LogLines::next() {
   text_ = std::string_view(buffer_).substr(begin_, length);
   begin_ += length + (end == nullptr ? 0 : 1);
   if (number_ == 1 && text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
-  if (text_.find('\0') != std::string_view::npos) {
-    throw InvalidInput(path_ + ":" + std::to_string(number_) +
-                       ": the file is not text: the line holds a zero byte");
-  }
+  if (text_.find('\0') != std::string_view::npos) refuse_zero_byte(number_);
   return true;
 }
 

@@ -20,7 +20,7 @@ class LogLines {
  public:
   /// Opens the file and reads the first block.
   ///
-  /// Throws : InvalidInput if the path is no regular file or pipe, or the text is in UTF-16
+  /// Throws : InvalidInput if the path is no regular file or pipe, or its bytes are not lines of text
   explicit LogLines(const std::filesystem::path& path);
 
   /// The first block, from the beginning of the file. Valid before the first call of next().
@@ -39,6 +39,8 @@ class LogLines {
 
  private:
   void fill();
+  void refuse_other_text() const;
+  [[noreturn]] void refuse_zero_byte(std::size_t line) const;
 
   std::string path_;
   std::ifstream file_;

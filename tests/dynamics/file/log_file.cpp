@@ -183,6 +183,12 @@ BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_passed_over) {
   BOOST_TEST(complaint(angles, {}, motion) ==
              "log.csv:1: column 'yaw [deg]' for 'yaw' is in deg: give  angles = \"deg\"  (or "
              "\"rad\" if the header is wrong)");
+  // The unit may stand in a line of its own.
+  options = {};
+  options.skip_after_header = 1;
+  const std::string own_line = "Time yaw pitch roll\n(s) (deg) (deg) (deg)\n0 90 -45 1\n";
+  BOOST_TEST(complaint(own_line, options, motion)
+                 .starts_with("log.csv:1: column 'yaw' for 'yaw' is in deg: give  angles"));
   options = {};
   options.degrees = true;
   const double pi = std::numbers::pi;
@@ -247,6 +253,10 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
       complaint("0;1\n1;2\n", by_number(1, 3)).starts_with("log.csv:1: column 3 for 'value'"));
   // A column of text that is wanted as a number.
   BOOST_TEST(complaint("0,a\n1,b\n", by_number(1, 2)).starts_with("log.csv:1: value = 'a' is not"));
+  // A row of text with a number in it, alike but for that.
+  BOOST_TEST(complaint("7,a\n0,1\n", by_number(1, 2)) ==
+             "log.csv:1: value = 'a' is not a finite number; if it is above the rows, give  skip = "
+             "1");
   // Either a semicolon or a comma may separate these.
   BOOST_TEST(complaint("0,5;1,0\n", by_number(1, 2)).find("decimal comma") != std::string::npos);
   // A place needs three coordinates.
@@ -278,6 +288,9 @@ BOOST_AUTO_TEST_CASE(rows_that_are_broken_are_named_by_line) {
   BOOST_TEST(complaint("t,value\n") == "log.csv:1: the log has no rows below this line");
   BOOST_TEST(complaint(good + std::string("1,\0\n", 4)) ==
              "log.csv:3: the file is not text: the line holds a zero byte");
+  BOOST_TEST(
+      complaint(std::string("t,value\n\0", 9)).starts_with("log.csv:2: the file is not text"));
+  BOOST_TEST(complaint("t,value\r0,1\r1,2\r").starts_with("log.csv:1: the lines end in CR alone"));
   BOOST_TEST(complaint("\xFF\xFEt,value\n").starts_with("log.csv:1: the text is in UTF-16"));
   BOOST_TEST(complaint(good + std::string(2U << 20U, ' ')) ==
              "log.csv:3: the line is longer than 1 MB");
