@@ -27,6 +27,15 @@ void send(int pipe, char letter, std::string words) {
   }
 }
 
+std::string note(const Answer& answer) {
+  if (!answer.answered) {
+    return fmt::format("{}: {}", answer.asked,
+                       answer.out_of_budget ? "out of budget" : answer.message);
+  }
+  return fmt::format("{} ({}): error {:.2g}{}, {:.3g} evaluations", answer.asked, answer.method,
+                     answer.estimate, answer.kept ? "" : " (not kept)", answer.evaluations);
+}
+
 [[noreturn]] void work(const Scene& scene, const Examination& how, int pipe) {
   const auto begin = [pipe](const std::string& part) { send(pipe, 'b', part); };
   const Answers answers = run(scene, how.methods, how.limits, how.folder, begin);
@@ -40,6 +49,7 @@ void send(int pipe, char letter, std::string words) {
     begin("the independent integrator");
     reference = integrate(scene, scene.times(), how.limits.work);
   }
+  for (const Answer& answer : answers.by_method) send(pipe, 'n', note(answer));
   for (const Fault& fault : judge(scene, answers, reference)) {
     send(pipe, 'k', fault.kind);
     send(pipe, 'd', fault.detail);
@@ -78,6 +88,7 @@ std::string take(const std::string& text, Verdict& verdict) {
       case 'b': part = words; break;
       case 'k': verdict.faults.push_back({words, ""}); break;
       case 'd': verdict.faults.back().detail = words; break;
+      case 'n': verdict.notes += words + "; "; break;
       case 'a': verdict.answered = true; break;
       case 'r': verdict.referenced = true; break;
       default: return {};

@@ -13,6 +13,7 @@ struct Verdict {
   std::vector<Fault> faults = {};
   bool answered = false;    ///< by one method at least
   bool referenced = false;  ///< the independent integrator came to the end
+  std::string notes = {};   ///< what each method said
 };
 
 struct Examination {

@@ -399,15 +399,20 @@ void add_resting_bodies(Random& r, Scene& scene) {
 /// Two rings and a rotor.
 void add_cardan_gyro(Random& r, Scene& scene) {
   const int first = r.below(3);
+  const bool massless = r.chance(0.1);
   for (int i = 0; i < 2; ++i) {
     Body ring;
     ring.parent = i - 1;
     ring.axis = Vector::Unit((first + i) % 3);
     ring.mass = plain(r, 0.1, 2);
     ring.inertia = inertia(r, 0.005);
+    if (massless) {
+      ring.mass = 0;
+      ring.inertia = {0, 0, 0};
+    }
     ring.angle = {angle(r)};
     if (r.chance(0.3)) ring.rate = {rate(r)};
-    add_joint_forces(r, ring);
+    if (!massless) add_joint_forces(r, ring);
     scene.bodies.push_back(ring);
   }
   Body wheel = rotor(r, 1);

@@ -87,7 +87,7 @@ class Judge {
       add("report: tolerance_kept contradicts the estimate",
           fmt::format("{} {}", answer.estimate, answer.tolerance));
     }
-    if (answer.states.size() != scene_.times().size()) {
+    if (answer.states.size() < scene_.times().size()) {
       add("report: complete, and outputs are missing", fmt::format("{}", answer.states.size()));
     }
   }
@@ -184,7 +184,7 @@ class Judge {
       if (answer.asked == "radau13" && oscillates()) continue;
       if (best == nullptr || answer.evaluations < best->evaluations) best = &answer;
     }
-    constexpr double few = 5000;  // a tiny run
+    constexpr double few = 3e4;  // a tenth of a second
     if (best == nullptr || !(automatic->evaluations > 8 * best->evaluations + few)) return;
     add(fmt::format("auto costs over 8 times what {} costs", best->asked),
         fmt::format("{:.3g}{} evaluations by {}, {:.3g} by {}", automatic->evaluations,

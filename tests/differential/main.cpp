@@ -121,6 +121,8 @@ void try_scene(const Request& request, const Number& number, Shared& shared) {
   const Verdict verdict = examine(scene, request.how);
   shared.answered += verdict.answered ? 1 : 0;
   shared.referenced += verdict.referenced ? 1 : 0;
+  std::ofstream(request.out / "scenes.txt", std::ios::app)
+      << fmt::format("{} {}: {}\n", number.seed, number.index, verdict.notes);
   if (!verdict.faults.empty()) shared.faulty += 1;
   for (const Fault& fault : verdict.faults) {
     std::ofstream(request.out / "faults.txt", std::ios::app)
@@ -206,7 +208,7 @@ int run_one(const Request& request) {
   Request here = request;
   here.how.folder = request.out;
   const Verdict verdict = examine(scene, here.how);
-  fmt::print("# answered: {}, independent motion: {}\n", verdict.answered, verdict.referenced);
+  fmt::print("# {}\n# independent motion: {}\n", verdict.notes, verdict.referenced);
   for (const Fault& fault : verdict.faults) fmt::print("# {}: {}\n", fault.kind, fault.detail);
   return verdict.faults.empty() ? 0 : 1;
 }

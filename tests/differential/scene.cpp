@@ -235,7 +235,7 @@ bool Scene::has_log() const {
 
 std::vector<double> Scene::times() const {
   std::vector<double> result;
-  for (int i = 1; i < outputs; ++i) result.push_back(t_end * i / outputs);
+  for (int i = 1; i < outputs; ++i) result.push_back(i * (t_end / outputs));
   result.push_back(t_end);
   return result;
 }
@@ -250,9 +250,12 @@ std::string log_name(std::size_t link) { return fmt::format("log{}.csv", link); 
 std::string to_toml(const Scene& scene) {
   std::string result = guide(scene) + gravity(scene);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) result += body(scene, i);
-  result += "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) +
-            "\noutput_times = " + list(scene.times()) + "\n";
-  return result;
+  result +=
+      "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) + "\n";
+  return result +
+         (scene.outputs < 3 ? "output_times = " + list(scene.times())
+                            : "output_step = " + text(scene.t_end / scene.outputs)) +
+         "\n";
 }
 
 }  // namespace differential

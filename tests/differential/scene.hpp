@@ -121,7 +121,7 @@ struct Scene {
   std::vector<Body> bodies = {};
   double t_end = 1;
   double tolerance = 1e-10;
-  int outputs = 20;  ///< evenly spaced after t = 0
+  int outputs = 20;  ///< evenly spaced after t = 0; from three on by a step
 
   [[nodiscard]] bool has_log() const;
   [[nodiscard]] std::vector<double> times() const;

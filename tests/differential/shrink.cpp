@@ -164,18 +164,17 @@ Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails, double
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   for (bool smaller = true; smaller;) {
     smaller = false;
-    const std::vector<Change> changes = changes_of(scene);
-    std::string text = to_toml(scene);
-    for (const Change& change : changes) {
+    std::vector<Change> changes = changes_of(scene);
+    for (std::size_t i = 0; i < changes.size(); ++i) {
       if (Clock::now() > end) return scene;
       Scene tried = scene;
-      change(tried);
-      const std::string now = to_toml(tried);
-      if (now == text || now.size() > text.size() || !fails(tried)) continue;
+      changes[i](tried);
+      const std::string before = to_toml(scene);
+      const std::string after = to_toml(tried);
+      if (after == before || after.size() > before.size() || !fails(tried)) continue;
       scene = std::move(tried);
-      text = now;
+      changes = changes_of(scene);  // the next ones stand where they stood, or a little earlier
       smaller = true;
-      break;
     }
   }
   return scene;
