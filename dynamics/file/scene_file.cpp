@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <utility>
 
 #include <dynamics/file/log_options.hpp>
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/file/text_file.hpp>
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
 
@@ -773,15 +772,7 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
 }
 
 SceneFile read_scene(const std::filesystem::path& path, const SolveRequest& request) {
-  constexpr std::uintmax_t largest = 64U << 20U;
-  std::error_code error;
-  const bool is_folder = std::filesystem::is_directory(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (!file || is_folder) throw InvalidInput(path.string() + ": cannot be read");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > largest) throw InvalidInput(path.string() + ": is larger than 64 MB");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return parse_scene(text, path, request);
+  return parse_scene(read_text(path, largest_scene_file), path, request);
 }
 
 }  // namespace kreisel

@@ -6,9 +6,6 @@
 #include <sstream>
 #include <string>
 
-#include <dynamics/file/atomic_file.hpp>
-#include <motor/error.hpp>
-
 #include "../shared/gnuplot.hpp"
 #include "request.hpp"
 
@@ -57,8 +54,7 @@ struct Panel {
 /// Lists up to this long get a line with a name for each site; longer ones are points over latitude.
 constexpr std::size_t most_names = 60;
 
-std::string script(const Request& request, const std::vector<Row>& rows, const std::string& output,
-                   bool svg) {
+std::string script(const Request& request, const std::vector<Row>& rows, bool svg) {
   const double arcsec = 180 * 3600 / std::acos(-1.0);
   const bool named = request.mode == Request::Mode::sites && rows.size() <= most_names;
   Panel deviation{"Deviation from the vertical", " arcsec", "2"};
@@ -83,13 +79,8 @@ std::string script(const Request& request, const std::vector<Row>& rows, const s
     if (panel->power == 0) panel->power = 1;  // all is 0
   }
   const std::size_t height = named ? 130 + 20 * rows.size() : 640;
-  if (svg) {
-    fmt::print(s, "set terminal svg size 800,{} font 'Helvetica,14' background 'white'\n", height);
-  } else {
-    fmt::print(s, "set terminal pngcairo size 800,{} font 'Helvetica,11'\n", height);
-  }
-  s << "set output " << quoted(output)
-    << "\nset termoption noenhanced\nset grid lc rgb '#dddddd'\nunset key\n"
+  s << gnuplot::terminal(svg, height)
+    << "set termoption noenhanced\nset grid lc rgb '#dddddd'\nunset key\n"
     << "set style line 1 lw 2 pt 7 ps 0.7 lc rgb '#0072b2'\n";
 
   if (named) {
@@ -125,9 +116,6 @@ std::string script(const Request& request, const std::vector<Row>& rows, const s
 
 void draw(const Request& request, const std::vector<Row>& rows) {
   gnuplot::require_installed();
-  kreisel::AtomicFile picture(*request.plot);
   const bool svg = request.plot->extension() == ".svg";
-  const std::string text = script(request, rows, picture.draft().string(), svg);
-  gnuplot::run(text);
-  picture.commit();
+  gnuplot::draw_picture(*request.plot, script(request, rows, svg));
 }

@@ -2,16 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <cctype>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 #include <string>
-#include <system_error>
-
-#include <dynamics/file/atomic_file.hpp>
-#include <motor/error.hpp>
 
 /// gnuplot, as the programs call it for --plot.
 namespace gnuplot {
@@ -22,58 +16,42 @@ inline constexpr const char* style =
     "set border 31 lc rgb '#555555'\n"
     "set tics tc rgb '#333333'\n";
 
-/// A string of gnuplot's, in which nothing has a meaning.
+/// A string of gnuplot's that shows the text as it is. Punctuation is written by its number: neither
+/// an apostrophe at the beginning nor a backquote, which runs a command, has a meaning then.
 inline std::string quoted(const std::string& text) {
-  std::string result = "'";
+  std::string result = "\"";
   for (const char c : text) {
-    if (c == '\'') result += '\'';
-    result += c == '\n' ? ' ' : c;
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80 || c == ' ' || std::isalnum(byte) != 0) {
+      result += c;
+    } else {
+      result += fmt::format("\\{:03o}", byte < 0x20 || byte == 0x7f ? ' ' : byte);
+    }
   }
-  return result + "'";
+  return result + '"';
 }
 
 /// Throws : kreisel::ComputationFailed where there is none on the PATH
-inline void require_installed() {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (std::filesystem::exists(std::filesystem::path(folder) / "gnuplot")) return;
-  }
-  throw kreisel::ComputationFailed("--plot: gnuplot is not installed");
-}
-
-/// Its own complaints are kept from standard error, where a failure is one line.
-///
-/// Throws : kreisel::ComputationFailed where it does not run to its end
-inline void run(const std::string& script) {
-  std::FILE* const pipe = popen("gnuplot 2>/dev/null", "w");
-  if (pipe == nullptr) throw kreisel::ComputationFailed("--plot: gnuplot does not start");
-  const bool sent = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-  if (pclose(pipe) != 0 || !sent) throw kreisel::ComputationFailed("--plot: gnuplot failed");
-}
+void require_installed();
 
 /// Makes the folder of --plot.
 ///
 /// Throws : kreisel::InvalidInput; and as require_installed()
-inline void open_folder(const std::filesystem::path& folder) {
-  require_installed();
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw kreisel::InvalidInput("--plot " + folder.string() + ": " + error.message());
-}
+void open_folder(const std::filesystem::path& folder);
 
-/// The picture `place`.svg and .png, 800 wide.
-inline void draw(const std::filesystem::path& place, std::size_t height,
-                 const std::string& script) {
-  for (const bool svg : {true, false}) {
-    kreisel::AtomicFile picture(place.string() + (svg ? ".svg" : ".png"));
-    const std::string terminal =
-        svg ? fmt::format("set terminal svg size 800,{} font 'Helvetica,14' background 'white'\n",
-                          height)
-            : fmt::format("set terminal pngcairo size 800,{} font 'Helvetica,11'\n", height);
-    run(fmt::format("{}set output {}\n{}", terminal, quoted(picture.draft().string()), script));
-    picture.commit();
-  }
-}
+/// Draws one picture by a script that sets a terminal and no output. gnuplot is given no name of a
+/// file: it writes to a pipe, and what comes out of it is put in its place whole.
+///
+/// Throws : kreisel::ComputationFailed where gnuplot does not run to its end, where the disk does not
+///          take the picture, and after a signal
+void draw_picture(const std::filesystem::path& file, const std::string& script);
+
+/// The pictures `place`.svg and .png, 800 wide.
+///
+/// Throws : as draw_picture()
+void draw(const std::filesystem::path& place, std::size_t height, const std::string& script);
+
+/// The first line of a script: the terminal for an SVG or a PNG, 800 wide.
+std::string terminal(bool svg, std::size_t height);
 
 }  // namespace gnuplot

@@ -7,12 +7,16 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
 
 #include "../shared/exit_status.hpp"
+#include "../shared/gnuplot.hpp"
+#include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
 #include "columns.hpp"
 #include "output.hpp"
@@ -24,12 +28,14 @@ namespace {
 
 using kreisel::RunStatus;
 
+constexpr double before_all = -std::numeric_limits<double>::infinity();
+
 /// Where a run begins, or goes on.
 struct Begin {
   kreisel::Task task;
   JointState state;
-  double latest = -std::numeric_limits<double>::infinity();  ///< of the rows that are there
-  std::vector<std::vector<double>> rows = {};                ///< those that are kept
+  double latest = before_all;                  ///< time of the rows that are there
+  std::vector<std::vector<double>> rows = {};  ///< those that are kept
 };
 
 Begin from_the_start(const kreisel::SceneFile& scene) {
@@ -43,39 +49,121 @@ Begin from_the_start(const kreisel::SceneFile& scene) {
   return begin;
 }
 
-/// Goes on with the rows of a file, from the bookmark if there is one of them.
+/// A run that begins with the state of a row.
+Begin from_row(const Model& model, const kreisel::SceneFile& scene,
+               const std::vector<double>& row) {
+  Begin begin = from_the_start(scene);
+  begin.latest = row.front();
+  begin.task.begin = begin.latest;
+  begin.state = state_of(model.tree(), row);
+  std::erase_if(begin.task.times, [&](double t) { return t <= begin.latest; });
+  if (begin.task.times.empty()) begin.task.times.push_back(scene.t_end);
+  return begin;
+}
+
+/// The rows and the checkpoint of a run, both kept while it is computed.
+struct Record {
+  Record(const Request& request, const std::string& scene_text, const kreisel::SceneFile& scene,
+         const Model& model)
+      : rows(*request.csv, columns(model.tree(), scene.reactions)),
+        resume(*request.csv, identity(scene_text, scene)) {}
+
+  RowFile rows;
+  ResumeFile resume;
+  std::optional<std::chrono::steady_clock::time_point> latest = {};  ///< checkpoint
+
+  /// Leaves the checkpoint of a run that begins behind these rows, or none of one from the start.
+  void begin_behind(double t, const RowFile::Mark& end) const {
+    if (t > 0) {
+      resume.write({t, t, end, {}});
+    } else {
+      resume.remove();
+    }
+  }
+
+  /// The rows go first: a run that is killed between finds a checkpoint of rows that are not there,
+  /// and begins again too.
+  void begin_again(double begin) {
+    rows.begin_again();
+    if (const auto end = rows.end()) begin_behind(begin, *end);
+    latest = {};
+  }
+
+  /// Writes a checkpoint if the one before is older than a fifth of a second.
+  template <class Take>
+  void offer(double begin, double t, const Take& take) {
+    const auto end = rows.end();
+    const auto now = std::chrono::steady_clock::now();
+    if (!end || (latest && now - *latest < std::chrono::milliseconds(200))) return;
+    latest = now;
+    resume.write({begin, t, *end, take()});
+  }
+};
+
+void refuse_rows(const RowFile& file, const std::string& why) {
+  throw kreisel::InvalidInput(file.place().string() + ": --resume: " + why);
+}
+
+/// The row of that time; nothing where there is none.
+const RowFile::Row* row_at(const std::vector<RowFile::Row>& rows, double t) {
+  const auto found = std::find_if(rows.begin(), rows.end(),
+                                  [t](const auto& row) { return row.values.front() == t; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+/// Goes on where a checkpoint was taken; nothing where the rows are not those that it stands for.
+std::optional<Begin> from_checkpoint(const Model& model, const kreisel::SceneFile& scene,
+                                     const std::vector<RowFile::Row>& rows, RowFile& file,
+                                     Checkpoint& checkpoint) {
+  const RowFile::Row* const last = row_at(rows, checkpoint.t);
+  const RowFile::Row* const first = checkpoint.begin > 0 ? row_at(rows, checkpoint.begin) : nullptr;
+  if (last == nullptr || last->end != checkpoint.row) return std::nullopt;
+  if (checkpoint.begin > 0 && first == nullptr) return std::nullopt;
+  Begin begin = first != nullptr ? from_row(model, scene, first->values) : from_the_start(scene);
+  begin.latest = checkpoint.t;
+  begin.task.bookmark = std::move(checkpoint.numbers);
+  file.go_on(first != nullptr ? std::optional(first->end) : std::nullopt, last->end);
+  fmt::print(stderr, "simulate: going on from t = {:.17g} s\n", begin.latest);
+  return begin;
+}
+
+/// Goes on with the rows of a file, from the checkpoint if there is one of them.
 ///
 /// Throws : kreisel::InvalidInput where the file's rows are not of this scene
-Begin from_rows(const Model& model, RowFile& file, const ResumeFile& resume,
-                const kreisel::SceneFile& scene) {
+Begin from_rows(const Model& model, Record& record, const kreisel::SceneFile& scene) {
+  const std::vector<RowFile::Row> rows = record.rows.read_rows();
   Begin begin = from_the_start(scene);
-  auto rows = file.keep_rows();
   if (rows.empty()) return begin;
-  if (rows.front().front() == 0 && rows.front() != row(model, 0, begin.state, scene.reactions)) {
-    throw kreisel::InvalidInput("--resume: the rows begin with another state than the scene");
+  const std::vector<double>& start = rows.front().values;
+  if (start.front() == 0 && start != row(model, 0, begin.state, scene.reactions)) {
+    refuse_rows(record.rows, "the rows begin with another state than the scene");
   }
-  if (rows.back().front() > scene.t_end) {
-    throw kreisel::InvalidInput("--resume: the rows go on after t_end");
+  const RowFile::Row& last = rows.back();
+  if (last.values.front() > scene.t_end) refuse_rows(record.rows, "the rows go on after t_end");
+  std::string why_not;
+  std::optional<Checkpoint> checkpoint = record.resume.read(why_not);
+  std::optional<Begin> found;
+  if (checkpoint) {
+    found = from_checkpoint(model, scene, rows, record.rows, *checkpoint);
+    why_not = "does not belong to these rows, which were changed since";
   }
-  auto bookmark = resume.read();
-  if (bookmark && file.go_on_behind(bookmark->bytes)) {
-    std::erase_if(rows, [&](const auto& row) { return row.front() > bookmark->t; });
-    begin.task.bookmark = std::move(bookmark->numbers);
-    begin.latest = bookmark->t;
-    fmt::print(stderr, "simulate: going on from t = {:.17g} s\n", begin.latest);
+  if (found) {
+    begin = *std::move(found);
+  } else if (last.values.front() <= 0) {
+    record.rows.go_on(std::nullopt, std::nullopt);
+    fmt::print(stderr, "simulate: beginning again, for there is no row but the start\n");
   } else {
-    begin.latest = rows.back().front();
-    begin.task.begin = begin.latest;
-    begin.state = state_of(model.tree(), rows.back());
-    std::erase_if(begin.task.times, [&](double t) { return t <= begin.latest; });
-    if (begin.task.times.empty()) begin.task.times.push_back(scene.t_end);
+    begin = from_row(model, scene, last.values);
+    record.rows.go_on(last.end, last.end);
+    record.begin_behind(begin.latest, last.end);
     fmt::print(stderr,
-               "simulate: going on from t = {:.17g} s with new steps, for {}.resume is missing or "
-               "of another run; how what the rows are off by grows from there is not in the error "
-               "estimate\n",
-               begin.latest, file.place().string());
+               "simulate: going on from t = {:.17g} s with new steps, for {} {}; how the error of "
+               "the rows grows from there is not in the error estimate\n",
+               last.values.front(), record.resume.place().string(), why_not);
   }
-  begin.rows = std::move(rows);
+  for (const RowFile::Row& row : rows) {
+    if (row.values.front() <= begin.latest) begin.rows.push_back(row.values);
+  }
   return begin;
 }
 
@@ -95,102 +183,104 @@ void put_before(kreisel::Trajectory<JointState>& run, const Model& model,
   run.errors.insert(run.errors.begin(), times.size(), unknown);
 }
 
-/// Takes down where the run is, every fifth of a second.
-class Bookmarks {
- public:
-  explicit Bookmarks(const ResumeFile& file) : file_(file) {}
-
-  void begin_again() { latest_ = {}; }
-
-  template <class Take>
-  void offer(double t, long long bytes, const Take& take) {
-    const auto now = std::chrono::steady_clock::now();
-    if (latest_ && now - *latest_ < std::chrono::milliseconds(200)) return;
-    latest_ = now;
-    file_.write({t, bytes, take()});
+/// Computes the run and writes its rows. After a signal it ends early, and `latest` is the time that
+/// was reached.
+kreisel::Trajectory<JointState> compute(const kreisel::SceneFile& scene, const Model& model,
+                                        Begin& begin, std::optional<Record>& record,
+                                        double& latest) {
+  kreisel::Task& task = begin.task;
+  const bool end_is_a_row = !scene.output_times.empty() && scene.output_times.back() == scene.t_end;
+  if (record) {
+    task.offer_bookmark = [&](const auto& take) { record->offer(task.begin, latest, take); };
   }
+  Progress progress;
+  const auto listener = [&](double t, const JointState& state) {
+    if (record && t <= latest) record->begin_again(task.begin);
+    latest = t;
+    const bool is_there = task.begin > 0 && t == task.begin;  // the end of a run that was complete
+    if (record && !is_there && (end_is_a_row || t < scene.t_end)) {
+      record->rows.write(row(model, t, state, scene.reactions));
+    }
+    progress.report(t / scene.t_end,
+                    [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
+    return signals::caught() == 0;
+  };
+  try {
+    auto run = model.solve(task, begin.state, listener, [] { return signals::caught() != 0; });
+    if (record) record->rows.close();
+    return run;
+  } catch (const std::exception&) {
+    if (signals::caught() == 0) throw;
+    kreisel::Trajectory<JointState> none;  // the signal is the reason
+    none.report.status = RunStatus::cancelled;
+    return none;
+  }
+}
 
- private:
-  const ResumeFile& file_;
-  std::optional<std::chrono::steady_clock::time_point> latest_;
-};
+void print(const Result& result, bool as_json) {
+  if (as_json) {
+    print_json(result);
+  } else {
+    print_summary(result);
+  }
+  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+}
+
+/// What is read, so that nothing of it is written to.
+std::vector<std::filesystem::path> inputs(const Request& request, const kreisel::SceneFile& scene) {
+  std::vector<std::filesystem::path> files{request.scene};
+  for (const auto& link : scene.guide) {
+    const auto* const table = std::get_if<kreisel::scene_guide::Table>(&link);
+    if (table != nullptr) files.push_back(table->file);
+  }
+  return files;
+}
 
 int run(const Request& request) {
-  kreisel::SceneFile scene = kreisel::read_scene(request.scene, request.solve);
+  const std::string text = kreisel::read_text(request.scene, kreisel::largest_scene_file);
+  kreisel::SceneFile scene = kreisel::parse_scene(text, request.scene, request.solve);
   scene.reactions = scene.reactions || request.reactions;
   scene.terms = scene.terms || request.terms;
   if (request.resume && scene.model != kreisel::SceneModel::exact) {
     throw kreisel::InvalidInput("--resume: an approximation is computed as a whole");
   }
+  if (request.plot) gnuplot::require_installed();
   const std::unique_ptr<Model> model = make_model(scene);
-  std::optional<RowFile> file;
-  std::optional<ResumeFile> resume;
-  std::optional<Bookmarks> bookmarks;
+  std::optional<Record> record;
   if (request.csv) {
-    file.emplace(*request.csv, columns(model->tree(), scene.reactions));
-    resume.emplace(*request.csv, identity(request.scene, scene));
-    bookmarks.emplace(*resume);
+    outputs::refuse_input("--csv", *request.csv, inputs(request, scene));
+    outputs::refuse_input("--csv", request.csv->string() + ".resume", inputs(request, scene));
+    record.emplace(request, text, scene, *model);
+    outputs::leave_standard_output_to(*request.csv);
   }
-  Begin begin = request.resume ? from_rows(*model, *file, *resume, scene) : from_the_start(scene);
-  kreisel::Task& task = begin.task;
-  const bool end_is_a_row = !scene.output_times.empty() && scene.output_times.back() == scene.t_end;
+  Begin begin = request.resume ? from_rows(*model, *record, scene) : from_the_start(scene);
   double latest = begin.latest;
-  if (bookmarks) {
-    task.offer_bookmark = [&](const auto& take) {
-      const auto bytes = file->bytes();
-      if (bytes) bookmarks->offer(latest, *bytes, take);
-    };
-  }
-  kreisel::Trajectory<JointState> trajectory;
-  {
-    Progress progress;
-    const auto listener = [&](double t, const JointState& state) {
-      if (file && t <= latest) {
-        file->begin_again();
-        bookmarks->begin_again();
-      }
-      latest = t;
-      const bool is_there =
-          task.begin > 0 && t == task.begin;  // the end of a run that was complete
-      if (file && !is_there && (end_is_a_row || t < scene.t_end)) {
-        file->write(row(*model, t, state, scene.reactions));
-      }
-      progress.report(t / scene.t_end,
-                      [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
-      return signals::caught() == 0;
-    };
-    trajectory = model->solve(task, begin.state, listener, [] { return signals::caught() != 0; });
-  }
-  if (file) file->close();
+  kreisel::Trajectory<JointState> trajectory = compute(scene, *model, begin, record, latest);
   const kreisel::RunReport& report = trajectory.report;
-  const double reached =
-      trajectory.times.empty() ? std::max(0.0, begin.latest) : trajectory.times.back();
-  if (signals::caught() != 0 && !(reached == scene.t_end && report.status == RunStatus::complete)) {
+  const double reached = trajectory.times.empty() ? std::max(0.0, latest) : trajectory.times.back();
+  const bool complete = reached == scene.t_end && report.status == RunStatus::complete;
+  if (signals::caught() != 0 && !complete) {
     fmt::print(stderr, "simulate: interrupted after t = {:.9g} of {:.9g} s{}\n", reached,
                scene.t_end,
-               file ? "; rows up to there are kept, and --resume goes on with them" : "");
+               record ? "; rows up to there are kept, and --resume goes on with them" : "");
     return exit_status::of_signal();
   }
   if (report.status == RunStatus::failed) {
     throw kreisel::ComputationFailed(
         fmt::format("failed after t = {:.9g} s: {}", reached, report.message));
   }
-  if (resume) resume->remove();
   put_before(trajectory, *model, begin.rows);
   const Result result{scene, *model, trajectory, scene.reactions, scene.terms};
   require_finite(result);
+  print(result, request.json);
   if (request.plot) draw(result, *request.plot);
-  if (request.json) {
-    print_json(result);
-  } else {
-    print_summary(result);
-  }
-  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  if (record) record->resume.remove();
   if (!report.tolerance_kept) {
     fmt::print(stderr,
                "simulate: the tolerance {:.1e} was not reached, the error is about {:.1e}\n",
                report.tolerance, report.error_estimate);
   }
+  if (signals::caught() != 0) return exit_status::of_signal();
   return report.tolerance_kept ? exit_status::complete : exit_status::tolerance_missed;
 }
 
@@ -200,6 +290,6 @@ int main(int argc, char** argv) {
   signals::watch();
   return exit_status::of("simulate", [&] {
     const std::optional<Request> request = read_request(argc, argv);
-    return request ? run(*request) : 0;
+    return request ? run(*request) : exit_status::complete;
   });
 }

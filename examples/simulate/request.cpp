@@ -67,9 +67,10 @@ std::optional<Request> read_request(int argc, char** argv) {
       ->type_name("FILE")
       ->group("Output");
   app.add_flag("--resume", request.resume,
-               "go on with the rows of the --csv file. From the bookmark that a run keeps beside "
+               "go on with the rows of the --csv file. From the checkpoint that a run keeps beside "
                "it in FILE.resume until it is complete: with the same result to the last bit as "
-               "if it had not stopped. Where that is missing or of another run: from the last row "
+               "if it had not stopped. Where that is missing, damaged or of another run: from the "
+               "last row "
                "with new steps, so that the rest agrees to the tolerance")
       ->group("Output");
   app.add_option("--plot", plot,

@@ -1,74 +1,105 @@
 #include "resume_file.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ostream.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <iterator>
+#include <random>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <variant>
 
 #include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
-
-#include "../shared/text_of.hpp"
 
 namespace {
 
-/// Fowler, Noll and Vo's hash, FNV-1a.
-class Hash {
- public:
-  void add(const std::string& text) {
-    for (const char c : text) {
-      value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211U;
-    }
-  }
-  void add(double x) { add(fmt::format("{:a};", x)); }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
+constexpr std::size_t largest = std::size_t(1) << 30U;
 
- private:
-  std::uint64_t value_ = 14695981039346656037U;
-};
+/// The last line is the hash of all lines before it.
+std::string with_sum(const std::string& text) {
+  Hash hash;
+  hash.add(text);
+  return fmt::format("{}sum {}\n", text, hash.value());
+}
+
+/// What stands before the last line; nothing where that is not its hash.
+std::optional<std::string> without_sum(const std::string& text) {
+  const std::size_t sum = text.rfind("sum ");
+  if (sum == std::string::npos || with_sum(text.substr(0, sum)) != text) return std::nullopt;
+  return text.substr(0, sum);
+}
+
+/// Of a table that can be read once only, as from a pipe, a number that does not come again.
+void add_table(Hash& hash, const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) {
+    hash.add(kreisel::read_text(file, largest));
+  } else {
+    hash.add(static_cast<double>(std::random_device()()));
+  }
+}
 
 }  // namespace
 
-std::uint64_t identity(const std::filesystem::path& scene_file, const kreisel::SceneFile& scene) {
+std::uint64_t identity(std::string_view scene_text, const kreisel::SceneFile& scene) {
   Hash hash;
-  hash.add(text_of(scene_file));
+  hash.add(std::string_view(KREISEL_VERSION));
+  hash.add(scene_text);
   for (const auto& link : scene.guide) {
     const auto* const table = std::get_if<kreisel::scene_guide::Table>(&link);
-    if (table != nullptr) hash.add(text_of(table->file));
+    if (table != nullptr) add_table(hash, table->file);
   }
   for (const double x : {scene.t_end, scene.tolerance, static_cast<double>(scene.method),
                          static_cast<double>(scene.reactions)}) {
     hash.add(x);
   }
+  for (const double t : scene.output_times) hash.add(t);
   return hash.value();
 }
 
 ResumeFile::ResumeFile(const std::filesystem::path& csv, std::uint64_t run)
     : place_(csv.string() + ".resume"), run_(run) {}
 
-std::optional<ResumeFile::Bookmark> ResumeFile::read() const {
-  std::ifstream file(place_);
+std::optional<Checkpoint> ResumeFile::read(std::string& why_not) const {
+  std::error_code error;
+  why_not = "is missing";
+  if (!std::filesystem::is_regular_file(place_, error)) return std::nullopt;
+  why_not = "is damaged";
+  const auto text = without_sum(kreisel::read_text(place_, largest));
+  if (!text) return std::nullopt;
+  std::istringstream words(*text);
   std::string word;
+  std::string version;
+  Checkpoint checkpoint;
+  std::uint64_t rows = 0;
   std::uint64_t run = 0;
-  Bookmark bookmark;
   std::size_t count = 0;
-  file >> word >> run >> bookmark.t >> bookmark.bytes >> count;
-  if (!file || word != "kreisel" || run != run_) return std::nullopt;
-  while (file >> word) bookmark.numbers.push_back(std::strtod(word.c_str(), nullptr));
-  if (bookmark.numbers.size() != count) return std::nullopt;
-  return bookmark;
+  words >> word >> version >> checkpoint.t >> checkpoint.begin >> checkpoint.row.bytes >> rows >>
+      run >> count;
+  if (!words || word != "kreisel") return std::nullopt;
+  while (words >> word) checkpoint.numbers.push_back(std::strtod(word.c_str(), nullptr));
+  if (checkpoint.numbers.size() != count) return std::nullopt;
+  checkpoint.row.hash = Hash(rows);
+  why_not = version == KREISEL_VERSION
+                ? "is of another run: scene, table, t_end, tolerance, method, output times or "
+                  "reactions differ"
+                : "is of version " + version + " of the program";
+  if (run != run_) return std::nullopt;
+  why_not.clear();
+  return checkpoint;
 }
 
-void ResumeFile::write(const Bookmark& bookmark) const {
+void ResumeFile::write(const Checkpoint& checkpoint) const {
+  const auto& [begin, t, row, numbers] = checkpoint;
+  std::string text = fmt::format("kreisel {} {:.17g} {:.17g} {} {} {} {}\n", KREISEL_VERSION, t,
+                                 begin, row.bytes, row.hash.value(), run_, numbers.size());
+  for (const double x : numbers) fmt::format_to(std::back_inserter(text), "{:a}\n", x);
   try {
     kreisel::AtomicFile file(place_);
-    fmt::print(file.stream(), "kreisel {} {:.17g} {} {}\n", run_, bookmark.t, bookmark.bytes,
-               bookmark.numbers.size());
-    for (const double x : bookmark.numbers) fmt::print(file.stream(), "{:a}\n", x);
+    file.stream() << with_sum(text);
     file.commit();
   } catch (const kreisel::Error&) {
     // As long as the rows can be written the run has no reason to end.

@@ -3,31 +3,38 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <dynamics/file/scene_file.hpp>
 
-/// What tells one run from another: the texts of the scene and of its tables, what is asked of them
-/// and which columns are written.
-[[nodiscard]] std::uint64_t identity(const std::filesystem::path& scene_file,
-                                     const kreisel::SceneFile& scene);
+#include "row_file.hpp"
 
-/// A bookmark of a run, in a file beside its CSV file: FILE.resume.
+/// A number that differs between runs whose steps differ: it depends on the version of the program,
+/// the texts of the scene and of its tables, end, tolerance, method, output times and columns.
+[[nodiscard]] std::uint64_t identity(std::string_view scene_text, const kreisel::SceneFile& scene);
+
+/// A place in a run from which it goes on to the same last bit.
+struct Checkpoint {
+  double begin = 0;   ///< of the run: 0, or the time of the row that it was begun from
+  double t = 0;       ///< of the last row
+  RowFile::Mark row;  ///< the end of that row
+  std::vector<double> numbers;
+};
+
+/// The checkpoint of a run, in a file beside its CSV file: FILE.resume.
 class ResumeFile {
  public:
-  struct Bookmark {
-    double t = 0;
-    long long bytes = 0;  ///< of the CSV file, up to the row of t
-    std::vector<double> numbers;
-  };
-
   ResumeFile(const std::filesystem::path& csv, std::uint64_t run);
 
-  /// Nothing where there is none of this run.
-  [[nodiscard]] std::optional<Bookmark> read() const;
+  [[nodiscard]] const std::filesystem::path& place() const { return place_; }
+
+  /// Nothing where there is none of this run that is whole; `why_not` says then why.
+  [[nodiscard]] std::optional<Checkpoint> read(std::string& why_not) const;
 
   /// Where the file cannot be written the one before stays, which serves as well.
-  void write(const Bookmark& bookmark) const;
+  void write(const Checkpoint& checkpoint) const;
 
   void remove() const;
 

@@ -3,13 +3,31 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-/// A CSV file that grows row by row and holds whole rows whenever one looks at it: when the program
-/// is killed at most the row being written is cut off, when the disk is full the last whole row is
-/// the last of the file. What is no file (a pipe, a device) gets all rows at once in the end.
+#include "../shared/hash.hpp"
+
+/// A CSV file that grows row by row and holds whole rows at any time: when the program is killed at
+/// most the row being written is cut off, when the disk is full the last whole row is the last of
+/// the file. A pipe, a device or standard output, called "-", gets all rows at once in the end.
 class RowFile {
  public:
+  /// The end of a row, or of the head, in the file.
+  struct Mark {
+    long long bytes = 0;  ///< up to there
+    Hash hash;            ///< of these
+
+    void advance(std::string_view text);
+
+    friend bool operator==(const Mark&, const Mark&) = default;
+  };
+
+  struct Row {
+    std::vector<double> values;
+    Mark end;
+  };
+
   /// Nothing is opened or written before the first row.
   RowFile(std::filesystem::path place, std::vector<std::string> columns);
   RowFile(const RowFile&) = delete;
@@ -18,21 +36,21 @@ class RowFile {
 
   [[nodiscard]] const std::filesystem::path& place() const { return place_; }
 
-  /// Keeps the rows that are there, but for a last one cut off, and returns them.
+  /// The rows that are there, but for a last one cut off.
   ///
-  /// Throws : kreisel::InvalidInput where the file cannot be read, has other columns, or times that
-  ///          do not increase
-  std::vector<std::vector<double>> keep_rows();
+  /// Throws : kreisel::InvalidInput where the file cannot be read, is in use, has other columns, a
+  ///          damaged row, or times that do not increase
+  std::vector<Row> read_rows();
 
-  /// Of the rows that are kept only the first so many bytes, and those not for good: begin_again()
-  /// takes them back. Says whether there are so many.
-  [[nodiscard]] bool go_on_behind(long long bytes);
+  /// Has rows written behind `begin`; begin_again() goes back to `kept`. Without a mark: behind the
+  /// head.
+  void go_on(const std::optional<Mark>& kept, const std::optional<Mark>& begin);
 
-  /// Of head and rows that have been written; nothing where the file is none that grows.
-  [[nodiscard]] std::optional<long long> bytes() const;
+  /// The end of the rows that have been written; nothing where the file is none that grows.
+  [[nodiscard]] std::optional<Mark> end() const;
 
-  /// Throws : kreisel::InvalidInput where the file cannot be opened, kreisel::ComputationFailed
-  ///          where it does not take the row
+  /// Throws : kreisel::InvalidInput where the file cannot be opened or is in use,
+  ///          kreisel::ComputationFailed where a value is not finite or the file does not take it
   void write(const std::vector<double>& row);
 
   /// Takes back all rows but those kept.
@@ -43,17 +61,20 @@ class RowFile {
 
  private:
   void open();
+  void lock() const;
   void put(const std::string& text);
+  void write_held();
+  Row parsed(std::string_view line, std::size_t number) const;
+  [[noreturn]] void refuse(const std::string& why) const;
   [[noreturn]] void fail(const std::string& why) const;
 
   std::filesystem::path place_;
   std::vector<std::string> columns_;
+  std::string head_;
   std::string held_;  ///< where all is written in the end
   int file_ = -1;
-  bool is_regular_ = true;
-  long long head_ = 0;     ///< bytes of the head that was found
-  long long begin_ = 0;    ///< bytes of head and rows behind which the first one is written
-  long long kept_ = 0;     ///< of these the bytes that stay
-  long long written_ = 0;  ///< bytes of whole rows
-  bool keeps_ = false;
+  bool is_ready_ = false;    ///< to be written to
+  bool is_regular_ = false;  ///< and grows row by row
+  Mark kept_;                ///< these rows stay
+  Mark written_;             ///< whole rows; before the first one those to go on behind
 };

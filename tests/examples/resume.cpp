@@ -1,0 +1,266 @@
+// simulate --resume: rows and report of a run that was stopped, against those of one that was not.
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include <support/json.hpp>
+#include <support/program.hpp>
+
+using namespace kreisel;
+using nlohmann::json;
+using test::Outcome;
+using test::Scratch;
+
+namespace {
+
+const std::string simulate = KREISEL_SIMULATE;
+
+std::string two_rods(const std::string& method, const std::string& t_end) {
+  const std::string rod =
+      "joint = { kind = \"revolute\", axis = [0, 1, 0], position = [0, 0, PLACE] }\n"
+      "mass = 1\ncentre = [0, 0, -1]\ninertia = [0.1, 0.1, 0.1]\n";
+  const auto at = [&rod](const char* place) {
+    std::string text = rod;
+    return text.replace(text.find("PLACE"), 5, place);
+  };
+  return "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[[body]]\nname = \"upper\"\n" +
+         at("0") + "initial = { angle = 0.5 }\n[[body]]\nname = \"lower\"\nparent = \"upper\"\n" +
+         at("-1") + "[solve]\nt_end = " + t_end + "\ntolerance = 1e-9\noutput_step = 0.05\n" +
+         "method = \"" + method + "\"\n";
+}
+
+/// A scene, the run of it that was not stopped, and a CSV file for one that is.
+struct Case {
+  Case(const std::string& method, const std::string& t_end)
+      : scene(folder.write("scene.toml", two_rods(method, t_end)).string()),
+        csv((folder.path() / "part.csv").string()) {
+    const Outcome outcome = test::run(simulate + " " + scene + " --json --csv " +
+                                      (folder.path() / "whole.csv").string());
+    BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+    report = test::parsed(outcome.out);
+    rows = folder.read("whole.csv");
+  }
+
+  [[nodiscard]] Outcome run(const std::string& options, const std::string& before = "") const {
+    return test::run(before + " " + simulate + " " + scene + " --json --csv " + csv + " " +
+                     options);
+  }
+
+  void check(const Outcome& outcome) const {
+    BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+    BOOST_TEST((folder.read("part.csv") == rows));
+    const json found = test::parsed(outcome.out);
+    for (const char* const key : {"final", "steps", "rejected", "evaluations", "all_evaluations",
+                                  "error_estimate", "invariants", "method"}) {
+      BOOST_TEST(found.at(key) == report.at(key), key);
+    }
+    BOOST_TEST(!std::filesystem::exists(csv + ".resume"));
+  }
+
+  /// Rows up to somewhere in the middle, with a checkpoint that is not of the first row.
+  void stop_half_way() const {
+    for (double seconds = 0.3;; seconds *= 1.3) {
+      std::filesystem::remove(csv);
+      std::filesystem::remove(csv + ".resume");
+      (void)run("", "timeout --foreground -s KILL " + std::to_string(seconds));
+      if (folder.read("part.csv").size() < rows.size() && checkpoint_bytes() > 1000) return;
+      BOOST_TEST_REQUIRE(seconds < 100);
+    }
+  }
+
+  /// Bytes of the rows that the checkpoint stands for; 0 where there is none.
+  [[nodiscard]] std::size_t checkpoint_bytes() const {
+    std::istringstream words(folder.read("part.csv.resume"));
+    std::string word;
+    double t = 0;
+    double begin = 0;
+    std::size_t bytes = 0;
+    words >> word >> word >> t >> begin >> bytes;
+    return t > 0 ? bytes : 0;
+  }
+
+  /// What a run says when it goes on; it is not waited for.
+  [[nodiscard]] std::string first_words(const std::string& options = "") const {
+    for (double seconds = 0.1; seconds < 100; seconds *= 2) {
+      const Outcome outcome =
+          run("--resume " + options, "timeout --foreground -s KILL " + std::to_string(seconds));
+      if (!outcome.err.empty()) return outcome.err;
+    }
+    return "";
+  }
+
+  Scratch folder;
+  std::string scene;
+  std::string csv;
+  json report;
+  std::string rows;
+};
+
+bool is_told(const std::string& words) {
+  return words.find("with new steps") != std::string::npos ||
+         words.find("is damaged") != std::string::npos ||
+         words.find("does not increase") != std::string::npos ||
+         words.find("another state than the scene") != std::string::npos ||
+         words.find("are not those of this scene") != std::string::npos;
+}
+
+std::string line(const std::string& text, std::size_t number) {
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < number; ++i) begin = text.find('\n', begin) + 1;
+  return text.substr(begin, text.find('\n', begin) + 1 - begin);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(resuming)
+
+// 300 kills in all. A run that is killed too early to come on gets more time.
+BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_after_300_kills) {
+  std::mt19937 random(1);
+  for (const auto& [method, t_end] : {std::pair("verner98", "60"), std::pair("taylor", "200"),
+                                      std::pair("gauss16", "30"), std::pair("radau13", "30")}) {
+    const Case c(method, t_end);
+    int kills = 0;
+    double longest = 0.1;
+    for (int runs = 0; kills < 75; ++runs) {
+      BOOST_TEST_REQUIRE(runs < 75);
+      std::string resume;
+      Outcome outcome{137, "", ""};
+      while (outcome.status == 137) {
+        const double drawn = std::uniform_real_distribution(0.01, longest)(random);
+        const double seconds = kills < 75 ? drawn : 600;
+        outcome = c.run(resume, "timeout --foreground -s KILL " + std::to_string(seconds));
+        if (outcome.status != 137) break;
+        if (!outcome.out.empty()) break;  // it was complete
+        BOOST_TEST(outcome.err.find("new steps") == std::string::npos, outcome.err);
+        if (++kills % 50 == 0) longest *= 1.5;
+        resume = std::filesystem::exists(c.csv) ? "--resume" : "";
+      }
+      // 124: it ended by itself when its time was over
+      if (outcome.status != 137 && outcome.status != 124) c.check(outcome);
+      std::filesystem::remove(c.csv);
+      std::filesystem::remove(c.csv + ".resume");
+    }
+    BOOST_TEST_MESSAGE(method << ": " << kills << " kills");
+  }
+}
+
+// The checkpoint of a run with new steps is one of the run that began with that row.
+BOOST_AUTO_TEST_CASE(goes_on_after_new_steps) {
+  const Case c("verner98", "60");
+  const std::string begin = c.rows.substr(0, c.rows.find("\n0.25,") + 1);
+  const auto begin_anew = [&] {
+    c.folder.write("part.csv", begin);
+    std::filesystem::remove(c.csv + ".resume");
+  };
+  begin_anew();
+  const Outcome whole = c.run("--resume");
+  BOOST_REQUIRE_MESSAGE(whole.status == 0, whole.err);
+  const std::string wanted = c.folder.read("part.csv");
+  BOOST_TEST(std::count(wanted.begin(), wanted.end(), '\n') ==
+             std::count(c.rows.begin(), c.rows.end(), '\n'));
+  int kills = 0;
+  for (double seconds = 0.05; kills < 4; seconds *= 1.1) {
+    BOOST_TEST_REQUIRE(seconds < 60);
+    begin_anew();
+    Outcome outcome{137, "", ""};
+    while (outcome.status == 137 && kills < 40) {
+      outcome = c.run("--resume", "timeout --foreground -s KILL " + std::to_string(seconds));
+      if (outcome.status == 137) ++kills;
+    }
+    if (outcome.status == 137) outcome = c.run("--resume", "timeout 60");
+    BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+    BOOST_TEST((c.folder.read("part.csv") == wanted));
+    const json found = test::parsed(outcome.out);
+    BOOST_TEST(found.at("final") == test::parsed(whole.out).at("final"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(does_not_lose_the_row_of_the_start) {
+  const Case c("taylor", "2");
+  c.folder.write("part.csv", line(c.rows, 0) + line(c.rows, 1));
+  c.check(c.run("--resume"));
+  c.folder.write("part.csv", line(c.rows, 0));
+  c.check(c.run("--resume"));
+}
+
+// Bytes of the first line, and some of the numbers behind it.
+BOOST_AUTO_TEST_CASE(finds_damage_of_the_checkpoint) {
+  const Case c("verner98", "600");
+  c.stop_half_way();
+  const std::string rows = c.folder.read("part.csv");
+  const std::string whole = c.folder.read("part.csv.resume");
+  const auto words_with = [&](const std::string& checkpoint) {
+    c.folder.write("part.csv", rows);
+    c.folder.write("part.csv.resume", checkpoint);
+    return c.first_words();
+  };
+  const std::size_t step = std::max<std::size_t>(1, whole.size() / 20);
+  for (std::size_t at = 0; at < whole.size(); at += at < 60 ? 5 : step) {
+    std::string damaged = whole;
+    damaged[at] = damaged[at] == '1' ? '2' : '1';
+    const std::string words = words_with(damaged);
+    BOOST_TEST(is_told(words), at << ": " << words);
+  }
+  for (const std::size_t left : {std::size_t(0), whole.size() / 2, whole.size() - 1}) {
+    BOOST_TEST(is_told(words_with(whole.substr(0, left))), left);
+  }
+  BOOST_TEST(!is_told(words_with(whole)));
+  c.check(c.run("--resume"));
+}
+
+BOOST_AUTO_TEST_CASE(finds_rows_that_were_changed) {
+  const Case c("verner98", "600");
+  c.stop_half_way();
+  const std::string rows = c.folder.read("part.csv");
+  const std::string checkpoint = c.folder.read("part.csv.resume");
+  const std::size_t last = c.checkpoint_bytes();
+  for (std::size_t at = 0; at < last; at += 1 + last / 40) {
+    std::string changed = rows;
+    changed[at] = changed[at] == '1' ? '2' : '1';
+    c.folder.write("part.csv", changed);
+    c.folder.write("part.csv.resume", checkpoint);
+    const std::string words = c.first_words();
+    BOOST_TEST(is_told(words), at << ": " << words);
+  }
+}
+
+// What the steps depend on is part of what tells one run from another.
+BOOST_AUTO_TEST_CASE(takes_no_checkpoint_of_another_run) {
+  const Case c("verner98", "600");
+  c.stop_half_way();
+  const std::string rows = c.folder.read("part.csv");
+  const std::string checkpoint = c.folder.read("part.csv.resume");
+  const auto told = [&](const std::string& options) {
+    c.folder.write("part.csv", rows);
+    c.folder.write("part.csv.resume", checkpoint);
+    const std::string words = c.first_words(options);
+    BOOST_TEST(words.find("is of another run") != std::string::npos, options << ": " << words);
+  };
+  told("--tolerance 1e-8");
+  told("--t-end 601");
+  told("--method taylor");
+  std::string other = two_rods("verner98", "600");
+  other.replace(other.find("output_step = 0.05"), 18, "output_step = 0.10");
+  c.folder.write("scene.toml", other);
+  told("");
+}
+
+BOOST_AUTO_TEST_CASE(two_runs_do_not_mix_their_rows) {
+  const Case c("verner98", "600");
+  const Outcome outcome =
+      test::run("( " + simulate + " " + c.scene + " --csv " + c.csv + " & pid=$!; until test -s " +
+                c.csv + "; do sleep 0.02; done; " + simulate + " " + c.scene + " --csv " + c.csv +
+                "; status=$?; kill -KILL $pid; exit $status )");
+  BOOST_TEST(outcome.status == 2);
+  BOOST_TEST(outcome.err.find("another process is writing this file") != std::string::npos,
+             outcome.err);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
