@@ -345,16 +345,6 @@ class LayoutSearch {
   std::size_t header_line_ = 0;
 };
 
-/// True if a separator gives the row enough fields for all columns that are read.
-bool could_separate(char separator, const std::vector<HeadLine>& lines, const LogLayout& layout) {
-  std::vector<std::string_view> fields;
-  return std::any_of(lines.begin(), lines.end(), [&](const HeadLine& line) {
-    return line.number == layout.first_row && split_fields(line.text, separator, fields) &&
-           std::all_of(layout.columns.begin(), layout.columns.end(),
-                       [&](const PlacedColumn& c) { return c.position < fields.size(); });
-  });
-}
-
 }  // namespace
 
 std::string why_no_number(std::string_view field, const std::string& column,
@@ -384,16 +374,12 @@ LogLayout find_layout(const LogLines& lines, const std::string& path,
   if (options.decimal == ',') separators = {'\t', ';', ' '};
   if (options.separator != 0) separators = {options.separator};
   Attempt best;
-  for (std::ptrdiff_t i = 0; i < std::ssize(separators); ++i) {
-    LayoutSearch search(head, wanted, options, separators[static_cast<std::size_t>(i)]);
+  for (const char separator : separators) {
+    LayoutSearch search(head, wanted, options, separator);
     Attempt attempt = by_number ? search.by_number() : search.by_name();
-    const bool unsure = attempt.layout &&
-                        std::any_of(separators.begin(), separators.begin() + i, [&](char earlier) {
-                          return could_separate(earlier, head, *attempt.layout);
-                        });
-    if (unsure) break;
     if (attempt.layout) return std::move(*attempt.layout);
-    if (i == 0 || std::pair(attempt.found, attempt.fields) > std::pair(best.found, best.fields)) {
+    if (best.complaint.empty() ||
+        std::pair(attempt.found, attempt.fields) > std::pair(best.found, best.fields)) {
       best = std::move(attempt);
     }
   }

@@ -284,17 +284,21 @@ class SceneReader {
     const std::filesystem::path file = path_.parent_path() / name;
     try {
       LoggedMotion log = read_motion_log(file, options);
-      const double begin = log.motion.times.front();
-      const double end = log.motion.times.back();
-      if (begin > 0 || end < scene_.t_end) {
-        guide.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
-                                 shown_time(end) + " s and does not cover the run, 0 to " +
-                                 shown_time(scene_.t_end) + " s" + time_hint(options, begin, end));
-      }
+      check_covers_run(guide, name, options, log.motion.times);
       scene_.guide.emplace_back(scene_guide::Table{file, std::move(log.motion)});
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
     }
+  }
+
+  void check_covers_run(Section& section, const std::string& name, const LogOptions& options,
+                        const std::vector<double>& times) const {
+    const double begin = times.front();
+    const double end = times.back();
+    if (begin <= 0 && end >= scene_.t_end) return;
+    section.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
+                               shown_time(end) + " s and does not cover the run, 0 to " +
+                               shown_time(scene_.t_end) + " s" + time_hint(options, begin, end));
   }
 
   static std::string shown_time(double t) {

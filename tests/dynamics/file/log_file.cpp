@@ -126,6 +126,18 @@ BOOST_AUTO_TEST_CASE(columns_are_given_by_name_or_number) {
   BOOST_TEST((rows(read("t;value\n1;2\n0;1.5\n0.1;-2\n", units)) == two));
 }
 
+BOOST_AUTO_TEST_CASE(a_named_attitude_comes_without_a_position) {
+  const std::string text = "t,w,x,y,z\n0,1,0,0,0\n";
+  LogOptions options;
+  options.columns = {{"qw", "w"}, {"qx", "x"}, {"qy", "y"}, {"qz", "z"}};
+  const Log log = read(text, options, motion);
+  BOOST_TEST(log.has("qw"));
+  BOOST_TEST(!log.has("x"));
+  BOOST_CHECK_THROW((void)log.column("x"), InvalidInput);
+  options.columns = {{"t", "t"}};
+  BOOST_TEST(read("t,qw,qx,qy,qz,x,y,z\n0,1,0,0,0,1,2,3\n", options, motion).has("x"));
+}
+
 BOOST_AUTO_TEST_CASE(a_decimal_comma_is_read_when_it_is_said) {
   LogOptions german;
   german.decimal = ',';
@@ -231,6 +243,10 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
   BOOST_TEST(complaint("t,value,value\n0,1,2\n") ==
              "log.csv:1: columns 2, 3 all fit 'value': give its number,  columns = { .., value = 2 "
              "}");
+  LogOptions one_of_two;
+  one_of_two.columns = {{"t", "t"}, {"value", "M"}};
+  BOOST_TEST(complaint("t,M,M\n0,1,2\n", one_of_two)
+                 .starts_with("log.csv:1: columns 2, 3 all fit 'value'"));
   BOOST_TEST(complaint("t,torque,moment\n0,1,2\n") ==
              "log.csv:1: the value may be torque or moment: name the columns,  columns = { .., "
              "value = \"torque\", .. }");
@@ -302,6 +318,10 @@ BOOST_AUTO_TEST_CASE(quaternions_are_held_to_norm_one) {
              "log.csv:3: the quaternion has norm 0.02702656992 and not 1 (t = 0.907 s): check  "
              "columns, or leave such rows out by  window = [from, to]");
   BOOST_TEST(complaint(header + "0.907;0.992;0;0;0\n0.91;-1.008;0;0;0\n", {}, motion) == "");
+  for (const std::string w : {"0.985", "-1.015"}) {
+    BOOST_TEST(complaint(header + "0.907;" + w + ";0;0;0\n", {}, motion)
+                   .starts_with("log.csv:3: the quaternion has norm"));
+  }
   LogOptions options;
   options.window = {0.91, 2};
   const std::string bad = "0.907;0.027;0;0;0\n0.913;0.99865;6e-005;0.00093;-0.051868\n";
