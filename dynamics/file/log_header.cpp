@@ -248,16 +248,6 @@ class Matcher {
   HeaderMatch match_;
 };
 
-/// The alternative whose columns were found, else the first.
-const LogColumnGroup& likeliest(const WantedGroup& wanted, const HeaderMatch& match) {
-  for (const LogColumnGroup* const group : wanted.one_of) {
-    for (const PlacedColumn& column : match.columns) {
-      if (column.name == group->names.front()) return *group;
-    }
-  }
-  return *wanted.one_of.front();
-}
-
 bool sounds_alike(const std::string& header, const std::string& column) {
   const auto has = [&header](const char* part) { return header.find(part) != std::string::npos; };
   if (header.empty()) return false;
@@ -284,6 +274,30 @@ std::string likely_header(const HeaderNames& headers, const std::string& column)
     only = header.as_written;
   }
   return only;
+}
+
+/// The alternative whose columns were found, else the one whose columns are likely, else the first.
+const LogColumnGroup& likeliest(const WantedGroup& wanted, const HeaderMatch& match,
+                                const HeaderNames& headers) {
+  for (const LogColumnGroup* const group : wanted.one_of) {
+    for (const PlacedColumn& column : match.columns) {
+      if (column.name == group->names.front()) return *group;
+    }
+  }
+  for (const LogColumnGroup* const group : wanted.one_of) {
+    const auto is_likely = [&headers](const std::string& name) {
+      return !likely_header(headers, name).empty();
+    };
+    if (std::all_of(group->names.begin(), group->names.end(), is_likely)) return *group;
+  }
+  return *wanted.one_of.front();
+}
+
+/// The header as a value of the key `columns`, or its number where the name does not tell which.
+std::string column_value(const HeaderNames& headers, const std::string& name,
+                         std::size_t position) {
+  const bool is_clear = positions(headers, name).size() == 1 && is_utf8(name);
+  return is_clear ? in_toml(name) : std::to_string(position + 1);
 }
 
 }  // namespace
@@ -354,16 +368,19 @@ std::string columns_key(const HeaderMatch& match, const HeaderNames& headers,
   for (const WantedGroup& group : wanted) {
     std::vector<std::string> of_group;
     bool all_likely = true;
-    for (const std::string& name : likeliest(group, match).names) {
+    for (const std::string& name : likeliest(group, match, headers).names) {
+      std::size_t position = entries.size() + of_group.size();
       std::string header = likely_header(headers, name);
+      for (std::size_t i = 0; i < headers.size(); ++i) {
+        if (!header.empty() && headers[i].as_written == header) position = i;
+      }
       for (const PlacedColumn& column : match.columns) {
-        if (column.name == name && column.position < headers.size()) {
-          header = headers[column.position].as_written;
-        }
+        if (column.name != name || column.position >= headers.size()) continue;
+        position = column.position;
+        header = headers[position].as_written;
       }
       all_likely = all_likely && !header.empty();
-      const std::string number = std::to_string(entries.size() + of_group.size() + 1);
-      of_group.push_back(name + " = " + (header.empty() ? number : in_toml(header)));
+      of_group.push_back(name + " = " + column_value(headers, header, position));
     }
     const bool needed = group.required || group.by_option || all_likely;
     if (needed) entries.insert(entries.end(), of_group.begin(), of_group.end());

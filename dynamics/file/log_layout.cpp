@@ -70,10 +70,10 @@ class LayoutSearch {
         comment = i;
       } else if (header) {
         break;
-      } else if (is_all_numbers(line)) {
+      } else if (const std::size_t numbers = count_numbers(line); numbers > 1) {
         fields_of_row = fields_.size();
         if (comment) note_comment(*comment, fields_of_row);
-        break;
+        if (numbers == fields_of_row) break;
       } else {
         note_missing(line, match);
       }
@@ -141,11 +141,15 @@ class LayoutSearch {
     }
   }
 
-  bool is_all_numbers(const HeadLine& line) {
-    if (!split(line.text) || fields_.size() < 2) return false;
-    return std::all_of(fields_.begin(), fields_.end(), [this](std::string_view field) {
+  /// How many fields of the line are numbers or empty; 0 where most are text.
+  std::size_t count_numbers(const HeadLine& line) {
+    if (!split(line.text)) return 0;
+    const auto is_number = [this](std::string_view field) {
       return field.empty() || written_number(field, options_->decimal);
-    });
+    };
+    const auto numbers =
+        static_cast<std::size_t>(std::count_if(fields_.begin(), fields_.end(), is_number));
+    return 2 * numbers > fields_.size() && !fields_.front().empty() ? numbers : 0;
   }
 
   /// A comment with as many fields as the rows below it may have been meant as a header.
@@ -350,13 +354,18 @@ class LayoutSearch {
 std::string why_no_number(std::string_view field, const std::string& column,
                           const LogOptions& options) {
   const std::string found = column + " = " + in_quotes(field);
-  if (field.empty()) return column + " is empty: leave such rows out by  window = [from, to]";
+  const std::string leave_out = "leave such rows out by  window = [from, to]";
+  if (field.empty()) return column + " is empty: " + leave_out;
   const char other = options.decimal == '.' ? ',' : '.';
   if (field.find(other) != std::string_view::npos && written_number(field, other)) {
     return found + " is a number with a decimal " + (other == ',' ? "comma" : "point") +
            ": give  decimal = \"" + other + "\"  if all rows have it, else correct this one";
   }
-  return found + " is not a finite number";
+  if (column == "t" && field.find(':') != std::string_view::npos) {
+    return found + " is a time of the clock: convert the column to seconds, or name another";
+  }
+  const bool is_infinite = field.find_first_of("nN") != std::string_view::npos;  // nan, inf
+  return found + " is not a finite number" + (is_infinite ? ": " + leave_out : "");
 }
 
 LogLayout find_layout(const LogLines& lines, const std::string& path,

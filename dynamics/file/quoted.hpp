@@ -1,19 +1,50 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace kreisel::detail {
 
-/// A text of a file in a message: in quotes, on one line, and at most 60 characters of it.
+/// The bytes of the UTF-8 character at the beginning of the text, 0 if there is none.
+[[nodiscard]] inline std::size_t utf8_length(std::string_view text) {
+  if (text.empty()) return 0;
+  const auto first = static_cast<unsigned char>(text.front());
+  const std::size_t length = first < 0x80                    ? 1
+                             : first >= 0xC2 && first < 0xE0 ? 2
+                             : first >= 0xE0 && first < 0xF0 ? 3
+                             : first >= 0xF0 && first < 0xF5 ? 4
+                                                             : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) return 0;
+  }
+  return length;
+}
+
+[[nodiscard]] inline bool is_utf8(std::string_view text) {
+  while (const std::size_t length = utf8_length(text)) text.remove_prefix(length);
+  return text.empty();
+}
+
+/// A text of a file in a message: in quotes, on one line, at most 60 bytes of it. Control characters
+/// and bytes that are not UTF-8 become question marks.
 [[nodiscard]] inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
   std::string result = "'";
-  for (const char c : text.substr(0, longest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7f ? '?' : c;
+  std::size_t i = 0;
+  while (i < text.size()) {
+    const std::size_t length = utf8_length(text.substr(i));
+    if (i + length > longest || i == longest) break;
+    const auto first = static_cast<unsigned char>(text[i]);
+    if (length == 0 || first < 0x20 || first == 0x7f) {
+      result += '?';
+    } else {
+      result += text.substr(i, length);
+    }
+    i += length == 0 ? 1 : length;
   }
-  return result + (text.size() > longest ? "...'" : "'");
+  return result + (i < text.size() ? "...'" : "'");
 }
 
 }  // namespace kreisel::detail

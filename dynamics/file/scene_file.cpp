@@ -298,7 +298,7 @@ class SceneReader {
     if (begin <= 0 && end >= scene_.t_end) return;
     section.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
                                shown_time(end) + " s and does not cover the run, 0 to " +
-                               shown_time(scene_.t_end) + " s" + time_hint(options, begin, end));
+                               shown_time(scene_.t_end) + " s" + time_hint(options, times));
   }
 
   static std::string shown_time(double t) {
@@ -309,17 +309,22 @@ class SceneReader {
   }
 
   /// The keys that make a log cover a run from 0 on, as the end of a message.
-  static std::string time_hint(const LogOptions& options, double begin, double end) {
-    std::string keys;
-    constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
-    if (!options.time_unit && begin > 1e3 * since_1970) {
-      const char* const unit = begin > 1e9 * since_1970   ? "ns"
-                               : begin > 1e6 * since_1970 ? "us"
-                                                          : "ms";
-      keys = "time_unit = \"" + std::string(unit) + "\"  and  ";
+  static std::string time_hint(const LogOptions& options, const std::vector<double>& times) {
+    const double begin = times.front();
+    if (begin <= 0) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
+    if (options.window) {
+      return ": the run begins at t = 0; increase  time_zero  by " + shown_time(begin) +
+             " s and move  window  back by as much";
     }
-    if (begin > 0) return ": give  " + keys + "time_zero = \"first\"";
-    return ": give  t_end = " + shown_time(end) + "  in [solve]";
+    constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
+    const double step = (times.back() - begin) / static_cast<double>(times.size() - 1);
+    const char* unit = nullptr;
+    if (begin > 1e3 * since_1970) unit = "ms";
+    if (begin > 1e6 * since_1970 || step > 1e3) unit = "us";
+    if (begin > 1e9 * since_1970 || step > 1e6) unit = "ns";
+    const bool hint = unit != nullptr && !options.time_unit;
+    return ": give  " + (hint ? "time_unit = \"" + std::string(unit) + "\"  and  " : "") +
+           "time_zero = \"first\"";
   }
 
   void read_gravity() {

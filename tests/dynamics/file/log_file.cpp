@@ -240,6 +240,21 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
           .ends_with("columns = { t = \"timestamp\", qw = \"q_RS_w []\", qx = \"q_RS_x []\", "
                      "qy = \"q_RS_y []\", qz = \"q_RS_z []\", x = \"p_RS_R_x [m]\", y = "
                      "\"p_RS_R_y [m]\", z = \"p_RS_R_z [m]\" }"));
+  // ROS: a comment above rows that hold text.
+  BOOST_TEST(complaint("%time,field.frame_id,field.moment\n1,imu,2\n")
+                 .ends_with("columns = { t = \"time\", value = 2 }"));
+  BOOST_TEST(complaint("Time,PtfmRoll,PtfmPitch,PtfmYaw\n0,1,2,3\n", {}, motion)
+                 .ends_with("columns = { t = \"Time\", yaw = \"PtfmYaw\", pitch = \"PtfmPitch\", "
+                            "roll = \"PtfmRoll\" }"));
+  // Motion capture: names that occur twice are given by number.
+  BOOST_TEST(complaint("Frame,Time (Seconds),QX,QY,QZ,QX\n0,0,0,0,0,1\n", {}, motion)
+                 .ends_with("columns = { t = \"Time (Seconds)\", qw = 2, qx = 3, qy = \"QY\", qz = "
+                            "\"QZ\" }"));
+  // A name in another encoding than UTF-8 cannot be pasted.
+  BOOST_TEST(complaint("Zeit,pitch \xB0,roll,yaw\n0,1,2,3\n", {}, motion)
+                 .ends_with("among 'Zeit', 'pitch ?', 'roll', 'yaw': name the columns, or give "
+                            "their numbers from 1, for example  columns = { t = \"Zeit\", yaw = "
+                            "\"yaw\", pitch = 2, roll = \"roll\" }"));
   BOOST_TEST(complaint("t,value,value\n0,1,2\n") ==
              "log.csv:1: columns 2, 3 all fit 'value': give its number,  columns = { .., value = 2 "
              "}");
@@ -294,7 +309,13 @@ BOOST_AUTO_TEST_CASE(rows_that_are_broken_are_named_by_line) {
              "log.csv:3: a quote is not closed, or text follows a closed one");
   BOOST_TEST(complaint(good + "1,\n") ==
              "log.csv:3: value is empty: leave such rows out by  window = [from, to]");
-  for (const std::string bad : {"nan", "inf", "1e999", "0x10", "--1", "+-1", "1.5m", "1 2", "+"}) {
+  BOOST_TEST(complaint(good + "1,nan\n") ==
+             "log.csv:3: value = 'nan' is not a finite number: leave such rows out by  window = "
+             "[from, to]");
+  BOOST_TEST(complaint(good + "16:13:02,1\n") ==
+             "log.csv:3: t = '16:13:02' is a time of the clock: convert the column to seconds, or "
+             "name another");
+  for (const std::string bad : {"1e999", "0x10", "--1", "+-1", "1.5m", "1 2", "+"}) {
     BOOST_TEST(complaint(good + "1," + bad + "\n") ==
                "log.csv:3: value = '" + bad + "' is not a finite number");
   }

@@ -172,6 +172,11 @@ BOOST_AUTO_TEST_CASE(a_log_beside_the_run_tells_the_key_that_helps) {
                                                    "1403715525100000000", "1403715525200000000"},
                                                   ",1,0,0,0"))
                  .ends_with(": give  time_unit = \"ns\"  and  time_zero = \"first\""));
+  BOOST_TEST(mistakes(header("t") + rows({"123456", "133456", "143456", "153456"}, ",1,0,0,0"))
+                 .ends_with(": give  time_unit = \"us\"  and  time_zero = \"first\""));
+  BOOST_TEST(mistakes(plain + "0.4,1,0,0,0\n", "window = [0.1, 0.4]")
+                 .ends_with(": the run begins at t = 0; increase  time_zero  by 0.1 s and move  "
+                            "window  back by as much"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
