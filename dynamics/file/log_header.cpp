@@ -105,11 +105,13 @@ const std::vector<UnitNames>& known_units() {
       {LogQuantity::angular_rate,
        {"rad/s", "rad s^-1", "rad*s^-1"},
        {"deg/s", "dps", "degree/s", "degrees/s", "\xC2\xB0/s", "\xB0/s", "deg s^-1", "deg/sec",
-        "deg/h", "deg/hr", "grad/s"}},
+        "grad/s"}},
       {LogQuantity::acceleration,
        {"m/s^2", "m/s2", "m s^-2", "m/s\xC2\xB2", "m/s\xB2", "m/s/s"},
        {"g", "mg", "cm/s^2", "ft/s^2", "gal"}},
-      {LogQuantity::number, {}, {"m/s", "m s^-1", "km/h", "kn"}}};
+      {LogQuantity::number,
+       {},
+       {"m/s", "m s^-1", "km/h", "kn", "deg/h", "deg/hr", "\xC2\xB0/h", "\xB0/h"}}};
   return units;
 }
 
@@ -127,8 +129,9 @@ const UnitNames* units_of(LogQuantity quantity) {
 /// The reason why the unit in a header is not read as it stands, or nothing.
 std::string wrong_unit(const PlacedColumn& column, const HeaderName& header,
                        const LogOptions& options) {
-  const std::string found =
-      "column " + in_quotes(header.as_written) + " for '" + column.name + "' is in " + header.unit;
+  const std::string found = "column " + in_quotes(header.as_written) + " for '" + column.name +
+                            "' is in " +
+                            (is_utf8(header.unit) ? header.unit : in_quotes(header.unit));
   if (column.is_time) {
     const auto unit = time_unit(header.unit);
     if (!unit || options.time_unit) return {};

@@ -195,6 +195,21 @@ BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_passed_over) {
   BOOST_TEST(complaint(angles, {}, motion) ==
              "log.csv:1: column 'yaw [deg]' for 'yaw' is in deg: give  angles = \"deg\"  (or "
              "\"rad\" if the header is wrong)");
+  const std::vector<LogRequest> rates{
+      {"rate", {{LogQuantity::angular_rate, {"wx"}, {}}, {LogQuantity::acceleration, {"ax"}, {}}}}};
+  for (const std::string unit : {"deg/s", "dps", "\xC2\xB0/s", "\xB0/s"}) {
+    BOOST_TEST(complaint("t,wx (" + unit + ")\n0,1\n", {}, rates).find("angles = \"deg\"") !=
+               std::string::npos);
+  }
+  options = {};
+  options.degrees = true;
+  BOOST_TEST(read("t,wx [deg/s]\n0,180\n", options, rates).column("wx").values[0] ==
+             std::numbers::pi);
+  BOOST_TEST(complaint("t,wx [deg/h]\n0,1\n", options, rates).find("convert the file") !=
+             std::string::npos);
+  BOOST_TEST(complaint("t,ax [g]\n0,1\n", options, rates).find("is read in m/s^2") !=
+             std::string::npos);
+  BOOST_TEST(complaint("t,ax [m/s^2]\n0,1\n", options, rates) == "");
   // The unit may stand in a line of its own.
   options = {};
   options.skip_after_header = 1;
