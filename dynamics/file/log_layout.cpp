@@ -373,7 +373,10 @@ LogLayout find_layout(const LogLines& lines, const std::string& path,
   const std::vector<WantedGroup> wanted = wanted_groups(path, requests, options);
   const std::vector<HeadLine> head = head_lines(lines, options.skip);
   if (head.empty()) {
-    refuse(path, options.skip == 0 ? "is empty" : "has no lines after the skipped ones");
+    refuse(path, !lines.head_is_all()
+                     ? "skip leads beyond the first megabyte, where rows must begin"
+                 : options.skip == 0 ? "is empty"
+                                     : "has no lines after the skipped ones");
   }
   const bool by_number = all_by_number(wanted, options);
   if (!by_number && !options.header) {

@@ -23,9 +23,7 @@ void refuse_what_is_no_file(const std::filesystem::path& path) {
   };
   if (!std::filesystem::exists(status)) refuse("there is no such file");
   if (std::filesystem::is_directory(status)) refuse("it is a folder, not a file");
-  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status)) {
-    refuse("it is a device, not a file");
-  }
+  if (!std::filesystem::is_regular_file(status)) refuse("it is a device or a pipe, not a file");
 }
 
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -44,9 +42,10 @@ Digits digits_of(std::string_view field) {
     result.negative = field.front() == '-';
     field.remove_prefix(1);
   }
-  const std::size_t e = field.find_first_of("eE");
+  std::size_t e = 0;
+  while (e < field.size() && field[e] != 'e' && field[e] != 'E') ++e;
   result.mantissa = field.substr(0, e);
-  if (e == std::string_view::npos) return result;
+  if (e == field.size()) return result;
   std::string_view exponent = field.substr(e + 1);
   const bool below = !exponent.empty() && exponent.front() == '-';
   if (!exponent.empty() && !is_digit(exponent.front())) exponent.remove_prefix(1);

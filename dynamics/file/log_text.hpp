@@ -20,7 +20,7 @@ class LogLines {
  public:
   /// Opens the file and reads the first block.
   ///
-  /// Throws : InvalidInput if the path is no regular file or pipe, or its bytes are not lines of text
+  /// Throws : InvalidInput if the path is no regular file, or its bytes are not lines of text
   explicit LogLines(const std::filesystem::path& path);
 
   /// The first block, from the beginning of the file. Valid before the first call of next().

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <sys/stat.h>
 #include <utility>
 #include <vector>
 
@@ -337,6 +338,12 @@ BOOST_AUTO_TEST_CASE(rows_that_are_broken_are_named_by_line) {
   BOOST_TEST(complaint(good + "-1,2\n") ==
              "log.csv:3: t = -1 s is earlier than in line 2 (t = 0 s)");
   BOOST_TEST(complaint("") == "log.csv: is empty");
+  LogOptions far;
+  far.skip = 900000;
+  BOOST_TEST(complaint("t,value\n", far) == "log.csv: has no lines after the skipped ones");
+  BOOST_TEST(complaint(std::string(900001, '\n') + "t,value\n0,1\n", far) == "");
+  BOOST_TEST(complaint(std::string(2U << 20U, '\n'), far) ==
+             "log.csv: skip leads beyond the first megabyte, where rows must begin");
   BOOST_TEST(complaint("t,value\n") == "log.csv:1: the log has no rows below this line");
   BOOST_TEST(complaint(good + std::string("1,\0\n", 4)) ==
              "log.csv:3: the file is not text: the line holds a zero byte");
@@ -462,7 +469,10 @@ BOOST_AUTO_TEST_CASE(what_is_no_file_cannot_be_read) {
   };
   BOOST_TEST(said(folder.path()) == ": cannot be read: it is a folder, not a file");
   BOOST_TEST(said(folder.path() / "none.csv") == ": cannot be read: there is no such file");
-  BOOST_TEST(said("/dev/zero") == ": cannot be read: it is a device, not a file");
+  BOOST_TEST(said("/dev/zero") == ": cannot be read: it is a device or a pipe, not a file");
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  BOOST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  BOOST_TEST(said(pipe) == ": cannot be read: it is a device or a pipe, not a file");
 }
 
 BOOST_AUTO_TEST_SUITE_END()
