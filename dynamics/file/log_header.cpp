@@ -345,7 +345,7 @@ std::vector<WantedGroup> wanted_groups(const std::string& path,
     }
     wanted.push_back(std::move(group));
   }
-  // Who names the columns of one quantity does not want others without being asked.
+  // Where the options name a group, optional groups that they do not name are left out.
   std::erase_if(wanted, [names_a_group](const WantedGroup& group) {
     return names_a_group && !group.required && !group.by_option;
   });
