@@ -8,6 +8,7 @@
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/text_file.hpp>
+#include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
 
@@ -285,7 +286,8 @@ class SceneReader {
     try {
       LoggedMotion log = read_motion_log(file, options);
       check_covers_run(guide, name, options, log.motion.times);
-      scene_.guide.emplace_back(scene_guide::Table{file, std::move(log.motion)});
+      const LogSpline spline = read_smoothing(guide, log.motion);
+      scene_.guide.emplace_back(scene_guide::Table{file, std::move(log.motion), spline});
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
     }
@@ -325,6 +327,26 @@ class SceneReader {
     const bool hint = unit != nullptr && !options.time_unit;
     return ": give  " + (hint ? "time_unit = \"" + std::string(unit) + "\"  and  " : "") +
            "time_zero = \"first\"";
+  }
+
+  /// How a log is smoothed: by the noise that `sigma` gives, one number or that of the attitude and
+  /// that of the place; else by what the log itself shows.
+  static LogSpline read_smoothing(Section& guide, const MotionLog<double>& log) {
+    LogNoise::Components sigma;
+    if (guide.has("sigma")) {
+      const auto given =
+          guide.find("sigma")->is_array() ? guide.numbers("sigma", 2) : guide.single("sigma");
+      if (!given) return {};
+      if (*std::min_element(given->begin(), given->end()) < 0) {
+        guide.refuse("sigma", "must not be below 0");
+        return {};
+      }
+      sigma.head<4>().setConstant(given->front());
+      sigma.tail<3>().setConstant(given->back());
+    } else {
+      sigma = smoothing_sigma(noise_of(log));
+    }
+    return smoothing(log, sigma);
   }
 
   void read_gravity() {

@@ -44,6 +44,7 @@ struct Earth {
 struct Table {
   std::filesystem::path file;
   MotionLog<double> log;
+  LogSpline spline = {};
 };
 
 using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table>;

@@ -44,7 +44,8 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
                    return earth_frame(kind.site);
                  },
                  [](const scene_guide::Table& kind) -> SceneGuide {
-                   const auto frame = std::make_shared<const TabulatedFrame<>>(kind.log);
+                   const auto frame =
+                       std::make_shared<const TabulatedFrame<>>(kind.log, kind.spline);
                    return [frame](double t) {
                      return (*frame)(
                          t > frame->end() && t <= frame->end() * past_the_end ? frame->end() : t);

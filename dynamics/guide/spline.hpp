@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,17 +16,22 @@ namespace kreisel::detail {
 /// continuous derivatives; its knots are the times but for (p - 1)/2 inner ones at either end (not
 /// a knot), so that no derivative has to be guessed there. Spacing may be uneven.
 ///
+/// With a knot at every m-th sample only it smooths: of all splines on these knots it is the one
+/// with the least sum of squared distances from the samples. Noise e of the samples then comes out
+/// as some e/sqrt(m) in the value and e/(sqrt(m) (m h)^k) in the k-th derivative.
+///
 /// Source : C. de Boor, A Practical Guide to Splines: the collocation matrix in B-splines is banded
-///          and totally positive, so elimination needs no pivots
+///          and totally positive, so elimination needs no pivots; least squares by Givens rotations
+///          row by row, which do not square its condition
 /// Cost   : O(n p^2)
-/// Error  : O(h^(p+1)) of the value, a power less for each derivative
+/// Error  : O(h^(p+1)) of the value, a power less for each derivative, h the spacing of the knots
 template <class S>
 class SplineInterpolation {
   using Components = typename PiecewisePose<S>::Components;
 
  public:
   SplineInterpolation(const std::vector<S>& times, std::vector<Components> values,
-                      std::size_t degree)
+                      std::size_t degree, std::size_t every = 1)
       : p_(degree),
         n_(times.size()),
         origin_(times.front()),
@@ -35,21 +42,58 @@ class SplineInterpolation {
     std::vector<S> x(n_);
     std::transform(times.begin(), times.end(), x.begin(),
                    [this](const S& t) { return t - origin_; });
-    knots_.assign(p_ + 1, x.front());
-    const std::size_t skipped = (p_ + 1) / 2;
-    knots_.insert(knots_.end(), x.begin() + static_cast<std::ptrdiff_t>(skipped),
-                  x.end() - static_cast<std::ptrdiff_t>(skipped));
-    knots_.insert(knots_.end(), p_ + 1, x.back());
-    solve_for_control_points(x);
+    place_knots(x, every);
+    if (every == 1) {
+      solve_for_control_points(x);
+    } else {
+      fit_control_points(x);
+    }
   }
 
   /// The same spline by powers of time in each piece.
   [[nodiscard]] PiecewisePose<S> pieces(const std::string& name) const {
     PiecewisePose<S> result(name, static_cast<int>(p_));
     for (std::size_t k = p_; k < n_; ++k) {
-      std::vector<Components> coefficients = taylor(k);
-      coefficients.front() += first_value_;
+      const std::vector<Components> coefficients = taylor(k, knots_[k]);
       result.append(origin_ + knots_[k], coefficients);
+    }
+    result.end_at(origin_ + knots_[n_]);
+    return result;
+  }
+
+  [[nodiscard]] Components value(const S& t) const {
+    const S x = t - origin_;
+    const std::size_t k = span(x);
+    const std::vector<S> weight = basis(k, x);
+    Components sum = Components::Zero();
+    for (std::size_t r = 0; r <= p_; ++r) sum += weight[r] * points_[k - p_ + r];
+    return first_value_ + sum;
+  }
+
+  /// The number of control points, which is that of the values that it can run through.
+  [[nodiscard]] std::size_t controls() const { return n_; }
+
+  /// The first four components of this spline with the last three of another, which begins and ends
+  /// with it; both of one degree.
+  [[nodiscard]] PiecewisePose<S> pieces_with(const SplineInterpolation& other,
+                                             const std::string& name) const {
+    PiecewisePose<S> result(name, static_cast<int>(p_));
+    std::vector<S> breaks;
+    const auto inner = [](const SplineInterpolation& of) {
+      const auto begin = of.knots_.begin();
+      return std::pair{begin + static_cast<std::ptrdiff_t>(of.p_),
+                       begin + static_cast<std::ptrdiff_t>(of.n_)};
+    };
+    const auto [first, last] = inner(*this);
+    const auto [other_first, other_last] = inner(other);
+    std::set_union(first, last, other_first, other_last, std::back_inserter(breaks));
+    for (const S& x : breaks) {
+      std::vector<Components> coefficients = taylor(span(x), x);
+      const std::vector<Components> others = other.taylor(other.span(x), x);
+      for (std::size_t i = 0; i <= p_; ++i) {
+        coefficients[i].template tail<3>() = others[i].template tail<3>();
+      }
+      result.append(origin_ + x, coefficients);
     }
     result.end_at(origin_ + knots_[n_]);
     return result;
@@ -79,6 +123,55 @@ class SplineInterpolation {
     const auto first = knots_.begin() + static_cast<std::ptrdiff_t>(p_) + 1;
     const auto last = knots_.begin() + static_cast<std::ptrdiff_t>(n_);
     return static_cast<std::size_t>(std::upper_bound(first, last, x) - knots_.begin()) - 1;
+  }
+
+  /// The knots, and in n_ the number of control points.
+  void place_knots(const std::vector<S>& x, std::size_t every) {
+    const std::size_t n = x.size();
+    const std::size_t pieces = (n - 1) / every;
+    const std::size_t skipped = (p_ + 1) / 2;
+    knots_.assign(p_ + 1, x.front());
+    for (std::size_t i = skipped; i + skipped <= pieces; ++i) {
+      knots_.push_back(x[(i * (n - 1) + pieces / 2) / pieces]);
+    }
+    knots_.insert(knots_.end(), p_ + 1, x.back());
+    n_ = knots_.size() - p_ - 1;
+  }
+
+  /// Replaces the values in points_ by the control points whose spline is next to the values.
+  void fit_control_points(const std::vector<S>& x) {
+    using std::sqrt;
+    const std::size_t width = p_ + 1;
+    std::vector<S> triangle(n_ * width, S(0));  // row i begins at its diagonal
+    std::vector<Components> right(n_, Components::Zero());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::size_t k = span(x[i]);
+      std::vector<S> row = basis(k, x[i]);
+      Components value = points_[i];
+      for (std::size_t r = 0; r <= p_; ++r) {
+        const std::size_t pivot = k - p_ + r;
+        S* const upper = triangle.data() + pivot * width;
+        if (row[r] == S(0)) continue;
+        const S length = sqrt(upper[0] * upper[0] + row[r] * row[r]);
+        const S c = upper[0] / length;
+        const S s = row[r] / length;
+        for (std::size_t j = r; j <= p_; ++j) {
+          const S above = upper[j - r];
+          upper[j - r] = c * above + s * row[j];
+          row[j] = c * row[j] - s * above;
+        }
+        const Components above = right[pivot];
+        right[pivot] = c * above + s * value;
+        value = c * value - s * above;
+      }
+    }
+    for (std::size_t i = n_; i-- > 0;) {
+      for (std::size_t j = 1; j <= p_ && i + j < n_; ++j) {
+        right[i] -= triangle[i * width + j] * right[i + j];
+      }
+      right[i] /= triangle[i * width];
+    }
+    points_ = std::move(right);
   }
 
   /// Replaces the values in points_ by the control points, by elimination in a band of width 2p +
@@ -111,10 +204,9 @@ class SplineInterpolation {
     }
   }
 
-  /// Value and derivatives over factorials at the left end of the span k: the control points of
-  /// each derivative are differences of those before, evaluated by de Boor's scheme.
-  [[nodiscard]] std::vector<Components> taylor(std::size_t k) const {
-    const S& x = knots_[k];
+  /// Value and derivatives over factorials at x in the span k: the control points of each
+  /// derivative are differences of those before, evaluated by de Boor's scheme.
+  [[nodiscard]] std::vector<Components> taylor(std::size_t k, const S& x) const {
     std::vector<Components> control(points_.begin() + static_cast<std::ptrdiff_t>(k - p_),
                                     points_.begin() + static_cast<std::ptrdiff_t>(k) + 1);
     std::vector<Components> result;
@@ -138,6 +230,7 @@ class SplineInterpolation {
       }
       control.pop_back();
     }
+    result.front() += first_value_;
     return result;
   }
 

@@ -20,6 +20,14 @@ struct MotionLog {
   std::vector<Vector3<S>> positions;  ///< empty: the origin rests
 };
 
+/// How a spline follows a log: its degree, and of how many samples one is a knot. 1 runs through the
+/// samples, more smooths their noise; see smoothing() in log_noise.hpp.
+struct LogSpline {
+  std::size_t degree = 5;  ///< odd; less where the log is too short for it
+  std::size_t attitude_every = 1;
+  std::size_t position_every = 1;
+};
+
 /// How far an interpolated motion may be off, the greatest over the table.
 ///
 /// Units  : radian, rad/s, rad/s^2; metre, m/s, m/s^2
@@ -42,8 +50,8 @@ struct InterpolationError {
 /// angular velocity and acceleration are exact derivatives of the attitude. Samples may be unevenly
 /// spaced; q and -q count as the same attitude.
 ///
-/// The spline does not smooth: noise e of the samples comes out as about e/h in the velocity and
-/// e/h^2 in the acceleration, and the error estimate shows it.
+/// By default the spline does not smooth: noise e of the samples comes out as about e/h in the velocity
+/// and e/h^2 in the acceleration, and the error estimate shows it. A LogSpline with fewer knots does.
 ///
 /// Error  : O(h^6) attitude, O(h^5) angular velocity, O(h^4) angular acceleration, h the spacing;
 ///          interpolation_error() estimates them
@@ -54,15 +62,21 @@ struct InterpolationError {
 template <class G = Guide, class I = Inertial, class S = double>
 class TabulatedFrame {
  public:
-  explicit TabulatedFrame(MotionLog<S> log)
-      : log_(checked(std::move(log))), pose_(spline(log_, full_degree(log_.times.size()))) {}
+  explicit TabulatedFrame(MotionLog<S> log, LogSpline spline = {})
+      : log_(checked(std::move(log))), pose_(fitted(log_, spline)) {}
 
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     return frame_motion<G, I>(pose_(t));
   }
 
+  /// The spline itself, whose quaternion is not quite of norm 1.
+  [[nodiscard]] PoseDerivatives<S> derivatives(const S& t) const { return pose_(t); }
+
   [[nodiscard]] const S& begin() const { return pose_.begin(); }
   [[nodiscard]] const S& end() const { return pose_.end(); }
+
+  /// The log with unit quaternions that do not change sign from one sample to the next.
+  [[nodiscard]] const MotionLog<S>& samples() const { return log_; }
 
   /// What the interpolation adds to the error of the samples, estimated from the samples
   /// themselves.
@@ -79,9 +93,9 @@ class TabulatedFrame {
   [[nodiscard]] InterpolationError<S> interpolation_error() const {
     using std::max;
     const std::size_t n = log_.times.size();
-    if (n < 24) return distance(spline(log_, full_degree(n) - 2));
-    const InterpolationError<S> half = distance(spline(thinned(2), 5));
-    const InterpolationError<S> quarter = distance(spline(thinned(4), 5));
+    if (n < 24) return distance(fitted(log_, {full_degree(n) - 2}));
+    const InterpolationError<S> half = distance(fitted(thinned(2), {5}));
+    const InterpolationError<S> quarter = distance(fitted(thinned(4), {5}));
     const auto shrunk = [](const S& coarse, const S& fine, double most) {
       if (fine == S(0)) return S(0);
       return S(S(1.6) * fine / std::clamp(S(coarse / fine), S(1), S(most)));
@@ -97,13 +111,24 @@ class TabulatedFrame {
  private:
   [[nodiscard]] static std::size_t full_degree(std::size_t samples) { return samples < 6 ? 3 : 5; }
 
-  [[nodiscard]] static PiecewisePose<S> spline(const MotionLog<S>& log, std::size_t degree) {
+  [[nodiscard]] static PiecewisePose<S> fitted(const MotionLog<S>& log, const LogSpline& how) {
+    const std::size_t n = log.times.size();
+    const std::size_t p = std::min(how.degree, n < 6 ? 3 : (n - 2) / 2 * 2 + 1);
+    const detail::SplineInterpolation<S> attitude(log.times, components(log), p,
+                                                  how.attitude_every);
+    if (how.attitude_every == how.position_every) return attitude.pieces("motion log");
+    const detail::SplineInterpolation<S> position(log.times, components(log), p,
+                                                  how.position_every);
+    return attitude.pieces_with(position, "motion log");
+  }
+
+  [[nodiscard]] static std::vector<typename PiecewisePose<S>::Components> components(
+      const MotionLog<S>& log) {
     std::vector<typename PiecewisePose<S>::Components> values;
     for (std::size_t i = 0; i < log.times.size(); ++i) {
       values.push_back(PiecewisePose<S>::components(log.attitudes[i], log.positions[i]));
     }
-    return detail::SplineInterpolation<S>(log.times, std::move(values), degree)
-        .pieces("motion log");
+    return values;
   }
 
   /// Every step-th sample, and the last.

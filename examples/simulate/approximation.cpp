@@ -113,6 +113,7 @@ class Approximation final : public Model {
     for (auto& invariant : report.invariants) invariant.largest = 0;
     const Eigen::Index coordinates = tree().coordinates();
     std::size_t done = 0;
+    model_error_ = 0;
     for (; done < states.size() && report.status == RunStatus::complete; ++done) {
       JointState& state = result.states[done];
       const VectorXd exact = joined(state);
@@ -120,6 +121,7 @@ class Approximation final : public Model {
       for (const auto& rotor : tree().rotors()) y[rotor.link.q] = exact[rotor.link.q];
       const double off = distance(y, exact);
       result.errors[done] += off;
+      model_error_ = std::max(model_error_, off);
       report.error_estimate = std::max(report.error_estimate, result.errors[done]);
       state = {y.head(coordinates), y.tail(tree().rates())};
       const double t = result.times[done];
@@ -145,6 +147,8 @@ class Approximation final : public Model {
     return result;
   }
 
+  [[nodiscard]] double model_error() const override { return model_error_; }
+
   [[nodiscard]] const kreisel::BodyTree& tree() const override { return exact_->tree(); }
   [[nodiscard]] kreisel::JointReactions reactions(double t,
                                                   const JointState& state) const override {
@@ -167,6 +171,7 @@ class Approximation final : public Model {
  private:
   std::unique_ptr<Model> exact_;
   Motion motion_;
+  mutable double model_error_ = 0;
 };
 
 }  // namespace

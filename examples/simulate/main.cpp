@@ -270,7 +270,13 @@ int run(const Request& request) {
         fmt::format("failed after t = {:.9g} s: {}", reached, report.message));
   }
   put_before(trajectory, *model, begin.rows);
-  const Result result{scene, *model, trajectory, scene.reactions, scene.terms};
+  const auto log_error =
+      error_of_logs(scene, *model, trajectory, [] { return signals::caught() != 0; });
+  if (!log_error) {
+    fmt::print(stderr, "simulate: interrupted while the error of the log was estimated\n");
+    return exit_status::of_signal();
+  }
+  const Result result{scene, *model, trajectory, scene.reactions, scene.terms, *log_error};
   require_finite(result);
   print(result, request.json);
   if (request.plot) draw(result, *request.plot);

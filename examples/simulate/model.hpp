@@ -28,6 +28,9 @@ class Model {
       const kreisel::Task& task, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const = 0;
 
+  /// How far its equations themselves were off in the latest run; 0 for the exact ones.
+  [[nodiscard]] virtual double model_error() const { return 0; }
+
   [[nodiscard]] virtual const kreisel::BodyTree& tree() const = 0;
   [[nodiscard]] virtual kreisel::JointReactions reactions(double t,
                                                           const JointState& state) const = 0;

@@ -54,6 +54,42 @@ std::vector<Term> equation_terms(const Result& result, bool kept) {
   return terms;
 }
 
+/// The parts of the error, the greatest of each. What the exact companion of an approximation errs by
+/// is in the sum alone.
+struct ErrorParts {
+  double integration = 0;
+  double log = 0;
+  double model = 0;
+};
+
+ErrorParts error_parts(const Result& result) {
+  const double model = result.model.model_error();
+  return {std::max(0.0, report(result).error_estimate - model), result.log_error.worst, model};
+}
+
+double whole_error(const Result& result) {
+  return report(result).error_estimate + result.log_error.worst;
+}
+
+/// What logs make of the end, for each joint in its own units; no key for what does not move.
+ordered_json log_errors(const Result& result) {
+  ordered_json table = ordered_json::object();
+  for (std::size_t i = 0; i < result.log_error.joints.size(); ++i) {
+    const LogError::Joint& off = result.log_error.joints[i];
+    ordered_json& entry = table[result.scene.bodies[i].name];
+    entry = ordered_json::object();
+    if (!off.coordinates.empty()) {
+      entry["coordinates"] = off.coordinates;
+      entry["rates"] = off.rates;
+    }
+    if (result.reactions) {
+      entry["force"] = json(off.force);
+      entry["torque"] = json(off.torque);
+    }
+  }
+  return table;
+}
+
 ordered_json final_state(const Result& result) {
   const double t = result.run.times.back();
   const JointState& state = result.run.states.back();
@@ -74,6 +110,7 @@ ordered_json final_state(const Result& result) {
   ordered_json final{{"t", t}, {"joints", joints}};
   if (result.reactions) final["reactions"] = carried;
   if (result.terms) final["terms"] = parts;
+  if (!result.log_error.joints.empty()) final["error_of_log"] = log_errors(result);
   return final;
 }
 
@@ -130,6 +167,10 @@ ordered_json summary(const Result& result) {
     invariants.push_back(
         {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
   }
+  const ErrorParts parts = error_parts(result);
+  const ordered_json error{{"integration", json(parts.integration)},
+                           {"log", json(parts.log)},
+                           {"model", json(parts.model)}};
   const auto whole = [](double count) { return static_cast<long long>(count); };
   return {{"title", result.scene.title},
           {"method", r.method},
@@ -140,7 +181,8 @@ ordered_json summary(const Result& result) {
           {"all_evaluations", whole(r.all_evaluations)},
           {"run_time_s", r.run_time},
           {"tolerance", r.tolerance},
-          {"error_estimate", json(r.error_estimate)},
+          {"error_estimate", json(whole_error(result))},
+          {"error", error},
           {"tolerance_kept", r.tolerance_kept},
           {"invariants", invariants},
           {"terms_kept", json(terms_kept(result))},
@@ -183,8 +225,14 @@ void print_summary(const Result& result) {
       "steps     {:.0f}, {:.0f} rejected, {:.0f} evaluations ({:.0f} with those for the "
       "estimate), {:.3g} s\n",
       r.effort.steps, r.effort.rejected, r.effort.evaluations, r.all_evaluations, r.run_time);
-  fmt::print("error     {:.1e} estimated, {:.1e} asked for{}\n", r.error_estimate, r.tolerance,
-             r.tolerance_kept ? "" : ": NOT REACHED");
+  const bool logged = !result.log_error.joints.empty();
+  const ErrorParts parts = error_parts(result);
+  fmt::print("error     {:.1e} estimated, {:.1e} asked for{}{}\n", whole_error(result), r.tolerance,
+             logged ? " of the integration" : "", r.tolerance_kept ? "" : ": NOT REACHED");
+  if (logged) {
+    fmt::print("          error_of_integration {:.1e}\n          error_of_log {:.1e}\n",
+               parts.integration, parts.log);
+  }
   for (const auto& [name, start, largest] : r.invariants) {
     fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", name, start, largest);
   }
@@ -193,6 +241,9 @@ void print_summary(const Result& result) {
                       final["joints"]);
   if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);
   if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
+  if (logged) {
+    joint_tables::print("error of the log at the end, SI", final["error_of_log"]);
+  }
   print_terms("terms kept", terms_kept(result));
   print_terms("terms dropped", terms_dropped(result));
 }

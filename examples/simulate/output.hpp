@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "log_error.hpp"
 #include "model.hpp"
 
 /// A run that came to its end.
@@ -13,6 +14,7 @@ struct Result {
   const kreisel::Trajectory<JointState>& run;
   bool reactions;
   bool terms;
+  LogError log_error = {};
 };
 
 /// A thing that the equations hold, or leave out, and why.

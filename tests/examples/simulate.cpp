@@ -401,6 +401,81 @@ BOOST_AUTO_TEST_CASE(a_full_disk_exits_with_3) {
 
 // Where steps have been made shorter the run that stands may have begun a last digit beside the
 // start: its first row is that of the scene all the same, and rows that a full disk cut off go on.
+namespace {
+
+/// A ship that rolls by 0.2 rad with 8 s, logged at 100 Hz with 4 decimals, and a pendulum in it.
+struct RollingShip {
+  static constexpr const char* pendulum = R"(
+[gravity]
+kind = "inertial"
+vector = [0, 0, -9.81]
+[[body]]
+name = "pendulum"
+joint = { kind = "revolute", axis = [1, 0, 0] }
+mass = 2.0
+centre = [0, 0, -0.5]
+inertia = [0.05, 0.05, 0.01]
+damping = 0.1
+[solve]
+t_end = 12
+tolerance = 1e-9
+[report]
+reactions = true
+)";
+
+  Scratch folder;
+  double truth = 0;
+
+  RollingShip() {
+    std::string log = "t,qw,qx,qy,qz\n";
+    const auto rounded = [](double x) { return std::to_string(std::round(x * 1e4) / 1e4); };
+    const double w = 0.785398163397448;
+    for (int i = 0; i <= 1300; ++i) {
+      const double half = 0.1 * std::sin(w * i / 100);
+      log += std::to_string(i / 100.0) + "," + rounded(std::cos(half)) + "," +
+             rounded(std::sin(half)) + ",0,0\n";
+    }
+    folder.write("log.csv", log);
+    const std::string roll =
+        "[guide]\nkind = \"harmonic\"\nangular_velocity = { terms = [{ amplitude = "
+        "[0.1570796326794897, 0, 0], frequency = 0.785398163397448, phase_deg = 90 }] }\n";
+    const std::string file = folder.write("truth.toml", roll + pendulum).string();
+    truth = coordinate(answer(file + " --method verner98"));
+  }
+
+  [[nodiscard]] json along_the_log(const std::string& keys) {
+    const std::string guide = "[guide]\nkind = \"table\"\nfile = \"log.csv\"\n" + keys;
+    return answer(folder.write("scene.toml", guide + pendulum).string());
+  }
+
+  [[nodiscard]] static double coordinate(const json& result) {
+    return result.at("final").at("joints").at("pendulum").at("coordinate");
+  }
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(tells_what_the_error_of_a_log_does) {
+  RollingShip ship;
+  for (const char* const keys : {"", "sigma = 0\n", "sigma = 3e-5\n", "sigma = [3e-5, 0]\n"}) {
+    const json result = ship.along_the_log(keys);
+    const double off = std::abs(RollingShip::coordinate(result) - ship.truth);
+    const json& told = result.at("final").at("error_of_log").at("pendulum");
+    BOOST_TEST_MESSAGE(keys << "off by " << off << ", told " << told.dump());
+    BOOST_TEST(off <= 1.2 * told.at("coordinates").at(0).get<double>());
+    BOOST_TEST(told.at("force").get<double>() > 0);
+    const json& error = result.at("error");
+    BOOST_TEST(error.at("model").get<double>() == 0);
+    const double sum = error.at("integration").get<double>() + error.at("log").get<double>();
+    BOOST_TEST(std::abs(result.at("error_estimate").get<double>() - sum) <= 1e-12 * sum);
+    const bool interpolated = std::string(keys) == "sigma = 0\n";
+    BOOST_TEST((off < 1e-4) != interpolated);
+  }
+  const Outcome text = run((ship.folder.path() / "scene.toml").string());
+  BOOST_TEST(text.out.find("error_of_integration ") != std::string::npos);
+  BOOST_TEST(text.out.find("error_of_log ") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(begins_its_rows_with_the_start_itself) {
   const Scratch folder;
   const std::string command =

@@ -1,0 +1,178 @@
+#include "log_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include <dynamics/guide/log_noise.hpp>
+#include <dynamics/solve/error_measure.hpp>
+#include <motor/error.hpp>
+
+using Eigen::VectorXd;
+using kreisel::scene_guide::Table;
+
+namespace {
+
+VectorXd joined(const JointState& state) {
+  VectorXd y(state.coordinates.size() + state.rates.size());
+  y << state.coordinates, state.rates;
+  return y;
+}
+
+/// What ErrorMeasure wants to know of a system.
+struct Measured {
+  using Vector = VectorXd;
+  std::vector<int> blocks;
+};
+
+/// Thrown where a signal wants the program to end.
+struct Interrupted {};
+
+/// The end of a run.
+struct End {
+  JointState state;
+  kreisel::JointReactions reactions;
+};
+
+LogError::Joint joint_distance(const kreisel::BodyTree& tree, int body, const End& a,
+                               const End& b) {
+  const auto [q, q_count, v, v_count] = tree.place(body);
+  LogError::Joint off;
+  if (q_count < 4) {
+    for (int k = 0; k < q_count; ++k) {
+      off.coordinates.push_back(std::abs(a.state.coordinates[q + k] - b.state.coordinates[q + k]));
+      off.rates.push_back(std::abs(a.state.rates[v + k] - b.state.rates[v + k]));
+    }
+  } else {
+    off.coordinates.push_back(
+        attitude(tree, body, a.state).angularDistance(attitude(tree, body, b.state)));
+    off.rates.push_back((a.state.rates - b.state.rates).segment<3>(v).norm());
+    if (q_count == 7) {
+      off.coordinates.push_back((place(tree, body, a.state) - place(tree, body, b.state)).norm());
+      off.rates.push_back((a.state.rates - b.state.rates).segment<3>(v + 3).norm());
+    }
+  }
+  const auto i = static_cast<std::size_t>(body);
+  const auto force = a.reactions.on_body[i].value - b.reactions.on_body[i].value;
+  off.force = force.resultant.norm();
+  off.torque = force.moment.norm();
+  return off;
+}
+
+/// Calls `visit` with each number of an error, always in the same order.
+template <class Visit>
+void visit_numbers(LogError& error, const Visit& visit) {
+  visit(error.worst);
+  for (LogError::Joint& joint : error.joints) {
+    for (double& x : joint.coordinates) visit(x);
+    for (double& x : joint.rates) visit(x);
+    visit(joint.force);
+    visit(joint.torque);
+  }
+}
+
+VectorXd numbers_of(LogError error) {
+  std::vector<double> numbers;
+  visit_numbers(error, [&](double& x) { numbers.push_back(x); });
+  return Eigen::Map<VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+void set_numbers(LogError& error, const VectorXd& numbers) {
+  Eigen::Index next = 0;
+  visit_numbers(error, [&](double& x) { x = numbers[next++]; });
+}
+
+/// Runs along other logs, held against one.
+class Beside {
+ public:
+  Beside(const Model& model, const kreisel::Trajectory<JointState>& run,
+         const std::function<bool()>& interrupted)
+      : model_(model),
+        run_(run),
+        interrupted_(interrupted),
+        end_{run.states.back(), model.reactions(run.times.back(), run.states.back())} {}
+
+  /// The end of a run along another guide.
+  [[nodiscard]] End end_of(const kreisel::SceneFile& scene, double tolerance) const {
+    const std::unique_ptr<Model> other = make_model(scene);
+    kreisel::Task task;
+    task.times = {run_.times.back()};
+    task.tolerance = tolerance;
+    task.method = kreisel::method_named(run_.report.method).value_or(kreisel::Method::automatic);
+    const auto beside = other->solve(
+        task, start_of(scene), [](double, const JointState&) { return true; }, interrupted_);
+    if (interrupted_()) throw Interrupted{};
+    if (beside.report.status != kreisel::RunStatus::complete) {
+      throw kreisel::ComputationFailed("error of the log: a run beside failed: " +
+                                       beside.report.message);
+    }
+    const JointState& state = beside.states.back();
+    return {state, other->reactions(task.times.back(), state)};
+  }
+
+  /// The distance of two ends.
+  [[nodiscard]] LogError distance(const End& a, const End& b) const {
+    kreisel::detail::ErrorMeasure<Measured> measure({model_.tree().blocks()}, 1e-3);
+    for (const JointState& passed : run_.states) (void)measure(joined(passed), joined(passed));
+    LogError error;
+    if (joined(a.state).size() > 0) error.worst = measure(joined(a.state), joined(b.state));
+    for (int i = 0; i < static_cast<int>(end_.reactions.on_body.size()); ++i) {
+      error.joints.push_back(joint_distance(model_.tree(), i, a, b));
+    }
+    return error;
+  }
+
+  [[nodiscard]] const End& end() const { return end_; }
+
+ private:
+  const Model& model_;
+  const kreisel::Trajectory<JointState>& run_;
+  const std::function<bool()>& interrupted_;
+  End end_;
+};
+
+/// The error that the log of one link makes.
+VectorXd error_of_link(const kreisel::SceneFile& scene, std::size_t link, const Beside& beside,
+                       double tolerance) {
+  const Table& table = std::get<Table>(scene.guide[link]);
+  return kreisel::error_of_log(
+      table.log, table.spline, beside.end(),
+      [&](const kreisel::MotionLog<double>& log, const kreisel::LogSpline& spline) {
+        kreisel::SceneFile other = scene;
+        other.guide[link] = Table{table.file, log, spline};
+        return beside.end_of(other, tolerance);
+      },
+      [&](const End& a, const End& b) { return numbers_of(beside.distance(a, b)); });
+}
+
+}  // namespace
+
+std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene, const Model& model,
+                                      const kreisel::Trajectory<JointState>& run,
+                                      const std::function<bool()>& interrupted) {
+  const auto& links = scene.guide;
+  const auto is_log = [](const auto& link) { return std::holds_alternative<Table>(link); };
+  if (std::none_of(links.begin(), links.end(), is_log)) return LogError{};
+  const Beside beside(model, run, interrupted);
+  LogError error = beside.distance(beside.end(), beside.end());
+  // A run to a coarse tolerance tells a great error as well as a fine one does.
+  constexpr double coarse = 1e-6;
+  double tolerance = std::max(coarse, scene.tolerance);
+  try {
+    while (true) {
+      VectorXd squares = VectorXd::Zero(numbers_of(error).size());
+      for (std::size_t i = 0; i < links.size(); ++i) {
+        if (is_log(links[i])) squares += error_of_link(scene, i, beside, tolerance).cwiseAbs2();
+      }
+      set_numbers(error, squares.cwiseSqrt());
+      const bool moves = model.tree().rates() > 0;
+      if (!moves || error.worst > 30 * tolerance || tolerance == scene.tolerance) return error;
+      tolerance = scene.tolerance;
+    }
+  } catch (const Interrupted&) {
+    return std::nullopt;
+  }
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "model.hpp"
+
+/// How far the errors of logs move the end of a run.
+struct LogError {
+  double worst = 0;  ///< of the state, in the measure of RunReport::error_estimate
+
+  struct Joint {
+    std::vector<double>
+        coordinates;            ///< rad or m; of a quaternion one angle, of a place one distance
+    std::vector<double> rates;  ///< one for each coordinate
+    double force = 0;           ///< N, of the reaction on the body
+    double torque = 0;          ///< N m
+  };
+  std::vector<Joint> joints = {};  ///< one for each body; empty where the guide follows no log
+};
+
+/// The error of a run that its guide's logs make, by runs along these logs taken in other ways; see
+/// kreisel::error_of_log. Nothing where it was interrupted.
+///
+/// Cost   : thirteen runs for each log, to 1e-6, or to the task's tolerance where the error is as
+///          small
+/// Throws : kreisel::ComputationFailed where such a run fails
+[[nodiscard]] std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene,
+                                                    const Model& model,
+                                                    const kreisel::Trajectory<JointState>& run,
+                                                    const std::function<bool()>& interrupted);
