@@ -27,13 +27,18 @@ void send(int pipe, char letter, std::string words) {
   }
 }
 
-std::string note(const Answer& answer) {
+std::string note(const Scene& scene, const Answer& answer, const ReferenceMotion& reference) {
   if (!answer.answered) {
     return fmt::format("{}: {}", answer.asked,
                        answer.out_of_budget ? "out of budget" : answer.message);
   }
-  return fmt::format("{} ({}): error {:.2g}{}, {:.3g} evaluations", answer.asked, answer.method,
-                     answer.estimate, answer.kept ? "" : " (not kept)", answer.evaluations);
+  std::string result =
+      fmt::format("{} ({}): error {:.2g}{}, {:.3g} evaluations", answer.asked, answer.method,
+                  answer.estimate, answer.kept ? "" : " (not kept)", answer.evaluations);
+  if (const auto off = off_at_end(scene, answer, reference)) {
+    result += fmt::format(", off by {:.2g} (known to {:.1g})", off->first, off->second);
+  }
+  return result;
 }
 
 [[noreturn]] void work(const Scene& scene, const Examination& how, int pipe) {
@@ -49,7 +54,7 @@ std::string note(const Answer& answer) {
     begin("the independent integrator");
     reference = integrate(scene, scene.times(), how.limits.work);
   }
-  for (const Answer& answer : answers.by_method) send(pipe, 'n', note(answer));
+  for (const Answer& answer : answers.by_method) send(pipe, 'n', note(scene, answer, reference));
   for (const Fault& fault : judge(scene, answers, reference)) {
     send(pipe, 'k', fault.kind);
     send(pipe, 'd', fault.detail);
@@ -111,7 +116,8 @@ Verdict examine(const Scene& scene, const Examination& how) {
   }
   close(ends[1]);
   std::string text;
-  const double patience = 20 + 5 * how.limits.seconds * static_cast<double>(how.methods.size());
+  const double patience =
+      20 + how.limits.work / 2e7 + 5 * how.limits.seconds * static_cast<double>(how.methods.size());
   const bool came_to_an_end = receive(ends[0], patience, text);
   if (!came_to_an_end) kill(child, SIGKILL);
   int status = 0;

@@ -57,6 +57,7 @@ class Judge {
       judge_by_reference(answer);
     }
     if (faults_.empty()) judge_pairs();
+    judge_reach();
     judge_cost();
     return faults_;
   }
@@ -163,6 +164,21 @@ class Judge {
     }
   }
 
+  /// That auto reaches what another method reaches, unless that one is found to be wrong.
+  void judge_reach() {
+    const auto& all = answers_.by_method;
+    const Answer& automatic = all.front();
+    if (!faults_.empty() || automatic.asked != "auto" || !automatic.answered) return;
+    if (automatic.estimate <= 100 * automatic.tolerance) return;
+    for (const Answer& answer : all) {
+      if (!answer.answered || !answer.kept) continue;
+      add(fmt::format("{} does not keep the tolerance, {} does", name(automatic), answer.asked),
+          fmt::format("told {:.3g} and {:.3g}, asked {:.1g}", automatic.estimate, answer.estimate,
+                      answer.tolerance));
+      return;
+    }
+  }
+
   /// A spring without a damper oscillates for ever, and who asks has to resolve it: that radau13
   /// passes over it where it is small is no merit.
   [[nodiscard]] bool oscillates() const {
@@ -225,6 +241,15 @@ double Distance::operator()(const JointValues& a, const JointValues& b) const {
     begin += static_cast<std::size_t>(n);
   }
   return worst;
+}
+
+std::optional<std::pair<double, double>> off_at_end(const Scene& scene, const Answer& answer,
+                                                    const ReferenceMotion& reference) {
+  if (!reference.complete || !answer.answered) return std::nullopt;
+  Distance distance(scene);
+  for (const JointValues& y : reference.others) distance.note(y);
+  const JointValues& truth = reference.others.back();
+  return std::pair{distance(answer.states.back(), truth), distance(reference.states.back(), truth)};
 }
 
 std::vector<Fault> judge(const Scene& scene, const Answers& answers,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runs.hpp"
@@ -26,6 +28,12 @@ class Distance {
   std::vector<int> blocks_;
   std::vector<double> sizes_;
 };
+
+/// How far the end of an answer is off the independent motion, and how well that is known; nothing
+/// where either does not come to the end.
+[[nodiscard]] std::optional<std::pair<double, double>> off_at_end(const Scene& scene,
+                                                                  const Answer& answer,
+                                                                  const ReferenceMotion& reference);
 
 /// Holds the answers against each other and against the independent motion.
 [[nodiscard]] std::vector<Fault> judge(const Scene& scene, const Answers& answers,

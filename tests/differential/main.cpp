@@ -228,6 +228,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--methods", request.how.methods, "that are held against each other");
   app.add_option("--evaluations", request.how.limits.evaluations, "of each run of steps");
+  app.add_option("--seconds", request.how.limits.seconds, "of processor time for each method");
+  app.add_option("--work", request.how.limits.work, "operations of the independent integrator");
   app.add_option("--only", request.only, "the scene of this number alone");
   app.add_flag("--print", request.print, "with --only: print it, do not run it");
   CLI11_PARSE(app, argc, argv);

@@ -1,5 +1,6 @@
 #include "reference.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -84,11 +85,26 @@ class Steps {
   double evaluations_ = 0;
 };
 
-/// The same state, each number off by about its last digit as a double.
-State moved(const State& y) {
-  State result = y;
-  for (Eigen::Index i = 0; i < y.size(); ++i) result[i] *= 1 + (i % 2 == 0 ? 1 : -1) * 0x1p-53L;
-  return result;
+/// The scene with the numbers of its start off by a last digit, up and down in turn.
+Scene moved(Scene scene) {
+  double digit = 0x1p-52;
+  const auto move = [&digit](double& x) {
+    x *= 1 + digit;
+    digit = -digit;
+  };
+  for (Body& body : scene.bodies) {
+    for (Angle& angle : body.angle) move(angle.value);
+    for (double& x : body.rate) move(x);
+    move(body.displacement);
+    for (Vector* const v : {&body.angular_velocity, &body.velocity}) {
+      for (double& x : *v) move(x);
+    }
+    if (body.place) std::for_each(body.place->begin(), body.place->end(), move);
+    if (body.attitude) {
+      for (double& x : *body.attitude) x += (digit = -digit);
+    }
+  }
+  return scene;
 }
 
 struct Step {
@@ -133,10 +149,9 @@ void run(const Scene& scene, const std::vector<double>& times, double most_evalu
 
 /// The same steps, each in two halves.
 void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion& motion) {
-  Tree tree(scene);
-  State start = moved(tree.start());
-  tree.project(0, start);
-  Steps steps(tree, start);
+  Scene other = moved(scene);
+  Tree tree(other);
+  Steps steps(tree, tree.start());
   for (const Step& step : taken) {
     if (motion.others.size() == motion.states.size()) break;
     for (const int half : {0, 1}) {
