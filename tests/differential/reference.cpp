@@ -116,11 +116,11 @@ struct Step {
 /// Adaptive steps to the times; those that were taken go into `taken`.
 void run(const Scene& scene, const std::vector<double>& times, double most_evaluations,
          ReferenceMotion& motion, std::vector<Step>& taken) {
-  constexpr Real tolerance = 1e-15;
+  constexpr Real tolerance = 1e-15L;
   Tree tree(scene);
   Steps steps(tree, tree.start());
   Real t = 0;
-  Real h = times.back() / 64;
+  Real h = Real(times.back()) / 64;
   for (const double time : times) {
     while (t < Real(time)) {
       if (steps.evaluations() > most_evaluations) return;
@@ -130,7 +130,7 @@ void run(const Scene& scene, const std::vector<double>& times, double most_evalu
       const Real factor = Real(0.8) * std::pow(tolerance / (off + Real(1e-19)), Real(1) / 15);
       if (!(off <= tolerance)) {
         h = length * (factor > Real(0.1) ? factor : Real(0.1));
-        if (h < Real(1e-14) * times.back()) return;
+        if (h < Real(1e-14) * Real(times.back())) return;
         continue;
       }
       taken.push_back({t, length, last});

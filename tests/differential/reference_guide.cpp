@@ -9,7 +9,7 @@ namespace {
 constexpr Real pi = 3.14159265358979323846264338327950288L;
 constexpr Real equator = 6378137;
 constexpr Real flattening = 1 / 298.257223563L;
-constexpr Real earth_rate = 7.292115e-5;  // as double, for the site's is one too
+constexpr Real earth_rate = Real(7.292115e-5);  // as double, for the site's is one too
 
 Vec wide(const Vector& v) { return v.cast<Real>(); }
 
@@ -21,7 +21,7 @@ struct Oscillation {
 Oscillation at(const Series& s, Real t) {
   Oscillation sum{wide(s.constant), Vec::Zero()};
   for (const Series::Term& term : s.terms) {
-    const Real w = term.frequency;
+    const auto w = Real(term.frequency);
     const Real angle = w * t + Real(term.phase.radian());
     sum.value += std::sin(angle) * wide(term.amplitude);
     sum.rate += w * std::cos(angle) * wide(term.amplitude);
@@ -84,7 +84,7 @@ Motion earth(const Link& link, Real t) {
   const auto [sl, cl] = sine_cosine(link.latitude);
   const Real e2 = flattening * (2 - flattening);
   const Real n = equator / std::sqrt(1 - e2 * sl * sl);
-  const Real h = link.height;
+  const auto h = Real(link.height);
   const Vec place((n + h) * cl, 0, (n * (1 - e2) + h) * sl);
   const Vec effective = ellipsoid_gravitation(place) + Vec(u * u * place.x(), 0, 0);
   const Vec up(cl, 0, sl);
@@ -100,13 +100,13 @@ Motion earth(const Link& link, Real t) {
 }
 
 Motion logged(const Log& log, Real t) {
-  const Real f = log.frequency;
+  const auto f = Real(log.frequency);
   const Real angle = f * t + Real(log.phase);
   const Real s = std::sin(angle);
   const Real ds = f * std::cos(angle);
   const Real dds = -f * f * s;
   const Vec axis = wide(log.axis).normalized();
-  const Real A = log.amplitude;
+  const auto A = Real(log.amplitude);
   return {Eigen::AngleAxis<Real>(A * s, axis).toRotationMatrix(),
           A * ds * axis,
           A * dds * axis,

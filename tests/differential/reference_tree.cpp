@@ -24,11 +24,11 @@ Mat about(const Vec& axis, Real angle) {
 
 Mat tensor(const std::vector<double>& t) {
   Mat result = Mat::Zero();
-  for (int i = 0; i < 3; ++i) result(i, i) = t[static_cast<std::size_t>(i)];
+  for (int i = 0; i < 3; ++i) result(i, i) = Real(t[static_cast<std::size_t>(i)]);
   if (t.size() == 6) {
-    result(0, 1) = result(1, 0) = t[3];
-    result(0, 2) = result(2, 0) = t[4];
-    result(1, 2) = result(2, 1) = t[5];
+    result(0, 1) = result(1, 0) = Real(t[3]);
+    result(0, 2) = result(2, 0) = Real(t[4]);
+    result(1, 2) = result(2, 1) = Real(t[5]);
   }
   return result;
 }
@@ -77,7 +77,7 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
   Eigen::Index rows = 0;
   for (const Body& body : scene.bodies) {
     Part part;
-    part.mass = body.mass;
+    part.mass = Real(body.mass);
     part.centre = wide(body.centre);
     part.inertia = tensor(body.inertia);
     part.zero = turn_by(body.orientation);
@@ -355,7 +355,7 @@ void Tree::add_joint_force(int body, const State& y) {
   if (b.kind == JointKind::spherical) {
     add_torque(body, -at_or(b.damping, 0) * r.w);
   } else if (b.kind == JointKind::revolute) {
-    const Real motor = b.rotor && b.rotor->mode == RotorMode::torque ? b.rotor->torque : 0;
+    const Real motor = b.rotor && b.rotor->mode == RotorMode::torque ? Real(b.rotor->torque) : 0;
     add_torque(body, (motor + force(0, y[part.angles], r.axis.dot(r.w))) * r.axis);
   } else if (b.kind == JointKind::prismatic) {
     const Vec f = force(0, r.axis.dot(r.place), r.axis.dot(r.v)) * r.axis;

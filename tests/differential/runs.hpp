@@ -11,8 +11,8 @@ namespace differential {
 
 /// How much a scene may cost.
 struct Limits {
-  double evaluations = 2e5;  ///< of each run of adaptive steps
-  double seconds = 2;        ///< of processor time for each method
+  double evaluations = 1e5;  ///< of each run of adaptive steps
+  double seconds = 1;        ///< of processor time for each method
   double work = 1.5e8;       ///< operations of the independent integrator
 };
 
