@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/printable.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -68,7 +69,7 @@ class CsvTable {
     const char* end = field.data() + field.size();
     const auto [stop, error] = std::from_chars(field.data(), end, value);
     if (error != std::errc{} || stop != end || !std::isfinite(value)) {
-      throw InvalidInput(where(row) + ": " + std::string(column) + " = '" + field +
+      throw InvalidInput(where(row) + ": " + std::string(column) + " = '" + printable(field, 100) +
                          "' is not a finite number");
     }
     return value;
@@ -121,7 +122,8 @@ class CsvTable {
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       if (position(columns_[i]) != i) {
-        throw InvalidInput(where_line(line) + ": two columns '" + columns_[i] + "'");
+        throw InvalidInput(where_line(line) + ": two columns '" + printable(columns_[i], 100) +
+                           "'");
       }
     }
   }

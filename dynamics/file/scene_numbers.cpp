@@ -126,6 +126,10 @@ std::string SceneNumbers::with(const std::vector<double>& values) const {
     const auto written =
         std::to_chars(number.data(), number.data() + number.size(), values.at(key));
     result.append(text_, done, begin - done).append(number.data(), written.ptr);
+    // Whole numbers of TOML have 64 bits.
+    const std::string_view digits(number.data(),
+                                  static_cast<std::size_t>(written.ptr - number.data()));
+    if (digits.size() > 17 && digits.find_first_of(".e") == std::string_view::npos) result += ".0";
     done = end;
   }
   return result.append(text_, done);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <sstream>
 
+#include <dynamics/file/printable.hpp>
 #include <dynamics/file/quoted.hpp>
 #include <dynamics/file/scene_file.hpp>
 
@@ -64,8 +65,8 @@ std::string listed(const std::vector<std::string>& words) {
 void Mistakes::add(const toml::source_region& where, std::string_view key,
                    std::string_view reason) {
   std::string text;
-  if (!key.empty()) text = std::string(key) + ": ";
-  list_.push_back({where.begin, text + std::string(reason)});
+  if (!key.empty()) text = printable(key, 200) + ": ";
+  list_.push_back({where.begin, text + printable(reason)});
 }
 
 void Mistakes::throw_any() const {

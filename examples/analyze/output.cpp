@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <dynamics/file/printable.hpp>
+
 #include "../shared/joint_tables.hpp"
 
 using kreisel::GyroscopicMode;
@@ -270,7 +272,9 @@ void print_json(const Result& result) {
 
 void print_summary(const Result& result) {
   const Analysis& a = result.analysis;
-  if (!result.scene.title.empty()) fmt::print("{}\n\n", result.scene.title);
+  if (!result.scene.title.empty()) {
+    fmt::print("{}\n\n", kreisel::printable(result.scene.title));
+  }
   print(a.steady, result);
   if (a.linear) print(*a.linear);
   if (a.campbell) print(*a.campbell);

@@ -15,12 +15,14 @@
 #include <dynamics/ensemble/workers.hpp>
 #include <dynamics/file/atomic_file.hpp>
 #include <dynamics/file/csv.hpp>
+#include <dynamics/file/printable.hpp>
 #include <dynamics/file/scene_numbers.hpp>
+#include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
 
 #include "../shared/exit_status.hpp"
+#include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
-#include "../shared/text_of.hpp"
 #include "../simulate/columns.hpp"
 #include "request.hpp"
 
@@ -47,14 +49,16 @@ struct Scene {
 
 Scene read(const Request& request) {
   // Mistakes that all members would make.
-  const kreisel::SceneFile file = kreisel::read_scene(request.scene, request.solve);
+  const std::string text = kreisel::read_text(request.scene, kreisel::largest_scene_file);
+  const kreisel::SceneFile file = kreisel::parse_scene(text, request.scene, request.solve);
+  if (request.csv) outputs::refuse_input("--csv", *request.csv, files_read(request.scene, file));
   std::vector<std::string> keys;
   for (const Variation& variation : request.variations) {
     keys.insert(keys.end(), variation.keys.begin(), variation.keys.end());
   }
   std::vector<std::string> names = columns(make_model(file)->tree(), false);
   names.erase(names.begin());  // the time
-  return {request, keys, kreisel::SceneNumbers(text_of(request.scene), keys), std::move(names)};
+  return {request, keys, kreisel::SceneNumbers(text, keys), std::move(names)};
 }
 
 /// As simulate runs a file in which the numbers that were drawn stand.
@@ -84,7 +88,7 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     const auto ends = [&stop] { return stop || signals::caught() != 0; };
     const auto run = model->solve(
         task, start_of(file), [&](double, const JointState&) { return !ends(); }, ends);
-    if (ends() && run.times.size() < task.times.size()) return member;
+    if (ends() && run.report.status != RunStatus::complete) return member;
     member.status = run.report.status;
     member.message = run.report.message;
     if (run.report.status != RunStatus::complete) return member;
@@ -98,6 +102,7 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
       member.message = "the end of the motion or its error is not finite";
     }
   } catch (const std::exception& error) {
+    if (stop || signals::caught() != 0) return member;  // cancelled
     member.status = RunStatus::failed;
     member.message = error.what();  // of a scene several lines
     std::replace(member.message.begin(), member.message.end(), '\n', ';');
@@ -118,8 +123,7 @@ std::vector<Member> compute(const Scene& scene) {
   return members;
 }
 
-void write_csv(const Scene& scene, const std::vector<Member>& members) {
-  kreisel::AtomicFile file(*scene.request.csv);
+void write_csv(kreisel::AtomicFile& file, const Scene& scene, const std::vector<Member>& members) {
   std::ostream& out = file.stream();
   out << "member";
   for (const std::string& key : scene.keys) out << ',' << kreisel::csv_field(key);
@@ -208,20 +212,26 @@ void print_summary(const Request& request, const Summary& all) {
   fmt::print("{} of {} members, {} failed; greatest error {:.1e}, estimated\n\n", all.complete,
              request.members, all.failed, all.error);
   std::size_t width = 0;
-  for (const Statistics& column : all.columns) width = std::max(width, column.name.size());
+  const auto shown = [](const Statistics& column) { return kreisel::printable(column.name, 60); };
+  for (const Statistics& column : all.columns) width = std::max(width, shown(column).size());
   fmt::print("{:{}} {:>14} {:>14} {:>14} {:>14}\n", "", width, "mean", "deviation", "least",
              "greatest");
   for (const Statistics& column : all.columns) {
     if (column.count == 0) continue;
-    fmt::print("{:{}} {:14.6g} {:14.6g} {:14.6g} {:14.6g}\n", column.name, width, column.mean,
+    fmt::print("{:{}} {:14.6g} {:14.6g} {:14.6g} {:14.6g}\n", shown(column), width, column.mean,
                column.deviation(), column.least, column.greatest);
   }
 }
 
 int run(const Request& request) {
   const Scene scene = read(request);
+  std::optional<kreisel::AtomicFile> table;
+  if (request.csv) table.emplace(*request.csv);
   const std::vector<Member> members = compute(scene);
-  if (request.csv) write_csv(scene, members);
+  if (table) {
+    write_csv(*table, scene, members);
+    outputs::leave_standard_output_to(*request.csv);
+  }
   const Summary all = summary(scene, members);
   if (request.json) {
     print_json(request, all);
@@ -242,6 +252,7 @@ int run(const Request& request) {
                all.complete + all.failed, request.members);
     return exit_status::of_signal();
   }
+  if (signals::caught() != 0) return exit_status::of_signal();
   if (all.failed > 0) return exit_status::failed;
   return all.off > 0 ? exit_status::tolerance_missed : exit_status::complete;
 }

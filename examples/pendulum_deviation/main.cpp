@@ -11,9 +11,13 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/printable.hpp>
 #include <dynamics/guide/normal_gravity.hpp>
 
 #include "../shared/exit_status.hpp"
+#include "../shared/gnuplot.hpp"
+#include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
 #include "request.hpp"
 
@@ -49,6 +53,12 @@ void require_finite(const kreisel::PendulumAnswer<double>& answer) {
 
 int run(const Request& request) {
   const Clock::time_point start = Clock::now();
+  const std::vector<std::filesystem::path> inputs{request.list};
+  if (request.csv) outputs::refuse_input("--csv", *request.csv, inputs);
+  if (request.plot) outputs::refuse_input("--plot", *request.plot, inputs);
+  if (request.plot) gnuplot::require_installed();
+  std::optional<kreisel::AtomicFile> table;
+  if (request.csv) table.emplace(*request.csv);
   std::vector<Row> rows;
   rows.reserve(request.sites.size());
   {
@@ -62,20 +72,24 @@ int run(const Request& request) {
     }
   }
   const double run_time_s = seconds_since(start);
-  if (request.csv) write_csv(*request.csv, rows);
-  if (request.plot) draw(request, rows);
+  if (table) {
+    write_csv(*table, rows);
+    outputs::leave_standard_output_to(*request.csv);
+  }
   if (request.json) {
     print_json(request, rows, run_time_s);
   } else {
     print_table(request, rows, run_time_s);
   }
+  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  if (request.plot && !rows.empty() && signals::caught() == 0) draw(request, rows);
   if (rows.size() < request.sites.size()) {
     fmt::print(stderr,
                "pendulum_deviation: interrupted after {} of {} sites; what was computed is kept\n",
                rows.size(), request.sites.size());
     return exit_status::of_signal();
   }
-  if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  if (signals::caught() != 0) return exit_status::of_signal();
   const auto unknown = std::count_if(rows.begin(), rows.end(), [](const Row& row) {
     const auto numbers = exact_numbers(row.answer);
     return std::any_of(numbers.begin(), numbers.end(),
@@ -127,7 +141,7 @@ GradientEffect effect_of_gradient(const kreisel::PendulumBody<Real>& body,
 
 template <class E>
 [[noreturn]] void rethrow_with(const std::string& name, const E& error) {
-  throw E(name.empty() ? error.what() : name + ": " + error.what());
+  throw E(name.empty() ? error.what() : kreisel::printable(name, 100) + ": " + error.what());
 }
 
 }  // namespace

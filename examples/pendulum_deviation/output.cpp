@@ -200,11 +200,12 @@ void print_json(const Request& request, const std::vector<Row>& rows, double run
     for (const Row& row : rows) result["sites"].push_back(json(request, row));
     result["run_time_s"] = run_time_s;
   }
-  fmt::print("{}\n", result.dump(2));
+  // A name may be no UTF-8.
+  using Names = nlohmann::ordered_json::error_handler_t;
+  fmt::print("{}\n", result.dump(2, ' ', false, Names::replace));
 }
 
-void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows) {
-  kreisel::AtomicFile file(path);
+void write_csv(kreisel::AtomicFile& file, const std::vector<Row>& rows) {
   std::ostream& out = file.stream();
   const auto value = [](const std::optional<Estimated<double>>& number) {
     return number ? fmt::format("{:.16e}", number->value) : std::string();

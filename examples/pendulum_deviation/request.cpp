@@ -187,6 +187,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       throw InvalidInput("--sites brings latitude, height and azimuth of its own");
     }
     request.mode = Request::Mode::sites;
+    request.list = sites;
     request.sites = listed_sites(sites, place.rotation_rate);
   } else if (!sweep.empty()) {
     request.mode = Request::Mode::sweep;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/atomic_file.hpp>
 #include <dynamics/scene/pendulum_deviation.hpp>
 
 #include "sites.hpp"
@@ -15,6 +16,7 @@ struct Request {
   Mode mode = Mode::single;
   std::string swept;  // "latitude", "azimuth", "height" or "rotation-rate"
   std::vector<Site> sites;
+  std::filesystem::path list;  // of the sites, where they are read from a file
 
   kreisel::PendulumBody<Real> body;
   std::optional<Real> gravity;  // none: normal gravity
@@ -54,7 +56,7 @@ void print_table(const Request& request, const std::vector<Row>& rows, double ru
 
 void print_json(const Request& request, const std::vector<Row>& rows, double run_time_s);
 
-void write_csv(const std::filesystem::path& path, const std::vector<Row>& rows);
+void write_csv(kreisel::AtomicFile& file, const std::vector<Row>& rows);
 
 /// Deviation and change of period over the swept quantity, or the sites' latitude, by gnuplot.
 ///

@@ -3,7 +3,9 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <string>
 
+#include <dynamics/file/printable.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <motor/error.hpp>
 
@@ -40,7 +42,8 @@ template <class Program>
       std::fprintf(stderr, "%s: interrupted\n", name);
       return of_signal();
     }
-    std::fprintf(stderr, "%s: %s\n", name, error.what());  // fmt's may throw
+    const std::string line = kreisel::printable(error.what(), 2000);
+    std::fprintf(stderr, "%s: %s\n", name, line.c_str());  // fmt's may throw
     return status;
   };
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing

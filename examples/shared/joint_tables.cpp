@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include <dynamics/file/printable.hpp>
+
 using kreisel::JointKind;
 using nlohmann::ordered_json;
 
@@ -60,7 +62,8 @@ ordered_json joint(const kreisel::BodyTree& tree, int body, const JointState& st
 
 void print(const char* title, const ordered_json& table) {
   fmt::print("\n{}\n", title);
-  for (const auto& [body, values] : table.items()) {
+  for (const auto& [name, values] : table.items()) {
+    const std::string body = kreisel::printable(name, 60);
     for (const auto& [quantity, numbers] : values.items()) {
       if (numbers.is_object()) {
         for (const auto& [part, vector] : numbers.items()) {

@@ -2,6 +2,9 @@
 
 #include <Eigen/Geometry>
 
+#include <filesystem>
+#include <vector>
+
 #include <dynamics/body/reaction.hpp>
 #include <dynamics/body/tree.hpp>
 #include <dynamics/file/scene_file.hpp>
@@ -11,6 +14,10 @@ struct JointState {
   Eigen::VectorXd coordinates;
   Eigen::VectorXd rates;
 };
+
+/// The scene file and the tables of its guides.
+[[nodiscard]] std::vector<std::filesystem::path> files_read(const std::filesystem::path& scene_file,
+                                                            const kreisel::SceneFile& scene);
 
 /// The state that a scene begins with.
 [[nodiscard]] JointState start_of(const kreisel::SceneFile& scene);

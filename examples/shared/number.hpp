@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include <dynamics/file/printable.hpp>
 #include <motor/error.hpp>
 
 namespace command_line {
@@ -22,7 +23,9 @@ template <class Real = double>
     value = std::strtod(text.c_str(), &end);
   }
   if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-    throw kreisel::InvalidInput(fmt::format("{} = '{}' is not a finite number", what, text));
+    throw kreisel::InvalidInput(fmt::format("{} = '{}' is not a finite number",
+                                            kreisel::printable(what),
+                                            kreisel::printable(text, 100)));
   }
   return value;
 }

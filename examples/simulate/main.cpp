@@ -226,16 +226,6 @@ void print(const Result& result, bool as_json) {
   if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
 }
 
-/// What is read, so that nothing of it is written to.
-std::vector<std::filesystem::path> inputs(const Request& request, const kreisel::SceneFile& scene) {
-  std::vector<std::filesystem::path> files{request.scene};
-  for (const auto& link : scene.guide) {
-    const auto* const table = std::get_if<kreisel::scene_guide::Table>(&link);
-    if (table != nullptr) files.push_back(table->file);
-  }
-  return files;
-}
-
 int run(const Request& request) {
   const std::string text = kreisel::read_text(request.scene, kreisel::largest_scene_file);
   kreisel::SceneFile scene = kreisel::parse_scene(text, request.scene, request.solve);
@@ -248,8 +238,9 @@ int run(const Request& request) {
   const std::unique_ptr<Model> model = make_model(scene);
   std::optional<Record> record;
   if (request.csv) {
-    outputs::refuse_input("--csv", *request.csv, inputs(request, scene));
-    outputs::refuse_input("--csv", request.csv->string() + ".resume", inputs(request, scene));
+    const auto inputs = files_read(request.scene, scene);
+    outputs::refuse_input("--csv", *request.csv, inputs);
+    outputs::refuse_input("--csv", request.csv->string() + ".resume", inputs);
     record.emplace(request, text, scene, *model);
     outputs::leave_standard_output_to(*request.csv);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include <dynamics/file/printable.hpp>
 #include <dynamics/solve/report.hpp>
 #include <motor/error.hpp>
 
@@ -219,7 +220,9 @@ void print_json(const Result& result) { fmt::print("{}\n", summary(result).dump(
 
 void print_summary(const Result& result) {
   const kreisel::RunReport& r = report(result);
-  if (!result.scene.title.empty()) fmt::print("{}\n\n", result.scene.title);
+  if (!result.scene.title.empty()) {
+    fmt::print("{}\n\n", kreisel::printable(result.scene.title));
+  }
   fmt::print("method    {}, model {}\n", r.method, name(result.scene.model));
   fmt::print(
       "steps     {:.0f}, {:.0f} rejected, {:.0f} evaluations ({:.0f} with those for the "

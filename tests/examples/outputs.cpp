@@ -1,0 +1,246 @@
+// What the programs write, and where: pipes, devices, full disks, signals, hostile names.
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <sys/stat.h>
+#include <vector>
+
+#include <support/json.hpp>
+#include <support/program.hpp>
+
+using namespace kreisel;
+using nlohmann::json;
+using test::Outcome;
+using test::Scratch;
+
+namespace {
+
+const std::string simulate = KREISEL_SIMULATE;
+const std::string ensemble = KREISEL_ENSEMBLE;
+const std::string analyze = KREISEL_ANALYZE;
+
+std::string rod(const std::string& head, const std::string& name, const std::string& t_end) {
+  return head + "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[[body]]\nname = " + name +
+         "\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1\ncentre = [0, 0, -1]\n"
+         "inertia = [0.1, 0.1, 0.1]\ninitial = { angle = 0.5 }\n[solve]\nt_end = " +
+         t_end + "\noutput_step = 0.01\nmethod = \"verner98\"\n";
+}
+
+/// The text as one word of the shell.
+std::string word(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+/// The text as a basic string of TOML.
+std::string toml(const std::string& text) { return json(text).dump(); }
+
+long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+/// Names that are something else to a shell, to gnuplot, to a terminal or to a reader of lines.
+std::vector<std::string> hostile_names() {
+  return {"'",
+          "'quoted'",
+          "it''s",
+          "\"double\"",
+          "`touch hit`",
+          "$(touch hit)",
+          "|touch hit; #",
+          "; touch hit",
+          "> hit",
+          "~",
+          "-rf",
+          "--help",
+          "@macro",
+          "a\nb: is no key",
+          "tab\there",
+          "\x1b]0;title\x07",
+          "back\\slash",
+          "%s%n {} {0}",
+          "#comment",
+          "END",
+          "\u00e4\u00f6\u00fc \u2713 \U0001f600",
+          "</script><!--",
+          "=1+1",
+          std::string(5000, 'x')};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(outputs_of_programs)
+
+BOOST_AUTO_TEST_CASE(hostile_names_and_titles_are_only_shown) {
+  for (const std::string& name : hostile_names()) {
+    const Scratch folder;
+    const std::string file =
+        folder.write("s.toml", rod("title = " + toml(name) + "\n", toml(name), "0.1")).string();
+    const std::string here = "cd " + folder.path().string() + " && ";
+    const Outcome run =
+        test::run(here + simulate + " s.toml --csv out.csv --json --terms --plot pictures");
+    BOOST_TEST(run.status == 0, name << ": " << run.err);
+    BOOST_TEST(test::parsed(run.out).at("title") == name);
+    BOOST_TEST(folder.read("pictures/coordinates.svg").find("</svg>") != std::string::npos, name);
+    BOOST_TEST(lines(folder.read("out.csv")) >= 12, name);
+    const Outcome text = test::run(here + simulate + " s.toml");
+    BOOST_TEST(text.status == 0, text.err);
+    BOOST_TEST(text.out.find('\x1b') == std::string::npos, name);
+    BOOST_TEST(text.out.find("\nb: is no key") == std::string::npos, name);
+    const Outcome equilibrium = test::run(here + analyze + " s.toml --plot pictures");
+    BOOST_TEST(equilibrium.status == 0, name << ": " << equilibrium.err);
+    const Outcome members =
+        test::run(here + ensemble + " s.toml --members 2 --json --csv members.csv --vary " +
+                  word("body[0].initial.angle=linear(0.1,0.2)"));
+    BOOST_TEST(members.status == 0, name << ": " << members.err);
+    BOOST_TEST(!std::filesystem::exists(folder.path() / "hit"), name);
+    BOOST_TEST(folder.size() == 4U, name);
+  }
+}
+
+// A name with a slash is another folder's; all others are names of files here.
+BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
+  for (const std::string& name : hostile_names()) {
+    if (name.find('/') != std::string::npos || name.size() > 200) continue;
+    const Scratch folder;
+    folder.write("s.toml", rod("", "\"rod\"", "0.1"));
+    std::filesystem::create_directory(folder.path() / "home");
+    const std::string here =
+        "cd " + folder.path().string() + " && HOME=" + (folder.path() / "home").string() + " ";
+    const Outcome run = test::run(here + simulate + " s.toml --csv=" + word(name) +
+                                  " --plot=" + word("plot " + name));
+    BOOST_TEST(run.status == 0, name << ": " << run.err);
+    BOOST_TEST(lines(folder.read(name)) == 12, name);
+    BOOST_TEST(std::filesystem::exists(folder.path() / ("plot " + name) / "coordinates.svg"));
+    std::filesystem::rename(folder.path() / "s.toml", folder.path() / ("s" + name));
+    const Outcome again = test::run(here + simulate + " " + word("s" + name));
+    BOOST_TEST(again.status == 0, name << ": " << again.err);
+    const Outcome none = test::run(here + simulate + " " + word("no " + name));
+    BOOST_TEST(none.status == 2, name);
+    BOOST_TEST(lines(none.err) == 1, name << ": " << none.err);
+    const Outcome varied = test::run(here + ensemble + " " + word("s" + name) +
+                                     " --members 1 --vary " + word(name + "=linear(0,1)"));
+    BOOST_TEST(varied.status == 2, name << ": " << varied.out);
+    BOOST_TEST(lines(varied.err) == 1, name << ": " << varied.err);
+    BOOST_TEST(!std::filesystem::exists(folder.path() / "hit"), name);
+    BOOST_TEST(std::filesystem::is_empty(folder.path() / "home"), name);
+  }
+}
+
+// A mistake is one line, whatever the file says.
+BOOST_AUTO_TEST_CASE(hostile_texts_make_one_line_of_a_mistake) {
+  for (const std::string& name : hostile_names()) {
+    const Scratch folder;
+    std::string text = rod("", "\"rod\"", "0.1");
+    text.insert(text.find("mass = "), "parent = " + toml(name) + "\n");
+    const std::string file = folder.write("s.toml", text).string();
+    for (const std::string& program : {simulate, analyze}) {
+      const Outcome outcome = test::run(program + " " + file);
+      BOOST_TEST(outcome.status == 2);
+      BOOST_TEST(lines(outcome.err) == 1, outcome.err);
+      BOOST_TEST(outcome.err.find("s.toml:") != std::string::npos, outcome.err);
+      BOOST_TEST(outcome.err.size() < 1500U, outcome.err.size());
+      BOOST_TEST(outcome.err.find('\x1b') == std::string::npos);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_pipe_gets_all_rows) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", rod("", "\"rod\"", "2")).string();
+  const std::string pipe = (folder.path() / "pipe").string();
+  BOOST_TEST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const Outcome whole =
+      test::run("( cat " + pipe + " & timeout 60 " + simulate + " " + file + " --csv " + pipe +
+                " >/dev/null; status=$?; wait; exit $status )");
+  BOOST_TEST(whole.status == 0, whole.err);
+  BOOST_TEST(lines(whole.out) == 202);
+  BOOST_TEST(std::filesystem::is_fifo(pipe));
+  const Outcome dash = test::run(simulate + " " + file + " --csv -");
+  BOOST_TEST(dash.out == whole.out);
+  BOOST_TEST(dash.err.find("verner98") != std::string::npos, dash.err);
+  BOOST_TEST(test::run(simulate + " - <" + file).status == 0);
+}
+
+// 1e4 rows are more than a pipe holds.
+BOOST_AUTO_TEST_CASE(a_reader_that_goes_away_makes_3) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", rod("", "\"rod\"", "100")).string();
+  const std::string pipe = (folder.path() / "pipe").string();
+  BOOST_TEST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const Outcome outcome = test::run("( head -c 10 " + pipe + " >/dev/null & timeout 60 " +
+                                    simulate + " " + file + " --csv " + pipe + " )");
+  BOOST_TEST(outcome.status == 3, outcome.err);
+  BOOST_TEST(outcome.err.find("Broken pipe") != std::string::npos, outcome.err);
+}
+
+// Nobody reads at all, or nobody reads on: each wait ends.
+BOOST_AUTO_TEST_CASE(a_signal_ends_a_wait_for_a_reader) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", rod("", "\"rod\"", "100")).string();
+  const std::string pipe = (folder.path() / "pipe").string();
+  BOOST_TEST_REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  for (const std::string& reader : {std::string("true"), "sleep 30 <" + pipe}) {
+    for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+      const Outcome outcome = test::run(
+          "( " + reader + " & r=$!; timeout 60 env " + simulate + " " + file + " --csv " + pipe +
+          " & pid=$!; sleep 2; kill -" + signal + " $pid; wait $pid; s=$?; kill $r; exit $s )");
+      BOOST_TEST(outcome.status == status, reader << ": " << outcome.err);
+      BOOST_TEST(outcome.err.find("interrupted after t = ") != std::string::npos, outcome.err);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(devices_are_written_to_not_replaced) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", rod("", "\"rod\"", "0.1")).string();
+  const std::string vary = " --members 2 --vary 'body[0].initial.angle=linear(0.1,0.2)' --csv ";
+  for (const std::string& command :
+       {simulate + " " + file + " --csv ", ensemble + " " + file + vary}) {
+    BOOST_TEST(test::run(command + "/dev/null").status == 0);
+    BOOST_TEST(std::filesystem::is_character_file("/dev/null"));
+    BOOST_TEST(test::run(command + "/dev/full").status == 3);
+    BOOST_TEST(std::filesystem::is_character_file("/dev/full"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_input_is_not_overwritten) {
+  const Scratch folder;
+  const std::string text = rod("", "\"rod\"", "0.1");
+  const std::string file = folder.write("s.toml", text).string();
+  std::filesystem::create_symlink("s.toml", folder.path() / "link");
+  const std::string vary = " --members 2 --vary 'body[0].initial.angle=linear(0.1,0.2)' --csv ";
+  for (const std::string& command :
+       {simulate + " " + file + " --csv ", ensemble + " " + file + vary}) {
+    for (const std::string& name : {file, (folder.path() / "link").string()}) {
+      const Outcome outcome = test::run(command + name);
+      BOOST_TEST(outcome.status == 2, outcome.err);
+      BOOST_TEST(outcome.err.find("would be overwritten") != std::string::npos, outcome.err);
+      BOOST_TEST(folder.read("s.toml") == text);
+    }
+  }
+}
+
+// Files that may not grow past 8 kB: the page and the pictures are larger.
+BOOST_AUTO_TEST_CASE(a_picture_that_is_cut_makes_3) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", rod("", "\"rod\"", "2")).string();
+  for (const std::string& program : {simulate, analyze}) {
+    const Outcome outcome = test::run("bash -c \"trap '' XFSZ; ulimit -f 8; " + program + " " +
+                                      file + " --plot " + (folder.path() / "out").string() + "\"");
+    BOOST_TEST(outcome.status == 3, outcome.err);
+    BOOST_TEST(outcome.err.find("File too large") != std::string::npos, outcome.err);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(endless_input_is_refused) {
+  for (const std::string& program : {simulate, analyze}) {
+    const Outcome outcome = test::run("timeout 60 " + program + " /dev/zero");
+    BOOST_TEST(outcome.status == 2, outcome.err);
+    BOOST_TEST(outcome.err.find("is larger than 64 MB") != std::string::npos, outcome.err);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
