@@ -195,6 +195,18 @@ py::object part(const py::array_t<double>& rows, std::size_t begin, int count) {
   return rows[py::make_tuple(all, py::slice(first, first + count, 1))];
 }
 
+/// A RuntimeWarning where the tolerance was not reached. Throws what Python makes of it where
+/// warnings are errors.
+void warn_if_missed(const kreisel::RunReport& report) {
+  if (report.tolerance_kept) return;
+  std::ostringstream text;
+  text << "the tolerance " << report.tolerance << " was not reached, the error is about "
+       << report.error_estimate;
+  if (PyErr_WarnEx(PyExc_RuntimeWarning, text.str().c_str(), 1) != 0) {
+    throw py::error_already_set();
+  }
+}
+
 Run solve(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
           const std::optional<std::string>& method, const std::optional<std::vector<double>>& times,
           bool reactions) {
@@ -221,6 +233,7 @@ Run solve(const Scene& scene, std::optional<double> t_end, std::optional<double>
   if (run.report.status == kreisel::RunStatus::failed) {
     throw kreisel::ComputationFailed(run.report.message);
   }
+  warn_if_missed(run.report);
 
   Run result;
   result.title = file.title;
