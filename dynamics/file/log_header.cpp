@@ -187,6 +187,7 @@ class Matcher {
   void note_several(const std::string& name, const std::vector<std::size_t>& found) {
     if (found.size() < 2 || !match_.ambiguous.empty()) return;
     std::vector<std::string> numbers;
+    numbers.reserve(found.size());
     for (const std::size_t i : found) numbers.push_back(std::to_string(i + 1));
     match_.ambiguous = "columns " + listed(numbers) + " all fit '" + name +
                        "': give its number,  columns = { .., " + name + " = " + numbers.front() +

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include <dynamics/file/log_header.hpp>
 #include <dynamics/file/log_text.hpp>
 
 namespace kreisel::detail {
@@ -53,21 +54,20 @@ void check_groups(Section& section, const std::vector<LogRequest>& requests,
   for (const LogRequest& request : requests) {
     std::string given;
     for (const LogColumnGroup& group : request.one_of) {
-      std::string missing;
-      std::string present;
+      std::vector<std::string> missing;
+      std::vector<std::string> present;
       for (const std::string& name : group.names) {
-        std::string& list = options.columns.contains(name) ? present : missing;
-        list += (list.empty() ? "" : ", ") + name;
+        (options.columns.contains(name) ? present : missing).push_back(name);
       }
       if (present.empty()) continue;
       if (!missing.empty()) {
-        section.refuse("columns", "names " + present + " but not " + missing);
+        section.refuse("columns", "names " + listed(present) + " but not " + listed(missing));
       }
       if (!given.empty()) {
-        section.refuse("columns",
-                       "gives the " + request.title + " twice, by " + given + " and by " + present);
+        section.refuse("columns", "gives the " + request.title + " twice, by " + given +
+                                      " and by " + listed(present));
       }
-      given = present;
+      given = listed(present);
     }
   }
 }

@@ -332,8 +332,11 @@ BOOST_AUTO_TEST_CASE(rows_that_are_broken_are_named_by_line) {
              "log.csv:3: t = '16:13:02' is a time of the clock: convert the column to seconds, or "
              "name another");
   for (const std::string bad : {"1e999", "0x10", "--1", "+-1", "1.5m", "1 2", "+"}) {
-    BOOST_TEST(complaint(good + "1," + bad + "\n") ==
-               "log.csv:3: value = '" + bad + "' is not a finite number");
+    std::string text = good;
+    text.append("1,").append(bad).append("\n");
+    std::string expected = "log.csv:3: value = '";
+    expected.append(bad).append("' is not a finite number");
+    BOOST_TEST(complaint(text) == expected);
   }
   BOOST_TEST(complaint(good + "-1,2\n") ==
              "log.csv:3: t = -1 s is earlier than in line 2 (t = 0 s)");
@@ -362,8 +365,9 @@ BOOST_AUTO_TEST_CASE(quaternions_are_held_to_norm_one) {
              "columns, or leave such rows out by  window = [from, to]");
   BOOST_TEST(complaint(header + "0.907;0.992;0;0;0\n0.91;-1.008;0;0;0\n", {}, motion) == "");
   for (const std::string w : {"0.985", "-1.015"}) {
-    BOOST_TEST(complaint(header + "0.907;" + w + ";0;0;0\n", {}, motion)
-                   .starts_with("log.csv:3: the quaternion has norm"));
+    std::string text = header;
+    text.append("0.907;").append(w).append(";0;0;0\n");
+    BOOST_TEST(complaint(text, {}, motion).starts_with("log.csv:3: the quaternion has norm"));
   }
   LogOptions options;
   options.window = {0.91, 2};
