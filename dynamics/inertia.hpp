@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -319,6 +321,48 @@ template <class S>
   throw InvalidInput(what + ": " + text);
 }
 
+/// The legal tensor nearest to one whose principal moments a <= b <= c violate a + b >= c or a >= 0,
+/// by the sum of squares of all entries:
+///
+///   T + e/3 (1 - 2 v v^t)  with e = c - a - b and v along c;  (b + c)/2 (1 - v v^t)  with v along
+///   a, if the first has a moment below 0
+[[nodiscard]] inline Symmetric3<double> nearest_legal(const Symmetric3<double>& t,
+                                                      const std::array<double, 3>& moments) {
+  const auto& [a, b, c] = moments;
+  const Matrix3<double> T = t.matrix();
+  const Matrix3<double> one = Matrix3<double>::Identity();
+  if (2 * a + c - b >= 0) {
+    const double e = c - a - b;
+    const Matrix3<double> along = (T - a * one) * (T - b * one) / ((c - a) * (c - b));
+    return Symmetric3<double>::from(T + e / 3 * (one - 2 * along));
+  }
+  const Matrix3<double> along = (T - b * one) * (T - c * one) / ((a - b) * (a - c));
+  return Symmetric3<double>::from((b + c) / 2 * (one - along));
+}
+
+/// Refuses principal moments; where they are off by 1e-3 at most, as rounded numbers are, the
+/// message ends with the nearest legal tensor.
+///
+/// Throws : InvalidInput
+[[noreturn]] inline void refuse_moments(const std::string& what, const char* why,
+                                        const Symmetric3<double>& t,
+                                        const std::array<double, 3>& moments) {
+  const auto& [a, b, c] = moments;
+  char text[320];
+  int used = std::snprintf(text, sizeof text, why, a, b, c);
+  const double violation = std::max(c - a - b, -a);
+  if (violation <= 1e-3 * c) {
+    const Symmetric3<double> m = nearest_legal(t, moments);
+    used += std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
+                          ", by %.2g of the greatest; nearest legal tensor: [%.14g, %.14g, %.14g",
+                          violation / c, m.xx, m.yy, m.zz);
+    const bool is_diagonal = t.xy == 0 && t.xz == 0 && t.yz == 0;
+    std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
+                  is_diagonal ? "]" : ", %.14g, %.14g, %.14g]", m.xy, m.xz, m.yz);
+  }
+  throw InvalidInput(what + ": " + text);
+}
+
 }  // namespace detail
 
 /// Whether a body without mass is legal: a massless ring is a limit that some scenes take.
@@ -330,7 +374,8 @@ enum class Mass { positive, zero_allowed };
 /// the triangle inequality of its principal moments. Needles, discs and points are legal limits;
 /// violations up to 1e-12 of the tensor given (in float 8e-6) pass as rounding.
 ///
-/// Throws : InvalidInput, naming the inequality violated with its numbers
+/// Throws : InvalidInput, naming the inequality violated with its numbers, and the nearest legal
+///          tensor where rounding to three digits or more explains the violation
 template <class S>
 void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& what = "inertia") {
   using Number = decltype(detail::number_in(T.mass));
@@ -363,13 +408,21 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
   };
   const auto [a, b, c] = detail::principal_moments(numbers(about_centre));
   const Number slack = detail::tensor_slack(numbers(t));
+  const std::array<double, 3> moments{static_cast<double>(a), static_cast<double>(b),
+                                      static_cast<double>(c)};
+  const auto refuse_moments = [&](const char* why) {
+    const auto in = [](const S& x) { return static_cast<double>(detail::number_in(x)); };
+    const Symmetric3<S>& m = about_centre;
+    detail::refuse_moments(what, why, {in(m.xx), in(m.yy), in(m.zz), in(m.xy), in(m.xz), in(m.yz)},
+                           moments);
+  };
   if (a < -slack) {
-    refuse("principal moments about the centre of mass >= 0 fails: %.10g, %.10g, %.10g kg m^2", a,
-           b, c);
+    refuse_moments(
+        "principal moments about the centre of mass >= 0 fails: %.10g, %.10g, %.10g kg m^2");
   }
   if (a + b < c - slack) {
-    refuse("triangle inequality about the centre of mass fails: %.10g + %.10g >= %.10g kg m^2", a,
-           b, c);
+    refuse_moments(
+        "triangle inequality about the centre of mass fails: %.10g + %.10g >= %.10g kg m^2");
   }
 }
 

@@ -1,10 +1,14 @@
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/data/monomorphic.hpp>
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -393,11 +397,45 @@ BOOST_AUTO_TEST_CASE(names_the_moments_that_are_negative) {
              "inertia: principal moments about the centre of mass >= 0 fails: -1, 1, 1 kg m^2");
 }
 
+// The tensor of the message is legal, and no other one is nearer: the change has the pattern
+// e/3 (1, 1, -1) on the principal axes, so its norm is e/sqrt(3).
+BOOST_AUTO_TEST_CASE(names_the_nearest_legal_tensor) {
+  const auto named = [](const Symmetric3<>& t) {
+    const std::string text = refusal(Inertia<>{1, {0, 0, 0}, t});
+    std::vector<double> numbers;
+    std::istringstream list(text.substr(std::min(text.size(), text.rfind('[') + 1)));
+    for (double x = 0; list >> x; list.ignore(1)) numbers.push_back(x);
+    numbers.resize(6, 0);
+    return Symmetric3<>{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+  };
+  const auto norm = [](const Symmetric3<>& t) { return t.matrix().norm(); };
+  const Matrix3<double> R = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5).normalized().toRotationMatrix();
+  for (const double e : {1e-3, 1e-6, 1e-11}) {
+    for (const bool is_turned : {false, true}) {
+      const Symmetric3<> disc{0.5, 0.5, 1 + e};
+      const Symmetric3<> t = is_turned ? disc.turned(R) : disc;
+      const Symmetric3<> legal = named(t);
+      BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, legal}) == "");
+      BOOST_TEST(std::abs(norm(legal - t) - e / std::sqrt(3.0)) <= 1e-3 * e + 1e-13);
+    }
+  }
+  // A needle with a moment below 0 by rounding: both others become equal.
+  const Symmetric3<> needle = Symmetric3<>{-1e-4, 1, 1}.turned(R);
+  const Symmetric3<> legal = named(needle);
+  BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, legal}) == "");
+  BOOST_TEST(std::abs(norm(legal - needle) - 1e-4) <= 1e-12);
+  BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {0.5, 0.5, 1.1, 0, 0, 0}}).find("nearest") ==
+             std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(names_the_triangle_that_does_not_close) {
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {1, 4, 2, 0, 0, 0}}) ==
              "inertia: triangle inequality about the centre of mass fails: 1 + 2 >= 4 kg m^2");
-  BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {1, 2, 3.0001, 0, 0, 0}}) ==
-             "inertia: triangle inequality about the centre of mass fails: 1 + 2 >= 3.0001 kg m^2");
+  BOOST_TEST(
+      refusal(Inertia<>{1, {0, 0, 0}, {1, 2, 3.0001, 0, 0, 0}}) ==
+      "inertia: triangle inequality about the centre of mass fails: 1 + 2 >= 3.0001 kg m^2, by "
+      "3.3e-05 of the greatest; nearest legal tensor: [1.0000333333333, 2.0000333333333, "
+      "3.0000666666667]");
   // About the origin it closes, about the centre of mass (0, 0, 1) it does not.
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 1}, {2, 2, 3, 0, 0, 0}}) ==
              "inertia: triangle inequality about the centre of mass fails: 1 + 1 >= 3 kg m^2");
