@@ -9,7 +9,7 @@
 #include <motor/error.hpp>
 
 /// Decompositions of matrices whose size is known at run time, by Eigen. They are the slowest of
-/// Eigen to compile, and are the same for every scene.
+/// Eigen to compile, and are the same for every scene. A matrix without rows or columns has no values.
 
 namespace kreisel::detail {
 
@@ -64,7 +64,7 @@ struct ShortestSolution {
   int rank = 0;  ///< of A
 };
 
-/// By a complete orthogonal decomposition; A is not empty.
+/// By a complete orthogonal decomposition.
 ///
 /// threshold : a pivot is 0 below so much of the greatest
 KREISEL_DECLARED [[nodiscard]] ShortestSolution shortest_solution(const Eigen::MatrixXd& A,

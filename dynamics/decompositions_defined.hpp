@@ -18,6 +18,7 @@ inline void check_convergence(Eigen::ComputationInfo info) {
 }
 
 KREISEL_DEFINED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
+  if (A.size() == 0) return {};
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
@@ -26,6 +27,7 @@ KREISEL_DEFINED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
 // As Eigen::EigenSolver has it, which takes the compiler twice as long: it also compiles what makes
 // vectors.
 KREISEL_DEFINED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
+  if (A.size() == 0) return {};
   if (!A.allFinite()) check_convergence(Eigen::NoConvergence);
   const Eigen::Index n = A.rows();
   const double scale = A.isZero(0) ? 1 : A.cwiseAbs().maxCoeff();  // lest anything overflow
@@ -52,39 +54,54 @@ KREISEL_DEFINED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
 }
 
 KREISEL_DEFINED RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {
+  if (A.size() == 0) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 KREISEL_DEFINED RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(const Eigen::MatrixXcd& A) {
+  if (A.size() == 0) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 KREISEL_DEFINED SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A) {
+  if (A.size() == 0) {
+    return {{},
+            Eigen::MatrixXd::Identity(A.rows(), A.rows()),
+            Eigen::MatrixXd::Identity(A.cols(), A.cols())};
+  }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
 KREISEL_DEFINED SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::MatrixXcd& A) {
+  if (A.size() == 0) {
+    return {{},
+            Eigen::MatrixXcd::Identity(A.rows(), A.rows()),
+            Eigen::MatrixXcd::Identity(A.cols(), A.cols())};
+  }
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
 KREISEL_DEFINED std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A) {
+  if (A.size() == 0) return A;
   const Eigen::FullPivLU<Eigen::MatrixXcd> factors(A);
   if (!factors.isInvertible()) return std::nullopt;
   return Eigen::MatrixXcd(factors.inverse());
 }
 
 KREISEL_DEFINED Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
+  if (A.size() == 0) return Eigen::VectorXcd::Zero(A.cols());
   return A.fullPivLu().solve(b);
 }
 
 KREISEL_DEFINED ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
                                                    const Eigen::VectorXd& b, double threshold) {
+  if (A.size() == 0) return {Eigen::VectorXd::Zero(A.cols()), 0};
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
   factors.setThreshold(threshold);
   factors.compute(A);

@@ -23,7 +23,7 @@ namespace kreisel {
 /// Error  : of loads' damping that of a central difference over 1e-3 m/s and rad/s: none where they
 ///          are linear in the velocities
 /// Throws : InvalidInput where a joint is held or driven (make it fixed), a rotor is braked by
-///          friction, or there is no rotor
+///          friction, there is no rotor, or nothing but rotors can move
 /// Cost   : of each evaluation one rotor_matrices(); with loads 2n more, for their damping
 template <class M>
 class TechnicalBodies final : public TechnicalModel {
@@ -50,6 +50,9 @@ class TechnicalBodies final : public TechnicalModel {
     }
     if (tree.rotors().empty()) {
       throw InvalidInput("technical equations: there is no rotor among the bodies");
+    }
+    if (rates_.empty()) {
+      throw InvalidInput("technical equations: nothing but rotors can move, so none of them turns");
     }
   }
 

@@ -5,6 +5,7 @@
 #include <complex>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <dynamics/decompositions.hpp>
 #include <dynamics/solve/fastest_rate.hpp>
@@ -89,6 +90,30 @@ BOOST_AUTO_TEST_CASE(eigenvalues_of_nothing) {
     A(1, 2) = wrong;
     BOOST_CHECK_THROW((void)detail::eigenvalues(A), ComputationFailed);
   }
+}
+
+BOOST_AUTO_TEST_CASE(empty_matrices_have_no_values) {
+  for (const auto& [rows, columns] : {std::pair(0, 0), {0, 3}, {3, 0}}) {
+    const Eigen::MatrixXd A(rows, columns);
+    const Eigen::MatrixXcd C(rows, columns);
+    for (const auto& identity : {detail::singular_values(A).U, detail::singular_values(A).V}) {
+      BOOST_TEST(identity.isIdentity(0));
+    }
+    BOOST_TEST(detail::singular_values(A).values.size() == 0);
+    BOOST_TEST(detail::singular_values(C).values.size() == 0);
+    BOOST_TEST(detail::singular_values(A).U.rows() == rows);
+    BOOST_TEST(detail::singular_values(C).V.rows() == columns);
+    const auto shortest = detail::shortest_solution(A, Eigen::VectorXd::Zero(rows), 1e-16);
+    BOOST_TEST(shortest.rank == 0);
+    BOOST_TEST((shortest.x == Eigen::VectorXd::Zero(columns)));
+  }
+  const Eigen::MatrixXd none;
+  BOOST_TEST(detail::eigenvalues(none).size() == 0);
+  BOOST_TEST(detail::eigenpairs(none).values.size() == 0);
+  BOOST_TEST(detail::symmetric_eigenpairs(none).values.size() == 0);
+  BOOST_TEST(detail::hermitian_eigenpairs(none).values.size() == 0);
+  BOOST_TEST(detail::inverse(none)->size() == 0);
+  BOOST_TEST(detail::solution(none, Eigen::VectorXcd()).size() == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
