@@ -281,6 +281,7 @@ class SceneReader {
     if (name.empty() && guide.has("file") && guide.find("file")->is_string()) {
       guide.refuse("file", "is empty");
     }
+    (void)guide.has("sigma");  // is read with the log, and a key also where that is refused
     if (mistakes_.count() > before) return;
     const std::filesystem::path file = path_.parent_path() / name;
     try {

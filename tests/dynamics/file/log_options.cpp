@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(mistakes_in_keys_are_told_with_their_place) {
     BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
   }
   // Those of all keys are told at once, and the log is not read in vain.
-  BOOST_TEST(mistakes(plain, "skip = -1\nangles = 3") ==
+  BOOST_TEST(mistakes(plain, "skip = -1\nangles = 3\nsigma = 0") ==
              "s.toml:4:8: guide.skip: must be a whole number of lines, 0 to 1000000\n"
              "s.toml:5:10: guide.angles: must be a text, not a whole number");
 }
