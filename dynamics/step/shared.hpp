@@ -26,13 +26,13 @@ template <class... Words>
   throw InvalidInput(text.str());
 }
 
-template <class S, class... Words>
+template <class Failure = ComputationFailed, class S, class... Words>
 [[noreturn]] void stop_integration(const S& t, const Words&... words) {
   std::ostringstream text;
   text.precision(17);
   text << "integration stopped at t = " << t << " s: ";
   (text << ... << words);
-  throw ComputationFailed(text.str());
+  throw Failure(text.str());
 }
 
 inline void require_blocks(std::span<const int> blocks, int components) {

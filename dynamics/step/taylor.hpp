@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -15,12 +17,18 @@
 
 namespace kreisel {
 
+/// The series of a motion cannot go on where its field can: another method may.
+struct SeriesFailed : ComputationFailed {
+  using ComputationFailed::ComputationFailed;
+};
+
 /// Integration of  y' = f(t, y)  by the Taylor series of the solution, with adaptive steps, for
 /// scenes whose series can be had coefficient by coefficient.
 ///
-/// The step follows from the last two coefficients, so no step is ever rejected; what they cannot
-/// know is a field that changes its formula on the way: its jumps have to be announced. Output
-/// between the ends of a step is the series itself and costs no evaluation.
+/// The step follows from the last coefficients. The field at the end of every step is compared with
+/// the rate of the series there, so that a step on which the series does not solve the equation is
+/// rejected and shortened. Output between the ends of a step is the series itself and costs no
+/// evaluation.
 ///
 /// Vector : Eigen::Matrix<double, n, 1> or Eigen::VectorXd
 /// Series : series(t, h, order, c) fills the columns 1 to `order` of an n x (most_order + 1) matrix c
@@ -31,8 +39,9 @@ namespace kreisel {
 /// Source : order and step: A. Jorba, M. Zou, A software package for the numerical integration of
 ///          ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99
 /// Error  : that of a step, relative, is about `accuracy.relative`
-/// Cost   : a series of order 9 to 24 a step, by the accuracy; its coefficients count as evaluations
-/// Throws : as ExplicitSteps
+/// Cost   : a series of order 9 to 24 a step, by the accuracy, and the field at the step's end; the
+///          coefficients count as evaluations
+/// Throws : as ExplicitSteps; SeriesFailed where the field is finite and the series cannot go on
 template <class Vector, class Series>
 class TaylorSteps {
  public:
@@ -51,6 +60,13 @@ class TaylorSteps {
     if (!detail::finite(y)) detail::refuse_steps("the state at the start is not finite");
     order_ = order_for(accuracy.relative);
     coefficient_.setZero(y.size(), most_order + 1);
+    probe_ = coefficient_;
+    const auto mean_log_factorial = [](int k) { return std::lgamma(k + 1.0) / k; };
+    constexpr double tolerated = 0.15;
+    for (int i = 0; i < 3; ++i) {
+      falls_[std::size_t(i)] =
+          mean_log_factorial(order_) - mean_log_factorial(order_ - 4 + i) + tolerated;
+    }
   }
 
   [[nodiscard]] const double& t() const { return time_.value; }
@@ -71,29 +87,16 @@ class TaylorSteps {
     if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
     const double goal = detail::next_stop(t(), end, jumps_);
-    expand();
     const double left = (goal - time_.value) - time_.rest;
-    const double reach = scale_ * reached_from_here();
-    const bool last = !(reach < std::abs(left));
-    const double h = last ? left : std::copysign(reach, left);
-    if (!last && std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t())) {
-      detail::stop_integration(t(), "the step has become too short to move time on");
-    }
+    expand(std::abs(left));
     before_ = {time_, state_};
-    Vector increment = change(h / scale_);
-    detail::shake(increment, accuracy_.shaken, effort_.steps, h);
-    state_.add(increment);
-    if (!detail::finite(y())) {
-      state_ = before_.state;
-      detail::stop_integration(t(), "the field is not finite");
-    }
-    time_.add(h);
-    if (last) time_ = {goal, 0};
+    double reach = scale_ * reach_;
+    while (!attempt(reach, left, goal)) reach /= 4;
     sizes_.note(y());
     effort_.steps += 1;
-    squares_ += h * h;
+    squares_ += length() * length();
     if (std::fmod(effort_.steps, 4) == 1) note_noise();
-    next_scale_ = reach < std::numeric_limits<double>::max() ? reach : std::abs(h);
+    next_scale_ = reach < std::numeric_limits<double>::max() ? reach : length();
   }
 
   /// Whether a time lies within the last step.
@@ -133,8 +136,8 @@ class TaylorSteps {
   /// What the steps go on from, outputs within the last step included.
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
-    bookmark(time_, state_, before_.time, before_.state, scale_, next_scale_, sizes_, squares_,
-             coefficient_, effort_);
+    bookmark(time_, state_, before_.time, before_.state, scale_, reach_, next_scale_, sizes_,
+             squares_, coefficient_, effort_);
   }
 
  private:
@@ -155,32 +158,85 @@ class TaylorSteps {
     return std::clamp(int(std::lround(best)), 9, most_order);
   }
 
-  /// The series from here on. The unit of time is the last step: powers of it stay within range.
-  void expand() {
+  /// The series from here on, in a unit of time in which its coefficients stay within the range of
+  /// numbers: the last step, at most `left`, or what their own decay says where that is far from it.
+  void expand(double left) {
     if (effort_.evaluations > accuracy_.most_evaluations) {
       detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
     coefficient_.col(0) = y();
-    if (next_scale_ == 0) next_scale_ = first_scale();
-    constexpr int most_tries = 40;  // from 1e308 down to any rate that is a number
+    constexpr double farthest = 1e4;  // to the power of 24 and squared still a number
+    constexpr int most_tries = 100;   // from 1e308 down to any rate that is a number
+    scale_ = next_scale_ == 0 ? first_scale() : next_scale_;
     for (int i = 0; i < most_tries; ++i) {
-      scale_ = next_scale_;
+      scale_ = std::min(scale_, left);
       series_(t(), scale_, order_, coefficient_);
       effort_.evaluations += order_;
-      const Vector last = coefficient_.col(order_);
-      if (detail::finite(last)) return;
-      next_scale_ *= 1e-8;
+      if (!detail::finite(coefficient_)) {
+        scale_ /= farthest;
+        continue;
+      }
+      reach_ = reached_from_here();
+      const bool within_range = reach_ > 1 / farthest && reach_ < farthest;
+      if (within_range || (scale_ == left && reach_ >= 1)) return;
+      scale_ *= std::clamp(reach_, 1e-100, 1e100);
     }
-    detail::stop_integration(t(), "the field is not finite");
+    require_finite_field();
+    detail::stop_integration<SeriesFailed>(
+        t(), "the coefficients of the series leave the range of numbers");
   }
 
   /// The time in which the state changes by itself.
   [[nodiscard]] double first_scale() {
-    series_(t(), 1, 1, coefficient_);
+    require_finite_field();
+    return 100 * sizes_.first_step(probe_.col(1));
+  }
+
+  /// Puts the rate of the state into the probe.
+  void require_finite_field() {
+    probe_.col(0) = y();
+    series_(t(), 1, 1, probe_);
     effort_.evaluations += 1;
-    const Vector rate = coefficient_.col(1);
-    if (!detail::finite(rate)) detail::stop_integration(t(), "the field is not finite");
-    return 100 * sizes_.first_step(rate);
+    if (!detail::finite(Vector(probe_.col(1)))) {
+      detail::stop_integration(t(), "the field is not finite");
+    }
+  }
+
+  /// A step of at most `reach` towards `goal`, which is `left` away; says whether it stood.
+  [[nodiscard]] bool attempt(double reach, double left, double goal) {
+    const bool last = !(reach < std::abs(left));
+    const double h = last ? left : std::copysign(reach, left);
+    if (!last && std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t())) {
+      require_finite_field();
+      detail::stop_integration<SeriesFailed>(t(), "the step has become too short to move time on");
+    }
+    Vector increment = change(h / scale_);
+    const double end_of_step = last ? detail::on_this_side(goal, t(), jumps_) : t() + h;
+    if (!solves_equation(h, end_of_step, increment)) {
+      effort_.rejected += 1;
+      return false;
+    }
+    detail::shake(increment, accuracy_.shaken, effort_.steps, h);
+    state_.add(increment);
+    time_.add(h);
+    if (last) time_ = {goal, 0};
+    return true;
+  }
+
+  /// Whether the series has the rate of the field at the end of a step. The difference times the
+  /// step is some `order` times the error of the step; rounding may make it 1e-11 of the state, and
+  /// what rounding makes of the field.
+  [[nodiscard]] bool solves_equation(double h, double end_of_step, const Vector& increment) {
+    probe_.col(0) = before_.state.value + (increment + before_.state.rest);
+    series_(end_of_step, scale_, 1, probe_);
+    effort_.evaluations += 1;
+    const double s = h / scale_;
+    Vector rate = double(order_) * coefficient_.col(order_);
+    for (int k = order_ - 1; k > 0; --k) rate = s * rate + double(k) * coefficient_.col(k);
+    const Vector off = s * (rate - probe_.col(1));
+    constexpr double rounding = 1e-11;
+    const double allowed = std::max(100 * order_ * accuracy_.relative, rounding);
+    return sizes_.relative(off, increment, 8 * std::abs(h)) <= allowed;
   }
 
   /// How far the series carries, in units of its time.
@@ -191,14 +247,21 @@ class TaylorSteps {
     return misjudged ? reached(std::min(reach, 1.0)) : reach;
   }
 
-  /// To where the last two terms are what a step of about `length` may err by. Two, for of an even or
-  /// odd solution one of them vanishes.
+  /// To where the last two terms are what a step of about `length` may err by: two, for of an even or
+  /// odd solution one of them vanishes. Where both are smaller than the three before them let expect,
+  /// as where only every fourth term is there, these count: by a ratio of terms that stays, not by one
+  /// that falls as that of 1/k!.
   [[nodiscard]] double reached(double length) const {
     const Vector change = length * coefficient_.col(1);
-    double steepest = -std::numeric_limits<double>::infinity();
-    for (int k = order_ - 1; k <= order_; ++k) {
-      const double size = sizes_.relative(coefficient_.col(k), change) / accuracy_.relative;
-      steepest = std::max(steepest, std::log(size) / k);
+    const double allowed = std::log(accuracy_.relative) / (order_ - 1);
+    const auto log_size = [&](int k) {
+      return std::log(sizes_.relative(coefficient_.col(k), change)) / k;
+    };
+    double steepest = std::max(log_size(order_ - 1) - allowed,
+                               log_size(order_) - std::log(accuracy_.relative) / order_);
+    for (int k = order_ - 4; k < order_ - 1; ++k) {
+      const double from_this = log_size(k) - allowed;
+      if (from_this - falls_[std::size_t(k - order_ + 4)] > steepest) steepest = from_this;
     }
     return std::exp(-steepest);
   }
@@ -212,13 +275,12 @@ class TaylorSteps {
 
   /// How the rate at the step's begin answers a change of the state in its last digits.
   void note_noise() {
-    Coefficients moved(coefficient_.rows(), coefficient_.cols());
     Vector start = before_.state.value;
     detail::move_last_digits(start, 1);
-    moved.col(0) = start;
-    series_(before_.time.value, scale_, 1, moved);
+    probe_.col(0) = start;
+    series_(before_.time.value, scale_, 1, probe_);
     effort_.evaluations += 1;
-    const Vector apart = (moved.col(1) - coefficient_.col(1)) / scale_;
+    const Vector apart = (probe_.col(1) - coefficient_.col(1)) / scale_;
     if (!detail::finite(apart)) return;
     sizes_.note_noise(apart, squares_);
     squares_ = 0;
@@ -227,13 +289,17 @@ class TaylorSteps {
   Series series_;
   Accuracy accuracy_;
   int order_;
+  std::array<double, 3>
+      falls_{};  ///< log of reach by the terms order - 4 ... of a series as exp(t)
   detail::Compensated<double> time_;
   detail::Compensated<Vector> state_;
   detail::BlockSizes<Vector> sizes_;
   std::vector<double> jumps_;
   Begin before_;
   Coefficients coefficient_;  ///< of the last step, in powers of its time over scale_
+  Coefficients probe_;        ///< for the field alone, in its columns 0 and 1
   double scale_ = 1;
+  double reach_ = 1;  ///< of the series, in units of scale_
   double next_scale_ = 0;
   double squares_ = 0;  ///< of steps, summed since noise was looked at
   Effort effort_;
