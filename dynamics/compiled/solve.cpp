@@ -1,3 +1,2 @@
-#include <dynamics/solve/fastest_rate_defined.hpp>
 #include <dynamics/solve/solve_defined.hpp>
 #include <dynamics/step/radau_defined.hpp>

@@ -40,11 +40,13 @@ class AdaptiveRuns {
 
   [[nodiscard]] Method method() const { return method_; }
 
+  static constexpr double rounding_of_radau = 24;
+
   /// Of radau13 also where Newton's iterations stop, and of stiff springs. Of verner98 half as much
   /// where nothing but the last digits is asked for; over 1e5 periods to 1e-9 that would be too little.
   [[nodiscard]] double rounding() const {
     const bool last_digits = method_ == Method::verner98 && task_.tolerance <= 1e-13;
-    return method_ == Method::radau13 ? 24 : last_digits ? 1.25 : 2.5;
+    return method_ == Method::radau13 ? rounding_of_radau : last_digits ? 1.25 : 2.5;
   }
 
   [[nodiscard]] static bool begins_near_rounding() { return false; }

@@ -50,17 +50,17 @@ class AnySeries {
 };
 
 /// As the functions of the same names in runs_of_steps.hpp.
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<ExplicitRun> run_explicit_steps(
-    const SteppedScene& scene, bool other, const AnyField& field, const Task& task,
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(
+    const SteppedScene& scene, const AnyField& field, const Task& task,
     const Eigen::VectorXd& start, const Accuracy& accuracy);
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
                                                                     const AnyField& field,
                                                                     const Task& task,
                                                                     const Eigen::VectorXd& start,
                                                                     const EqualLength& length);
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_taylor_steps(
-    const SteppedScene& scene, bool other, bool may_be_stiff, const AnySeries& series,
-    const Task& task, const Eigen::VectorXd& start, const Accuracy& accuracy);
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run_taylor_steps(
+    const SteppedScene& scene, const AnySeries& series, const Task& task,
+    const Eigen::VectorXd& start, const Accuracy& accuracy);
 
 /// With a Jacobian by differences.
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);

@@ -11,12 +11,12 @@
 
 namespace kreisel::detail {
 
-KREISEL_DEFINED std::unique_ptr<ExplicitRun> run_explicit_steps(const SteppedScene& scene,
-                                                                bool other, const AnyField& field,
-                                                                const Task& task,
-                                                                const Eigen::VectorXd& start,
-                                                                const Accuracy& accuracy) {
-  return run_explicit_steps<Eigen::VectorXd, AnyField>(scene, other, field, task, start, accuracy);
+KREISEL_DEFINED std::unique_ptr<SteppedRun> run_explicit_steps(const SteppedScene& scene,
+                                                               const AnyField& field,
+                                                               const Task& task,
+                                                               const Eigen::VectorXd& start,
+                                                               const Accuracy& accuracy) {
+  return run_explicit_steps<Eigen::VectorXd, AnyField>(scene, field, task, start, accuracy);
 }
 
 KREISEL_DEFINED std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
@@ -26,13 +26,12 @@ KREISEL_DEFINED std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
   return run_gauss_steps<Eigen::VectorXd, AnyField>(scene, field, task, start, length);
 }
 
-KREISEL_DEFINED std::unique_ptr<Run> run_taylor_steps(const SteppedScene& scene, bool other,
-                                                      bool may_be_stiff, const AnySeries& series,
-                                                      const Task& task,
-                                                      const Eigen::VectorXd& start,
-                                                      const Accuracy& accuracy) {
-  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, other, may_be_stiff, series, task,
-                                                      start, accuracy);
+KREISEL_DEFINED std::unique_ptr<SteppedRun> run_taylor_steps(const SteppedScene& scene,
+                                                             const AnySeries& series,
+                                                             const Task& task,
+                                                             const Eigen::VectorXd& start,
+                                                             const Accuracy& accuracy) {
+  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, series, task, start, accuracy);
 }
 
 KREISEL_DEFINED std::unique_ptr<StiffField> stiff_field(const AnyField& field) {

@@ -58,6 +58,14 @@ class BlockDistance {
 
   KREISEL_DECLARED double operator()(std::span<const double> a, std::span<const double> b);
 
+  /// Takes the sizes that blocks have had between the states it is given.
+  void note_sizes(std::span<const double> sizes) {
+    const std::size_t count = std::min(sizes.size(), size_.size());
+    for (std::size_t i = 0; i < count; ++i) size_[i] = std::max(size_[i], sizes[i]);
+  }
+
+  [[nodiscard]] const std::vector<double>& sizes() const { return size_; }
+
  private:
   std::vector<int> blocks_;
   std::vector<double> size_;

@@ -26,7 +26,8 @@ enum class RunStatus {
 /// error_estimate is of the GLOBAL error, the greatest over the output times and over the parts of
 /// the state: attitudes in radian, other parts relative to their greatest size so far.
 struct RunReport {
-  std::string method;
+  std::string method;   ///< of the end
+  std::string changes;  ///< of the method on the way: "taylor to t = 0.5 s, then radau13"; or empty
   RunStatus status = RunStatus::complete;
   std::string message;
   double tolerance = 0;

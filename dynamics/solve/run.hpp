@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <dynamics/compiled.hpp>
@@ -29,51 +32,75 @@ class Run {
  public:
   virtual ~Run() = default;
 
-  /// Writes the state at t to y; times are asked for in turn, steps lead to `end`. Where the field
-  /// proves stiff, the state at an earlier time.
+  /// Writes the state at t to y; times are asked for in turn, steps lead to `end`.
   virtual void on_the_way(double t, double end, double* y) = 0;
 
-  [[nodiscard]] virtual const Effort& effort() const = 0;
+  /// The greatest size of each block at the start and at every step before the time asked for last;
+  /// nothing, where the run keeps no sizes.
+  [[nodiscard]] virtual std::span<const double> sizes() const { return {}; }
+
+  [[nodiscard]] virtual Effort effort() const = 0;
 
   /// What rounding in the field has made by now, where the run knows that; else 0.
   [[nodiscard]] virtual double noise() const { return 0; }
 
-  [[nodiscard]] virtual bool stiff() const { return false; }
+  /// Changes of the method, as "taylor to t = 0.5 s, then radau13"; empty where there was none.
+  [[nodiscard]] virtual std::string changes() const { return {}; }
+
+  /// The method of the last step, where it may differ from the one the run was made for.
+  [[nodiscard]] virtual std::optional<Method> changed_to() const { return std::nullopt; }
 
   /// What it goes on from; nothing, where it cannot.
   virtual void pass(Bookmark& bookmark) = 0;
 };
 
-class SteppedScene;
-
-/// Of steps for which a field may prove stiff.
-class LookingRun : public Run {
+/// An integration by steps of its own length, whose states within the last step can be read.
+class SteppedRun : public Run {
  public:
-  LookingRun(const SteppedScene& scene, bool other) : scene_(scene), other_(other) {}
+  SteppedRun(std::vector<int> blocks, double smallest)
+      : blocks_(std::move(blocks)), sizes_(blocks_.size(), smallest) {}
 
-  [[nodiscard]] bool stiff() const override { return stiff_; }
+  void on_the_way(double t, double end, double* y) override {
+    while (!covers(t)) {
+      note_sizes();
+      step_towards(end, t);
+    }
+    read(t, y);
+  }
 
- protected:
-  /// Looks at what is fastest in the field at t.
-  ///
-  /// length : of a step, by which it may be told that stability keeps steps short; 0 where
-  ///          short_steps says it
-  KREISEL_DECLARED [[nodiscard]] bool proves_stiff(double t, std::span<const double> y, double end,
-                                                   bool short_steps, double length);
+  /// One step towards `end`; `output` is the next time at which the state is wanted.
+  virtual void step_towards(double end, double output) = 0;
+
+  [[nodiscard]] virtual double t() const = 0;
+  [[nodiscard]] virtual std::span<const double> state() const = 0;
+
+  /// Of the last step.
+  [[nodiscard]] virtual double length() const = 0;
+
+  /// Whether a time lies within the last step.
+  [[nodiscard]] virtual bool covers(double t) const = 0;
+
+  /// Writes the state at a time within the last step.
+  virtual void read(double t, double* y) = 0;
+
+  [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
+
+  void pass(Bookmark& bookmark) override { bookmark(sizes_); }
 
  private:
-  const SteppedScene& scene_;
-  bool other_;
-  bool stiff_ = false;
-};
+  void note_sizes() {
+    const std::span<const double> y = state();
+    const Eigen::Map<const Eigen::VectorXd> components(y.data(),
+                                                       static_cast<Eigen::Index>(y.size()));
+    int begin = 0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      sizes_[i] = std::max(sizes_[i], norm(components, begin, blocks_[i]));
+      begin += blocks_[i];
+    }
+  }
 
-/// Of explicit steps.
-class ExplicitRun : public LookingRun {
- public:
-  using LookingRun::LookingRun;
-
-  /// One step towards `end`; the time reached.
-  virtual double step_towards(double end) = 0;
+  std::vector<int> blocks_;
+  std::vector<double> sizes_;
 };
 
 /// The length of equal steps, all of which end at the output times.
@@ -113,6 +140,9 @@ class SteppedScene {
   [[nodiscard]] virtual bool has_other() const = 0;
   [[nodiscard]] virtual bool knows_series() const = 0;
 
+  /// Whether something in the scene may make it stiff, as far as it can say.
+  [[nodiscard]] virtual bool may_be_stiff() const = 0;
+
   /// The scene itself, if it is a top: some have a method of their own.
   [[nodiscard]] virtual const EulerTop* top() const = 0;
 
@@ -122,14 +152,15 @@ class SteppedScene {
 
   [[nodiscard]] virtual std::unique_ptr<StiffField> stiff_field(bool other) const = 0;
 
-  [[nodiscard]] virtual std::unique_ptr<ExplicitRun> explicit_run(const Task& task,
-                                                                  const Eigen::VectorXd& start,
-                                                                  const Accuracy& accuracy,
-                                                                  bool other) const = 0;
-  [[nodiscard]] virtual std::unique_ptr<Run> taylor_run(const Task& task,
-                                                        const Eigen::VectorXd& start,
-                                                        const Accuracy& accuracy,
-                                                        bool other) const = 0;
+  /// From `start` at task.begin on.
+  [[nodiscard]] virtual std::unique_ptr<SteppedRun> explicit_run(const Task& task,
+                                                                 const Eigen::VectorXd& start,
+                                                                 const Accuracy& accuracy,
+                                                                 bool other) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<SteppedRun> taylor_run(const Task& task,
+                                                               const Eigen::VectorXd& start,
+                                                               const Accuracy& accuracy,
+                                                               bool other) const = 0;
   [[nodiscard]] virtual std::unique_ptr<Run> gauss_run(const Task& task,
                                                        const Eigen::VectorXd& start,
                                                        const EqualLength& length,

@@ -74,6 +74,13 @@ class SceneRuns final : public SteppedScene {
       return requires { scene_.series(); };
     }
   }
+  [[nodiscard]] bool may_be_stiff() const override {
+    if constexpr (requires { scene_.may_be_stiff(); }) {
+      return scene_.may_be_stiff();
+    } else {
+      return true;
+    }
+  }
   [[nodiscard]] const EulerTop* top() const override {
     if constexpr (std::is_same_v<Scene, EulerTop>) {
       return &scene_;
@@ -106,29 +113,26 @@ class SceneRuns final : public SteppedScene {
     }
   }
 
-  [[nodiscard]] std::unique_ptr<ExplicitRun> explicit_run(const Task& task,
-                                                          const Eigen::VectorXd& start,
-                                                          const Accuracy& accuracy,
-                                                          bool other) const override {
+  [[nodiscard]] std::unique_ptr<SteppedRun> explicit_run(const Task& task,
+                                                         const Eigen::VectorXd& start,
+                                                         const Accuracy& accuracy,
+                                                         bool other) const override {
     if constexpr (of_any_size) {
-      return run_explicit_steps(*this, other, field(other), task, start, accuracy);
+      return run_explicit_steps(*this, field(other), task, start, accuracy);
     } else {
-      return run_explicit_steps<Own>(*this, other, field(other), task, start, accuracy);
+      return run_explicit_steps<Own>(*this, field(other), task, start, accuracy);
     }
   }
 
-  [[nodiscard]] std::unique_ptr<Run> taylor_run(const Task& task, const Eigen::VectorXd& start,
-                                                const Accuracy& accuracy,
-                                                bool other) const override {
+  [[nodiscard]] std::unique_ptr<SteppedRun> taylor_run(const Task& task,
+                                                       const Eigen::VectorXd& start,
+                                                       const Accuracy& accuracy,
+                                                       bool other) const override {
     if constexpr (requires { scene_.series(); }) {
-      bool may_be_stiff = false;
-      if constexpr (requires { scene_.may_be_stiff(); }) may_be_stiff = scene_.may_be_stiff();
       if constexpr (of_any_size) {
-        return run_taylor_steps(*this, other, may_be_stiff, AnySeries(scene(other).series()), task,
-                                start, accuracy);
+        return run_taylor_steps(*this, AnySeries(scene(other).series()), task, start, accuracy);
       } else {
-        return run_taylor_steps<Own>(*this, other, may_be_stiff, scene(other).series(), task, start,
-                                     accuracy);
+        return run_taylor_steps<Own>(*this, scene(other).series(), task, start, accuracy);
       }
     } else {
       return nullptr;

@@ -21,11 +21,11 @@
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
 #include <dynamics/solve/error_measure_defined.hpp>
-#include <dynamics/solve/fastest_rate.hpp>
 #include <dynamics/solve/fixed_runs.hpp>
 #include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/splitting_runs.hpp>
+#include <dynamics/solve/switching_run.hpp>
 #include <dynamics/solve/task_defined.hpp>
 #include <dynamics/step/bookmark.hpp>
 #include <motor/error.hpp>
@@ -36,58 +36,6 @@ namespace kreisel::detail {
   return {y.data(), static_cast<std::size_t>(y.size())};
 }
 
-/// What is fastest in a field; 0 where the Jacobian is not finite, for whether a field is stiff cannot
-/// end a run that goes on without knowing.
-KREISEL_DECLARED [[nodiscard]] std::complex<double> fastest_rate(const SteppedScene& scene,
-                                                                 bool other, double t,
-                                                                 std::span<const double> y) {
-  const auto state = vector_of<Eigen::VectorXd>(y);
-  Eigen::MatrixXd J(state.size(), state.size());
-  scene.stiff_field(other)->jacobian(t, state, J);
-  return fastest_rate(J);
-}
-
-/// Whether what is fastest in a field says that it is stiff: something that is damped away soon, or
-/// that is damped at all where it keeps the steps short. What is fast and not damped has to be
-/// resolved by any method.
-KREISEL_DECLARED [[nodiscard]] bool is_stiff(const std::complex<double>& fastest, double time_left,
-                                             bool keeps_steps_short) {
-  constexpr double soon = 1e-3;  // of the time left
-  const double speed = std::abs(fastest);
-  const bool dies_soon = fastest.real() < -0.5 * speed && speed * time_left > 1 / soon;
-  return dies_soon || (keeps_steps_short && fastest.real() < -0.05 * speed);
-}
-
-// A series of order 20 to rounding follows what oscillates in steps of 2 radians, and becomes
-// unstable in steps of 7 times a damped one's time.
-KREISEL_DEFINED bool LookingRun::proves_stiff(double t, std::span<const double> y, double end,
-                                              bool short_steps, double length) {
-  const std::complex<double> rate = fastest_rate(scene_, other_, t, y);
-  stiff_ = is_stiff(rate, std::abs(end - t), short_steps || std::abs(rate) * length > 4);
-  return stiff_;
-}
-
-/// A run of radau13.
-class RadauRun final : public Run {
- public:
-  RadauRun(std::unique_ptr<StiffField> field, RadauIntegrator steps)
-      : field_(std::move(field)), steps_(std::move(steps)) {}
-
-  void on_the_way(double t, double end, double* y) override {
-    while (!steps_.covers(t)) steps_.step_towards(*field_, end);
-    const Eigen::VectorXd there = steps_.at(*field_, t);
-    std::copy_n(there.data(), there.size(), y);
-  }
-
-  [[nodiscard]] const Effort& effort() const override { return steps_.effort(); }
-  [[nodiscard]] double noise() const override { return steps_.noise(); }
-  void pass(Bookmark& bookmark) override { bookmark(steps_); }
-
- private:
-  std::unique_ptr<StiffField> field_;
-  RadauIntegrator steps_;
-};
-
 /// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
 KREISEL_DECLARED [[nodiscard]] double pace(const SteppedScene& scene, const Task& task,
                                            const Eigen::VectorXd& start) {
@@ -97,7 +45,10 @@ KREISEL_DECLARED [[nodiscard]] double pace(const SteppedScene& scene, const Task
   const auto go = [&] {
     const double from = t;
     const double before = steps->effort().steps;
-    for (int i = 0; i < 20 && t != end; ++i) t = steps->step_towards(end);
+    for (int i = 0; i < 20 && t != end; ++i) {
+      steps->step_towards(end, end);
+      t = steps->t();
+    }
     const double taken = steps->effort().steps - before;
     return taken > 0 ? std::abs(t - from) / taken : 0;
   };
@@ -110,10 +61,8 @@ KREISEL_DECLARED [[nodiscard]] double pace(const SteppedScene& scene, const Task
   return std::max(pace, std::numeric_limits<double>::min());
 }
 
-KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(const SteppedScene& scene, const Task& task,
-                                                    const Eigen::VectorXd& start) {
-  // 16 Gauss points carry about twice as far as Verner98's stages do at 1e-14.
-  const double once = pace(scene, task, start);
+/// once : the length of a step of Verner98 at 1e-14; 16 Gauss points carry about twice as far
+KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(double once) {
   return {Method::gauss16, 16, 2 * once, once / 2};
 }
 
@@ -123,11 +72,14 @@ KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs
                                                         double shaken = 0) {
   const bool other = moved && scene.has_other();
   const Accuracy accuracy{setting, task.smallest, task.most_evaluations, shaken};
+  if (runs.method() == Method::radau13) {
+    return std::make_unique<RadauRun>(scene, other, task, start, accuracy);
+  }
+  if (task.method == Method::automatic) {
+    return std::make_unique<SwitchingRun>(scene, other, task, runs.method(), start, accuracy);
+  }
   if (runs.method() == Method::taylor) return scene.taylor_run(task, start, accuracy, other);
-  if (runs.method() != Method::radau13) return scene.explicit_run(task, start, accuracy, other);
-  RadauIntegrator steps(radau_coefficients<7>(), task.begin, start, accuracy, scene.blocks());
-  steps.stop_at(task.jumps);
-  return std::make_unique<RadauRun>(scene.stiff_field(other), std::move(steps));
+  return scene.explicit_run(task, start, accuracy, other);
 }
 
 KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs,
@@ -148,6 +100,13 @@ class InvariantWatch {
 
   void note(double t, std::span<const double> y) { scene_.note_invariants(t, y, drifts_); }
 
+  /// The least error of a state that makes the drifts: |drift| / sum of |change of the invariant| by
+  /// the sizes of the state's components. 0 where that is what rounding makes.
+  ///
+  /// sizes : of blocks
+  [[nodiscard]] double least_error(double t, std::span<const double> y,
+                                   std::span<const double> sizes) const;
+
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
     for (InvariantDrift& drift : drifts_) bookmark(drift.start, drift.largest);
@@ -159,6 +118,44 @@ class InvariantWatch {
   const SteppedScene& scene_;
   std::vector<InvariantDrift> drifts_;
 };
+
+inline double InvariantWatch::least_error(double t, std::span<const double> y,
+                                          std::span<const double> sizes) const {
+  if (drifts_.empty()) return 0;
+  const auto invariants_at = [&](std::span<const double> state) {
+    std::vector<InvariantDrift> values;
+    scene_.note_invariants(t, state, values);
+    return values;
+  };
+  const std::vector<InvariantDrift> here = invariants_at(y);
+  std::vector<double> range(here.size(), 0);
+  std::vector<double> moved(y.begin(), y.end());
+  const std::vector<int> blocks = scene_.blocks();
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const double size = blocks[k] == 4 ? 1 : sizes[k];  // quaternions
+    for (const std::size_t end = i + static_cast<std::size_t>(blocks[k]); i < end; ++i) {
+      // A part of the size says what small errors do, all of it where small ones do nothing.
+      moved[i] = y[i] + size;
+      const std::vector<InvariantDrift> far = invariants_at(moved);
+      constexpr double part = 1e-6;
+      moved[i] = y[i] + part * size;
+      const std::vector<InvariantDrift> near = invariants_at(moved);
+      moved[i] = y[i];
+      for (std::size_t m = 0; m < here.size(); ++m) {
+        range[m] += std::max(std::abs(far[m].start - here[m].start),
+                             std::abs(near[m].start - here[m].start) / part);
+      }
+    }
+  }
+  double least = 0;
+  for (std::size_t m = 0; m < here.size(); ++m) {
+    constexpr double rounding = 1e-13;
+    const double error = drifts_[m].largest / range[m];
+    if (error > rounding) least = std::max(least, error);
+  }
+  return least;
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -220,9 +217,11 @@ class RunSoFar {
   /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
-  [[nodiscard]] bool stiff() const { return run_->stiff(); }
-  [[nodiscard]] const Effort& effort() const { return run_->effort(); }
+  [[nodiscard]] Effort effort() const { return run_->effort(); }
   [[nodiscard]] double noise() const { return run_->noise(); }
+  [[nodiscard]] std::span<const double> sizes() const { return run_->sizes(); }
+  [[nodiscard]] std::string changes() const { return run_->changes(); }
+  [[nodiscard]] std::optional<Method> changed_to() const { return run_->changed_to(); }
 
   /// What it goes on from behind the first `done` outputs.
   void pass(std::size_t done, Bookmark& bookmark) {
@@ -285,7 +284,6 @@ class GrownRounding {
     return runs_.may_round_too_much(grown_to);
   }
 
-  [[nodiscard]] bool stiff() const { return calm_->stiff() || shaken_->stiff(); }
   [[nodiscard]] double evaluations() const {
     return calm_->effort().evaluations + shaken_->effort().evaluations;
   }
@@ -304,6 +302,47 @@ class GrownRounding {
   Eigen::VectorXd shaken_state_;
   BlockDistance distance_;
   bool gave_up_ = false;
+};
+
+/// The times at which two runs are compared: those of output and, where these are few, others between,
+/// so that what is told of the error does not depend on what is asked for.
+class ComparisonTimes {
+ public:
+  ComparisonTimes(const Task& task, bool adds) {
+    constexpr int least = 16;
+    const double end = task.times.back();
+    const bool forwards = end > task.begin;
+    const auto before = [&](double a, double b) { return forwards ? a < b : a > b; };
+    const int added = adds && task.times.size() < least && end != task.begin ? least - 1 : 0;
+    int next = 1;
+    for (const double t : task.times) {
+      for (; next <= added; ++next) {
+        const double between = task.begin + next * ((end - task.begin) / least);
+        if (!before(between, t)) break;
+        times_.push_back({between, false});
+      }
+      times_.push_back({t, true});
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return times_.size(); }
+  [[nodiscard]] double operator[](std::size_t i) const { return times_[i].t; }
+  [[nodiscard]] bool is_output(std::size_t i) const { return times_[i].is_output; }
+
+  /// The last output before the i-th of these; `begin` if there is none.
+  [[nodiscard]] double last_output(std::size_t i, double begin) const {
+    while (i > 0) {
+      if (times_[--i].is_output) return times_[i].t;
+    }
+    return begin;
+  }
+
+ private:
+  struct Time {
+    double t;
+    bool is_output;
+  };
+  std::vector<Time> times_;
 };
 
 /// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
@@ -336,17 +375,17 @@ struct Account {
 /// may be rounding; an error that falls much faster than the steps do is taken for rounding too; and
 /// the finest are four, or six where rounding grows to more than the tolerance.
 ///
-/// Nothing is returned where the field proved stiff and the runs' kind is not made for that.
-///
 /// Throws : InvalidInput for a bookmark that is none of these runs; an empty one is of their begin
 template <class Runs>
-[[nodiscard]] std::optional<Trajectory<double>> solve_in_pairs(
-    const SteppedScene& scene, const Runs& runs, const Eigen::VectorXd& start, const Task& task,
-    const std::vector<double>& bookmark, Account& account) {
+[[nodiscard]] Trajectory<double> solve_in_pairs(const SteppedScene& scene, const Runs& runs,
+                                                const Eigen::VectorXd& start, const Task& task,
+                                                const std::vector<double>& bookmark,
+                                                Account& account) {
   const Clock::time_point clock = Clock::now();
 
   Trajectory<double> result;
   const double end = task.times.back();
+  const ComparisonTimes times(task, std::is_same_v<Runs, AdaptiveRuns>);
   double digits = digits_off(task);
   double grown_to = 0;  // by rounding, in any try
   CheapSteps cheap;     // that tell it
@@ -365,13 +404,17 @@ template <class Runs>
   // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
   // somewhere else than the others, beside which it may go on.
   const auto better_at_output = [&](RunSoFar& fine, std::size_t i) {
-    const double t = task.times[i];
+    const double t = times[i];
     const double part = fine.moved() > 0 ? 1.0 / 2 : fine.moved() < 0 ? 2.0 / 5 : 1.0 / 3;
     const double stop = task.begin + part * (end - task.begin);
     return fine.at_output(i, t, (t < stop) == (end > task.begin) ? stop : end);
   };
   std::optional<Bookmark> from;
   if (!bookmark.empty()) from.emplace(bookmark);
+  // Of implicit steps more is rounded.
+  const auto rounding_of = [&](const RunSoFar& run) {
+    return run.changed_to() ? AdaptiveRuns::rounding_of_radau : runs.rounding();
+  };
   bool coarse_starts_off = false;
   const bool has_bookmarks = runs.method() != Method::splitting;
   const auto kind = static_cast<double>(runs.method());
@@ -447,36 +490,28 @@ template <class Runs>
     double expected = 0;
     bool rounds_too_much = false;
     bool too_coarse = false;
+    std::span<const double> state = components_of(start);
     try {
-      while (done < task.times.size()) {
-        const double t = task.times[done];
+      while (done < times.size()) {
+        const double t = times[done];
         const std::span<const double> reached = coarse->at_output(done, t, end);
+        distance.note_sizes(coarse->sizes());
         // One that was moved by last digits begins with others than were given.
-        const std::span<const double> state = t == task.begin ? components_of(start) : reached;
-        bool stiff = coarse->stiff();
+        state = t == task.begin ? components_of(start) : reached;
         double off = 0;
         const auto hold_beside = [&](RunSoFar& run) {
-          if (stiff) return;
-          const std::span<const double> better = better_at_output(run, done);
-          stiff = run.stiff();
-          off = worse(off, distance(state, better));
+          off = worse(off, distance(state, better_at_output(run, done)));
         };
         hold_beside(*fine);
         for (RunSoFar& other : others) hold_beside(other);
         double noise = coarse->noise();
-        if (rounding && !stiff) {
+        if (rounding) {
           const double now = rounding->at(t, end);
-          stiff = rounding->stiff();
           noise = worse(noise, now);
           grown_to = worse(grown_to, now);
           rounds_too_much = rounding->may_be_too_much(grown_to);
         }
-        if (stiff) {
-          account.spent += coarse->effort().evaluations + fine->effort().evaluations;
-          spend_on_others();
-          return std::nullopt;
-        }
-        const double error = error_of_pair(off, runs.finer_by(setting), runs.rounding(),
+        const double error = error_of_pair(off, runs.finer_by(setting), rounding_of(*coarse),
                                            coarse->effort().steps, noise);
         report.error_estimate = worse(report.error_estimate, error);
         missed.note(done, report.error_estimate);
@@ -484,15 +519,17 @@ template <class Runs>
         too_coarse = !last_try &&
                      (report.error_estimate > enough || expected > 4 * enough || rounds_too_much);
         if (too_coarse) break;
-        if (!output(result, watch, task, t, state, error)) break;
+        const bool is_output = times.is_output(done);
+        if (is_output && !output(result, watch, task, t, state, error)) break;
         ++done;
-        const bool offers = has_bookmarks && task.offer_bookmark && done < task.times.size();
+        const bool offers =
+            is_output && has_bookmarks && task.offer_bookmark && done < times.size();
         if (offers) task.offer_bookmark(std::cref(bookmark_here));
       }
     } catch (const ComputationFailed& error) {
       report.status = RunStatus::failed;
       // What a load or a guide throws knows no time.
-      const double last_good = done == 0 ? task.begin : task.times[done - 1];
+      const double last_good = times.last_output(done, task.begin);
       std::ostringstream text;
       text.precision(17);
       text << error.what() << "; the last output is that of t = " << last_good << " s";
@@ -563,6 +600,12 @@ template <class Runs>
       continue;
     }
     report.error_estimate = worse(report.error_estimate, grown_to);
+    if (complete && done > 0) {
+      const double shown = watch.least_error(times[done - 1], state, distance.sizes());
+      report.error_estimate = worse(report.error_estimate, shown);
+    }
+    report.method = name(coarse->changed_to().value_or(runs.method()));
+    report.changes = coarse->changes();
     report.effort = coarse->effort();
     account.noise = coarse->noise();
     report.all_evaluations = account.spent;
@@ -608,37 +651,41 @@ KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
   Account account;
   const auto go_on = [&](const auto& runs, const Task& asked, const std::vector<double>& bookmark) {
     auto result = solve_in_pairs(scene, runs, start, asked, bookmark, account);
-    if (result) result->report.run_time = seconds_since(clock);
+    result.report.run_time = seconds_since(clock);
     return result;
   };
   const auto with = [&](const auto& runs) { return go_on(runs, task, task.bookmark); };
+  // Steps that are too long for what comes later on the way do not converge there.
+  const auto by_gauss = [&](const Task& asked, const std::vector<double>& bookmark) {
+    const double once = pace(scene, asked, start);
+    auto result = go_on(gauss_runs(once), asked, bookmark);
+    constexpr int most_tries = 4;
+    for (int i = 1; i <= most_tries && result.report.status == RunStatus::failed; ++i) {
+      if (result.report.all_evaluations > asked.most_evaluations) break;
+      result = go_on(gauss_runs(once * std::pow(0.25, i)), asked, bookmark);
+    }
+    return result;
+  };
 
   if (const EulerTop* const top = scene.top()) {
     const auto state = EulerTop::from_vector(vector_of<EulerTop::Vector>(start));
     const bool pays = automatic && splits(*top) && is_fast(*top, state);
-    if (pays || task.method == Method::splitting) return *with(splitting_runs(*top, task, state));
+    if (pays || task.method == Method::splitting) return with(splitting_runs(*top, task, state));
   }
-  if (task.method == Method::radau13) return *with(AdaptiveRuns(task, Method::radau13));
-  if (task.method == Method::gauss16) return *with(gauss_runs(scene, task, start));
+  if (task.method == Method::radau13) return with(AdaptiveRuns(task, Method::radau13));
+  if (task.method == Method::gauss16) return by_gauss(task, task.bookmark);
   const auto explicitly = [&](const Task& asked, const std::vector<double>& bookmark) {
     const bool by_series = scene.knows_series() && asked.method != Method::verner98;
     const Method method = by_series ? Method::taylor : Method::verner98;
     return go_on(AdaptiveRuns(asked, method), asked, bookmark);
   };
-  const bool was_stiff = automatic && !task.bookmark.empty() &&
-                         task.bookmark.front() == static_cast<double>(Method::radau13);
-  auto result = was_stiff ? std::nullopt : explicitly(task, task.bookmark);
-  const bool stiff = !result;
-  if (was_stiff) {
-    result = with(AdaptiveRuns(task, Method::radau13));
-  } else if (stiff) {
-    result = go_on(AdaptiveRuns(task, Method::radau13), task, {});
-  }
-  if (!automatic) return *result;
+  auto result = explicitly(task, task.bookmark);
+  if (!automatic) return result;
+  const bool stiff = !result.report.changes.empty();
 
   // Where the tolerance was missed, another method may come nearer to it.
   const auto missed = [&] {
-    const RunReport& report = result->report;
+    const RunReport& report = result.report;
     return report.status == RunStatus::complete && !report.tolerance_kept;
   };
   const auto or_by = [&](Method method, const auto& run) {
@@ -646,15 +693,15 @@ KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
     alone.offer_bookmark = nullptr;
     alone.method = method;
     auto other = run(alone);
-    if (other->report.status == RunStatus::complete &&
-        other->report.error_estimate < result->report.error_estimate) {
+    if (other.report.status == RunStatus::complete &&
+        other.report.error_estimate < result.report.error_estimate) {
       result = std::move(other);
     }
   };
   const auto by_steps = [&](const Task& asked) { return explicitly(asked, {}); };
   if (missed() && stiff) {
     // Of explicit steps, as many as stability asks for cost so much; their last digits are better.
-    const double rate = std::abs(fastest_rate(scene, false, task.begin, components_of(start)));
+    const double rate = std::abs(fastest_rate(scene, false, task.begin, start));
     const double evaluations = 5 * rate * std::abs(task.times.back() - task.begin);
     if (evaluations < 10 * account.spent) {
       or_by(scene.knows_series() ? Method::taylor : Method::verner98, by_steps);
@@ -665,11 +712,10 @@ KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
     or_by(Method::verner98, by_steps);
   }
   // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
-  if (missed() && !stiff && result->report.effort.steps > 1e5 && task.jumps.empty()) {
-    or_by(Method::gauss16,
-          [&](const Task& asked) { return go_on(gauss_runs(scene, asked, start), asked, {}); });
+  if (missed() && !stiff && result.report.effort.steps > 1e5 && task.jumps.empty()) {
+    or_by(Method::gauss16, [&](const Task& asked) { return by_gauss(asked, {}); });
   }
-  return *result;
+  return result;
 }
 
 /// Throws where a quaternion of the start turns nothing, which no step would mend or tell.

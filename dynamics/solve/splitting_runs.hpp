@@ -54,7 +54,7 @@ class SplittingRun final : public Run {
     std::copy_n(there.data(), there.size(), y);
   }
 
-  [[nodiscard]] const Effort& effort() const override { return steps_.effort(); }
+  [[nodiscard]] Effort effort() const override { return steps_.effort(); }
   void pass(Bookmark& /*bookmark*/) override {}
 
  private:

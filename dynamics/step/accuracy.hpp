@@ -117,6 +117,14 @@ class BlockSizes {
     for (Block& block : blocks_) block.size = larger(block.size, norm(y, block));
   }
 
+  /// The greatest size of each block so far, at least the smallest that counts; of packs the greatest
+  /// lane's.
+  [[nodiscard]] std::vector<Scalar> sizes() const {
+    std::vector<Scalar> result;
+    for (const Block& block : blocks_) result.push_back(greatest_lane(scale(block)));
+    return result;
+  }
+
   /// Writes to each component the size of its block.
   void put(Vector& sizes) const {
     for (const Block& block : blocks_) {

@@ -151,6 +151,9 @@ class GaussSteps {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
+  /// The greatest size of each block so far.
+  [[nodiscard]] std::vector<Scalar> sizes() const { return sizes_.sizes(); }
+
   /// What rounding of the state has made of it, by way of its rates: in proportion to size, as
   /// sampled now and then.
   [[nodiscard]] Scalar noise() const {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <span>
 #include <type_traits>
@@ -116,7 +117,19 @@ class RadauIntegrator {
 
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
 
-  KREISEL_DECLARED void step_towards(StiffField& field, double end);
+  /// One step towards `end`, not past it.
+  ///
+  /// output : the next time at which the state is wanted: what has died out by then need not be
+  ///          resolved
+  KREISEL_DECLARED void step_towards(StiffField& field, double end, double output);
+
+  /// The same, if a first step of length h stands; else nothing changes and false is returned.
+  KREISEL_DECLARED [[nodiscard]] bool try_first_step(StiffField& field, double h, double end,
+                                                     double output);
+
+  /// The greatest rate of the field times the length of the last step.
+  [[nodiscard]] double fastest_times_step() const { return fastest_ * std::abs(h_before_); }
+
   KREISEL_DECLARED [[nodiscard]] bool covers(double time) const;
   KREISEL_DECLARED [[nodiscard]] Eigen::VectorXd at(StiffField& field, double time);
   KREISEL_DECLARED void back_to(StiffField& field, double time);
@@ -126,7 +139,9 @@ class RadauIntegrator {
   void pass(Bookmark& bookmark) {
     bookmark(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
              step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst, rate_,
-             stages_.value, tangent_, noise_, effort_);
+             stages_.value, tangent_, noise_, added_, effort_, rates_of_field_, fastest_, growth_,
+             steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
+             barrier_.patience, strict_.steps, strict_.patience);
   }
 
  private:
@@ -142,7 +157,53 @@ class RadauIntegrator {
     double worst = 0;
   };
 
+  /// For how many steps a precaution is still taken, and for how many it will be the next time.
+  struct Precaution {
+    int steps = 0;
+    int patience = 8;
+    double length = 0;
+
+    void take() {
+      steps = patience;
+      patience = std::min(2 * patience, 1 << 20);
+    }
+  };
+
   [[nodiscard]] int stages() const { return static_cast<int>(coefficients_->node.size()); }
+
+  /// Begins a step: the field, its Jacobian and, now and then, its spectrum.
+  KREISEL_DECLARED void begin_step(StiffField& field, double goal);
+  KREISEL_DECLARED void note_spectrum();
+
+  /// The step length, kept so short that growing motions are resolved.
+  KREISEL_DECLARED [[nodiscard]] double limited(double step) const;
+
+  /// Motions that a step does not resolve: the greatest of their rates, and what part of the slowest
+  /// to die is left at the next output. 0 if there are none.
+  struct Unresolved {
+    double fastest = 0;
+    double remains = 0;
+  };
+
+  /// Of a step of length h, an output `left` ahead; those that have died out by then do not count.
+  KREISEL_DECLARED [[nodiscard]] Unresolved unresolved(double h, double left) const;
+
+  /// The estimated error of a step of length h whose stages are known, in units of allowed_.
+  KREISEL_DECLARED [[nodiscard]] double estimate(double h);
+
+  /// The same without what a stiff field makes of a start off its slow motion, which is not the
+  /// step's error where it dies out.
+  KREISEL_DECLARED [[nodiscard]] double filtered_estimate(StiffField& field);
+
+  /// The same estimate without what rounding makes of it, which would never fall to the accuracy.
+  KREISEL_DECLARED [[nodiscard]] double estimate_beyond_rounding();
+
+  /// Sets the length of the next step after one of length h that erred by so much, by the controller
+  /// of Gustafsson.
+  KREISEL_DECLARED void set_next_step(double h, double worst, bool again);
+
+  /// Shortens the next step after one of length h that erred by so much.
+  KREISEL_DECLARED void reject(double h, double worst, double most, double fastest, bool strict);
 
   KREISEL_DECLARED void evaluate(StiffField& field, double t, const Eigen::VectorXd& y,
                                  double* result);
@@ -162,7 +223,7 @@ class RadauIntegrator {
   KREISEL_DECLARED [[nodiscard]] double least_allowed() const;
 
   /// One step of length h; says whether it stood. Sets the length of the next.
-  KREISEL_DECLARED bool attempt(StiffField& field, double h, bool again);
+  KREISEL_DECLARED bool attempt(StiffField& field, double h, double output, bool again);
 
   /// A random walk: each stage is off by half a last digit, of which the mean over the stages stays.
   /// What is damped within a step forgets what was.
@@ -194,6 +255,14 @@ class RadauIntegrator {
   Eigen::VectorXd error_;
   Eigen::VectorXd added_;
   Eigen::MatrixXd tangent_;
+  Eigen::MatrixXd rates_of_field_;  ///< eigenvalues of the Jacobian, a column each: Re, |Im|
+  double fastest_ = 0;              ///< the greatest modulus of them
+  double growth_ = 0;               ///< the greatest real part, beyond rounding
+  int steps_to_spectrum_ = 0;       ///< until the eigenvalues are computed anew
+  double looked_at_ = 0;            ///< length of the step for which they were
+  bool quiet_ = false;              ///< nothing unresolved was found to live
+  Precaution barrier_;  ///< steps no longer than what resolves the fastest living motion
+  Precaution strict_;   ///< the estimate counts as the error
   Effort effort_;
 };
 
@@ -209,8 +278,9 @@ template <int stages>
 /// Implicit integration of a stiff  y' = field(t, y)  with adaptive steps, by Radau IIA.
 ///
 /// A step is as long as what is slow allows: how hard a damped bearing is does not matter, from
-/// 1e3 to 1e12 N m/rad. It damps what is faster than its steps, be it damped or not: an oscillation
-/// has to be resolved by it as by any other method, and ExplicitSteps does that at less cost.
+/// 1e3 to 1e12 N m/rad. A growing motion is resolved. An oscillation that is faster than the steps and
+/// does not die out before the next output is resolved too, if it is greater than the accuracy, and
+/// ExplicitSteps does that at less cost; a smaller one is damped.
 ///
 /// Interface and meaning of the arguments as ExplicitSteps; output within a step is of full order
 /// and takes a part of the step anew. Steps ask for memory.
@@ -252,7 +322,7 @@ class RadauSteps {
 
   /// One step towards `end`, not past it.
   void step_towards(double end) {
-    steps_.step_towards(field_, end);
+    steps_.step_towards(field_, end, end);
     y_ = steps_.y();
   }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <span>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/radau_coefficients_defined.hpp>
 
@@ -149,24 +150,77 @@ KREISEL_DEFINED RadauIntegrator::RadauIntegrator(const RadauCoefficients& coeffi
                       accuracy.relative);
 }
 
-KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end) {
-  if (!std::isfinite(end)) refuse_steps("the end time is not finite");
-  if (end == t()) return;
-  const double goal = next_stop(t(), end, jumps_);
+KREISEL_DEFINED void RadauIntegrator::begin_step(StiffField& field, double goal) {
   start_time_ = on_this_side(t(), goal, jumps_);
   evaluate(field, start_time_, y(), rate_.data());
   if (!finite(rate_)) stop_integration(t(), "the field is not finite");
   if (step_ == 0) step_ = sizes_.first_step(rate_);
   note_jacobian(field);
+  const bool at_jump = std::find(jumps_.begin(), jumps_.end(), t()) != jumps_.end();
+  if (at_jump) quiet_ = false;
+  if (steps_to_spectrum_ == 0 || at_jump || step_ > 2 * looked_at_) note_spectrum();
+  steps_to_spectrum_ = std::max(steps_to_spectrum_ - 1, 0);
   before_ = {time_, state_};
   if (goal > t() ? t() >= rejected_.end : t() <= rejected_.end) rejected_ = {};
+}
+
+KREISEL_DEFINED void RadauIntegrator::note_spectrum() {
+  if (tangent_.size() == 0) return;
+  constexpr int steps_between = 4;
+  const double fastest_before = fastest_;
+  const Eigen::VectorXcd found = eigenvalues(tangent_);
+  // Twice the same eigenvalue 0 comes out as +- the square root of rounding.
+  const double rounding =
+      64 * std::numeric_limits<double>::epsilon() * tangent_.cwiseAbs().maxCoeff();
+  rates_of_field_.resize(2, found.size());
+  fastest_ = 0;
+  growth_ = 0;
+  for (Eigen::Index i = 0; i < found.size(); ++i) {
+    const std::complex<double> rate = found[i];
+    rates_of_field_.col(i) << rate.real(), std::abs(rate.imag());
+    fastest_ = std::max(fastest_, std::abs(rate));
+    if (rate.real() > rounding) growth_ = std::max(growth_, rate.real());
+  }
+  if (fastest_ > 2 * fastest_before) quiet_ = false;
+  steps_to_spectrum_ = steps_between;
+  looked_at_ = step_;
+}
+
+KREISEL_DEFINED double RadauIntegrator::limited(double step) const {
+  // A motion too small for the estimate has to grow as it should: with 7 stages a step of z time
+  // constants errs by 7e-15 |z|^14 of it.
+  const double time_constants =
+      std::clamp(std::pow(accuracy_.relative / 7e-15, 1.0 / 14), 1.0, 4.0);
+  const double limit = growth_ > 0 ? time_constants / growth_ : step;
+  return std::min({step, limit, barrier_.steps > 0 ? barrier_.length : step});
+}
+
+KREISEL_DEFINED RadauIntegrator::Unresolved RadauIntegrator::unresolved(double h,
+                                                                        double left) const {
+  constexpr double resolved = 2;  // radian, or time constants: these steps of order 13 err by 1e-10
+  Unresolved found;
+  for (Eigen::Index i = 0; i < rates_of_field_.cols(); ++i) {
+    const double size = rates_of_field_.col(i).norm();
+    const double remains = std::exp(rates_of_field_(0, i) * left);
+    if (size * h <= resolved || remains < accuracy_.relative) continue;
+    found.fastest = std::max(found.fastest, size);
+    found.remains = std::max(found.remains, remains);
+  }
+  return found;
+}
+
+KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end, double output) {
+  if (!std::isfinite(end)) refuse_steps("the end time is not finite");
+  if (end == t()) return;
+  const double goal = next_stop(t(), end, jumps_);
+  begin_step(field, goal);
   bool again = false;
   while (true) {
     const double left = (goal - time_.value) - time_.rest;
-    const bool last = std::abs(left) <= std::abs(step_);
-    const double wanted = step_;
+    const double wanted = limited(step_);
+    const bool last = std::abs(left) <= wanted;
     last_stage_time_ = on_this_side(goal, t(), jumps_);
-    if (!attempt(field, last ? left : std::copysign(step_, left), again)) {
+    if (!attempt(field, last ? left : std::copysign(wanted, left), output, again)) {
       again = true;
       continue;
     }
@@ -176,6 +230,17 @@ KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end
     }
     return;
   }
+}
+
+KREISEL_DEFINED bool RadauIntegrator::try_first_step(StiffField& field, double h, double end,
+                                                     double output) {
+  const double goal = next_stop(t(), end, jumps_);
+  step_ = h;
+  begin_step(field, goal);
+  const double left = (goal - time_.value) - time_.rest;
+  if (std::abs(left) <= h || limited(h) < h) return false;
+  last_stage_time_ = on_this_side(goal, t(), jumps_);
+  return attempt(field, std::copysign(h, left), output, false);
 }
 
 KREISEL_DEFINED bool RadauIntegrator::covers(double time) const {
@@ -197,8 +262,15 @@ KREISEL_DEFINED Eigen::VectorXd RadauIntegrator::at(StiffField& field, double ti
   Eigen::VectorXd there =
       before_.state.value + (stages_.value.col(stages() - 1) + before_.state.rest);
   stages_.value = kept_;
-  if (!done) stop_integration(time, "the stages of a part of a step do not converge");
-  return there;
+  if (done) return there;
+  RadauIntegrator shorter = *this;
+  shorter.time_ = before_.time;
+  shorter.state_ = before_.state;
+  shorter.h_before_ = 0;
+  shorter.step_ = std::abs(h) / 4;
+  while (shorter.t() != time) shorter.step_towards(field, time, time);
+  effort_ = shorter.effort_;
+  return shorter.y();
 }
 
 KREISEL_DEFINED void RadauIntegrator::back_to(StiffField& field, double time) {
@@ -275,7 +347,51 @@ KREISEL_DEFINED double RadauIntegrator::least_allowed() const {
   return std::min(1.0, std::max(accuracy_.relative, rounding) / allowed_);
 }
 
-KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, bool again) {
+KREISEL_DEFINED double RadauIntegrator::estimate(double h) {
+  change_ = stages_.value.col(stages() - 1);
+  from_stages_ = stages_.sum(coefficients_->error) / h;
+  error_ = rate_ + from_stages_;
+  stages_.solve(error_);
+  return sizes_.relative(error_, change_) / allowed_;
+}
+
+KREISEL_DEFINED double RadauIntegrator::filtered_estimate(StiffField& field) {
+  point_ = y() + error_;
+  evaluate(field, start_time_, point_, error_.data());
+  error_ += from_stages_;
+  stages_.solve(error_);
+  return sizes_.relative(error_, change_) / allowed_;
+}
+
+KREISEL_DEFINED double RadauIntegrator::estimate_beyond_rounding() {
+  if (added_.size() == 0) return sizes_.relative(error_, change_) / allowed_;
+  point_ = error_;
+  for (Eigen::Index i = 0; i < point_.size(); ++i) {
+    point_[i] = std::max(std::abs(point_[i]) - 8 * std::sqrt(added_[i]), 0.0);
+  }
+  return sizes_.relative(point_, change_) / allowed_;
+}
+
+KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most, double fastest,
+                                             bool strict) {
+  const double root = 1.0 / (stages() + 1);
+  stages_.value = kept_;
+  effort_.rejected += 1;
+  const double aim = std::isfinite(worst) ? 0.9 * std::pow(worst / most, -root) : 0.125;
+  step_ = std::abs(h) * std::clamp(aim, 0.125, 0.9);
+  if (fastest > 0) {
+    barrier_.length = 2 / fastest;
+    barrier_.take();
+  } else if (strict && rejected_.step != 0 && strict_.steps == 0) {
+    // An oscillation that the step does not resolve: its estimate falls with no power of the length.
+    const double shortened = std::abs(h) / rejected_.step;
+    if (worst > rejected_.worst * std::pow(shortened, 4)) strict_.take();
+  }
+  rejected_ = {t() + h, std::abs(h), worst};
+}
+
+KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, double output,
+                                              bool again) {
   if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t()) || h == 0) {
     stop_integration(t(), "the step has become too short to move time on");
   }
@@ -295,36 +411,33 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, bool 
     step_ = std::abs(h) / 4;
     return false;
   }
-  change_ = stages_.value.col(stages() - 1);
-  from_stages_ = stages_.sum(coefficients_->error) / h;
-  error_ = rate_ + from_stages_;
-  stages_.solve(error_);
-  double worst = sizes_.relative(error_, change_) / allowed_;
-  if (worst >= 1 && (again || effort_.steps == 0)) {
-    // What a stiff field makes of a start off its slow motion is not the step's error.
-    point_ = y() + error_;
-    evaluate(field, start_time_, point_, error_.data());
-    error_ += from_stages_;
-    stages_.solve(error_);
-    worst = sizes_.relative(error_, change_) / allowed_;
+  // The estimate is of lower order and held against more than is allowed, which a motion of less than
+  // that can hide behind, if the steps do not resolve it. One that is left at the next output, and now
+  // and then every one, has to be as small as the accuracy.
+  double worst = estimate(h);
+  const Unresolved fast = unresolved(std::abs(h), std::abs(output - t()));
+  const bool is_new = fast.fastest > 0 && !quiet_;
+  const bool lives = is_new && !(estimate_beyond_rounding() * fast.remains < least_allowed());
+  if (worst >= 1 && !lives && (again || effort_.steps == 0 || is_new)) {
+    worst = filtered_estimate(field);
   }
-  const double root = 1.0 / (stages() + 1);
-  const double most = jumps_within(h, worst) ? least_allowed() : 1;
+  const bool sampled = strict_.steps > 0 || std::fmod(effort_.steps, 32) == 4;
+  const bool strict = sampled || lives;
+  if (strict) worst = estimate_beyond_rounding();
+  double most = 1;
+  if (lives) most = std::min(1.0, least_allowed() / fast.remains);
+  if (sampled || jumps_within(h, worst)) most = least_allowed();
   if (!(worst < most)) {
-    stages_.value = kept_;
-    effort_.rejected += 1;
-    const double aim = std::isfinite(worst) ? 0.9 * std::pow(worst / most, -root) : 0.125;
-    step_ = std::abs(h) * std::clamp(aim, 0.125, 0.9);
-    rejected_ = {t() + h, std::abs(h), worst};
+    reject(h, worst, most, lives ? fast.fastest : 0, strict);
     return false;
   }
-  worst = std::max(worst, 1e-8);
-  double aim = 0.9 * std::pow(worst, -root);
-  if (h_before_ != 0) {
-    aim = std::min(aim, aim * std::abs(h / h_before_) * std::pow(worst_before_ / worst, root));
+  if (fast.fastest > 0) {
+    quiet_ = true;
+    barrier_.patience = 8;
   }
-  step_ = std::abs(h) * std::clamp(aim, 0.2, again ? 1.0 : 8.0);
-  worst_before_ = std::max(worst, 1e-2);
+  barrier_.steps = std::max(barrier_.steps - 1, 0);
+  strict_.steps = std::max(strict_.steps - 1, 0);
+  set_next_step(h, std::max(worst, 1e-8), again);
   h_before_ = h;
   effort_.steps += 1;
   note_noise();
@@ -332,6 +445,16 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, bool 
   time_.add(h);
   sizes_.note(y());
   return true;
+}
+
+KREISEL_DEFINED void RadauIntegrator::set_next_step(double h, double worst, bool again) {
+  const double root = 1.0 / (stages() + 1);
+  double aim = 0.9 * std::pow(worst, -root);
+  if (h_before_ != 0) {
+    aim = std::min(aim, aim * std::abs(h / h_before_) * std::pow(worst_before_ / worst, root));
+  }
+  step_ = std::abs(h) * std::clamp(aim, 0.2, again ? 1.0 : 8.0);
+  worst_before_ = std::max(worst, 1e-2);
 }
 
 KREISEL_DEFINED void RadauIntegrator::note_noise() {

@@ -175,6 +175,7 @@ ordered_json summary(const Result& result) {
   const auto whole = [](double count) { return static_cast<long long>(count); };
   return {{"title", result.scene.title},
           {"method", r.method},
+          {"method_changes", r.changes},
           {"model", name(result.scene.model)},
           {"steps", whole(r.effort.steps)},
           {"rejected", whole(r.effort.rejected)},
@@ -223,7 +224,8 @@ void print_summary(const Result& result) {
   if (!result.scene.title.empty()) {
     fmt::print("{}\n\n", kreisel::printable(result.scene.title));
   }
-  fmt::print("method    {}, model {}\n", r.method, name(result.scene.model));
+  fmt::print("method    {}, model {}\n", r.changes.empty() ? r.method : r.changes,
+             name(result.scene.model));
   fmt::print(
       "steps     {:.0f}, {:.0f} rejected, {:.0f} evaluations ({:.0f} with those for the "
       "estimate), {:.3g} s\n",

@@ -1,0 +1,276 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/compiled.hpp>
+#include <dynamics/decompositions.hpp>
+#include <dynamics/solve/run.hpp>
+#include <dynamics/solve/task.hpp>
+#include <dynamics/step/accuracy.hpp>
+#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/radau.hpp>
+#include <dynamics/step/shared.hpp>
+#include <dynamics/step/taylor.hpp>
+
+namespace kreisel::detail {
+
+/// The eigenvalue of the greatest modulus of the Jacobian; 0 where that is not finite, because a failed
+/// look for stiffness must not end the run.
+KREISEL_DECLARED [[nodiscard]] std::complex<double> fastest_rate(const SteppedScene& scene,
+                                                                 bool other, double t,
+                                                                 const Eigen::VectorXd& y) {
+  Eigen::MatrixXd J(y.size(), y.size());
+  scene.stiff_field(other)->jacobian(t, y, J);
+  std::complex<double> fastest = 0;
+  if (y.size() == 0 || !finite(J)) return fastest;
+  for (const std::complex<double>& rate : eigenvalues(J)) {
+    if (std::abs(rate) > std::abs(fastest)) fastest = rate;
+  }
+  return fastest;
+}
+
+/// A run of radau13.
+class RadauRun final : public SteppedRun {
+ public:
+  RadauRun(const SteppedScene& scene, bool other, const Task& task, const Eigen::VectorXd& start,
+           const Accuracy& accuracy)
+      : SteppedRun(scene.blocks(), task.smallest),
+        field_(scene.stiff_field(other)),
+        steps_(radau_coefficients<7>(), task.begin, start, accuracy, scene.blocks()),
+        from_(task.begin) {
+    steps_.stop_at(task.jumps);
+  }
+
+  void step_towards(double end, double output) override {
+    from_ = steps_.t();
+    steps_.step_towards(*field_, end, output);
+  }
+
+  /// As RadauIntegrator::try_first_step.
+  [[nodiscard]] bool try_first_step(double h, double end, double output) {
+    return steps_.try_first_step(*field_, h, end, output);
+  }
+  [[nodiscard]] double fastest_times_step() const { return steps_.fastest_times_step(); }
+
+  [[nodiscard]] double t() const override { return steps_.t(); }
+  [[nodiscard]] std::span<const double> state() const override {
+    return {steps_.y().data(), static_cast<std::size_t>(steps_.y().size())};
+  }
+  [[nodiscard]] double length() const override { return std::abs(steps_.t() - from_); }
+  [[nodiscard]] bool covers(double t) const override { return steps_.covers(t); }
+  void read(double t, double* y) override {
+    const Eigen::VectorXd there = steps_.at(*field_, t);
+    std::copy_n(there.data(), there.size(), y);
+  }
+
+  [[nodiscard]] Effort effort() const override { return steps_.effort(); }
+  [[nodiscard]] double noise() const override { return steps_.noise(); }
+
+  void pass(Bookmark& bookmark) override {
+    SteppedRun::pass(bookmark);
+    bookmark(from_, steps_);
+  }
+
+ private:
+  std::unique_ptr<StiffField> field_;
+  RadauIntegrator steps_;
+  double from_;
+};
+
+/// A run of verner98 or taylor that goes on by radau13 from the state it has reached, where that takes
+/// fewer evaluations, and back; and by verner98 where the series of taylor cannot go on.
+///
+/// A field is stiff where stability keeps explicit steps short for a motion that is damped away. That
+/// is decided by trial: one step of radau13, ten times as long, has to stand, and it does not while an
+/// oscillation that it would damp is greater than the accuracy.
+class SwitchingRun final : public SteppedRun {
+ public:
+  SwitchingRun(const SteppedScene& scene, bool other, const Task& task, Method first,
+               const Eigen::VectorXd& start, const Accuracy& accuracy)
+      : SteppedRun(scene.blocks(), task.smallest),
+        scene_(scene),
+        other_(other),
+        accuracy_(accuracy),
+        first_(first),
+        method_(first),
+        // Beyond 200 components factorisations would outweigh everything.
+        looks_((first == Method::verner98 || scene.may_be_stiff()) && start.size() <= 200) {
+    here_.begin = task.begin;
+    here_.jumps = task.jumps;
+    here_.smallest = task.smallest;
+    run_ = run_by(first, start);
+  }
+
+  void step_towards(double end, double output) override {
+    if (looks_) choose_method(end, output);
+    try {
+      run_->step_towards(end, output);
+    } catch (const SeriesFailed&) {
+      change_to(Method::verner98);
+      run_->step_towards(end, output);
+    }
+  }
+
+  [[nodiscard]] double t() const override { return run_->t(); }
+  [[nodiscard]] std::span<const double> state() const override { return run_->state(); }
+  [[nodiscard]] double length() const override { return run_->length(); }
+  [[nodiscard]] bool covers(double t) const override { return run_->covers(t); }
+  void read(double t, double* y) override { run_->read(t, y); }
+
+  [[nodiscard]] Effort effort() const override { return sum(finished_, run_->effort()); }
+  [[nodiscard]] double noise() const override { return noise_ + run_->noise(); }
+  [[nodiscard]] std::optional<Method> changed_to() const override {
+    if (changes_.empty()) return std::nullopt;
+    return method_;
+  }
+
+  [[nodiscard]] std::string changes() const override {
+    std::ostringstream text;
+    text.precision(6);
+    Method before = first_;
+    for (const Change& change : changes_) {
+      text << name(before) << " to t = " << change.t << " s, then ";
+      before = change.to;
+    }
+    if (!changes_.empty()) text << name(before);
+    return text.str();
+  }
+
+  void pass(Bookmark& bookmark) override {
+    std::size_t count = changes_.size();
+    bookmark(count);
+    constexpr std::size_t most_changes = 1000000;
+    if (count > most_changes) refuse_task("the bookmark is not of this run");
+    changes_.resize(count);
+    for (Change& change : changes_) {
+      auto to = static_cast<double>(change.to);
+      bookmark(change.t, to);
+      const bool known = to == static_cast<double>(Method::verner98) ||
+                         to == static_cast<double>(Method::radau13) ||
+                         to == static_cast<double>(first_);
+      if (!known) refuse_task("the bookmark is not of this run");
+      change.to = static_cast<Method>(static_cast<int>(to));
+    }
+    const Method now = changes_.empty() ? first_ : changes_.back().to;
+    if (now != method_) run_ = run_by(now, vector_of<Eigen::VectorXd>(run_->state()));
+    method_ = now;
+    SteppedRun::pass(bookmark);
+    bookmark(finished_, noise_, next_look_, needless_);
+    run_->pass(bookmark);
+  }
+
+ private:
+  struct Change {
+    double t = 0;
+    Method to = Method::verner98;
+  };
+
+  [[nodiscard]] static Effort sum(const Effort& a, const Effort& b) {
+    return {a.steps + b.steps, a.rejected + b.rejected, a.evaluations + b.evaluations,
+            a.jacobians + b.jacobians};
+  }
+
+  /// A run from the present time on.
+  [[nodiscard]] std::unique_ptr<SteppedRun> run_by(Method method, const Eigen::VectorXd& y) const {
+    Accuracy accuracy = accuracy_;
+    accuracy.most_evaluations = std::max(1.0, accuracy_.most_evaluations - finished_.evaluations);
+    if (method == Method::taylor) return scene_.taylor_run(here_, y, accuracy, other_);
+    if (method == Method::verner98) return scene_.explicit_run(here_, y, accuracy, other_);
+    return radau_run(y, accuracy);
+  }
+
+  [[nodiscard]] std::unique_ptr<RadauRun> radau_run(const Eigen::VectorXd& y,
+                                                    Accuracy accuracy) const {
+    // The finest pair of explicit runs is the finest pair of implicit ones.
+    constexpr double finest = 4e-16;
+    const bool beyond = accuracy.relative < (first_ == Method::taylor ? 1e-18 : 1e-16);
+    accuracy.relative = beyond ? 1e-16 : std::max(accuracy.relative, finest);
+    return std::make_unique<RadauRun>(scene_, other_, here_, y, accuracy);
+  }
+
+  [[nodiscard]] Eigen::VectorXd present() {
+    here_.begin = run_->t();
+    const std::span<const double> y = run_->state();
+    return Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size()));
+  }
+
+  void change_to(Method method) {
+    const Eigen::VectorXd y = present();
+    adopt(method, run_by(method, y), run_->t());
+  }
+
+  void adopt(Method method, std::unique_ptr<SteppedRun> run, double t) {
+    finished_ = sum(finished_, run_->effort());
+    noise_ += run_->noise();
+    changes_.push_back({t, method});
+    method_ = method;
+    run_ = std::move(run);
+    needless_ = 0;
+    next_look_ = first_look;
+  }
+
+  void choose_method(double end, double output) {
+    if (method_ != Method::radau13) {
+      if (run_->effort().steps < next_look_) return;
+      next_look_ *= try_radau(end, output) ? 1.25 : 2;
+      return;
+    }
+    // Where its steps are so short explicit ones are as long.
+    const auto& radau = static_cast<const RadauRun&>(*run_);
+    needless_ = radau.fastest_times_step() < 1 ? needless_ + 1 : 0;
+    if (needless_ >= 50) change_to(first_);
+  }
+
+  /// Goes over to radau13 where that pays; else says whether it may later on.
+  [[nodiscard]] bool try_radau(double end, double output) {
+    const Eigen::VectorXd y = present();
+    const std::complex<double> fastest = fastest_rate(scene_, other_, run_->t(), y);
+    const double speed = std::abs(fastest);
+    constexpr double soon = 1e-3;  // of the time left
+    const bool dies_soon =
+        fastest.real() < -0.5 * speed && speed * std::abs(end - run_->t()) > 1 / soon;
+    if (dies_soon) {
+      change_to(Method::radau13);
+      return true;
+    }
+    // A series of order 20 follows what oscillates in steps of 2 radians.
+    if (speed * run_->length() < 1.5) return false;
+    auto trial = radau_run(y, accuracy_);
+    const double from = run_->t();
+    if (trial->try_first_step(10 * run_->length(), end, output)) {
+      adopt(Method::radau13, std::move(trial), from);
+    } else {
+      finished_ = sum(finished_, trial->effort());
+    }
+    return fastest.real() < 0;
+  }
+
+  static constexpr double first_look = 16;  // steps
+
+  const SteppedScene& scene_;
+  bool other_;
+  Accuracy accuracy_;
+  Method first_;
+  Method method_;
+  bool looks_;
+  Task here_;  ///< begins at the state from which the last method began
+  std::unique_ptr<SteppedRun> run_;
+  std::vector<Change> changes_;
+  Effort finished_;  ///< of the methods before
+  double noise_ = 0;
+  double next_look_ = first_look;
+  int needless_ = 0;  ///< steps of radau13 in turn that explicit ones could have made
+};
+
+}  // namespace kreisel::detail

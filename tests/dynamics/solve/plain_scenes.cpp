@@ -1,0 +1,194 @@
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/scene/body_system.hpp>
+#include <dynamics/solve/solve.hpp>
+
+/// The scenes that people write first: rest, right angles, tiny starts, light damping, one output.
+/// Right values are of scipy's DOP853 at two tolerances and of closed forms, unless said otherwise.
+
+using namespace kreisel;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double g = 9.81;
+
+BodyDescription body(const Vector3<double>& axis, double mass, const Vector3<double>& centre,
+                     const Vector3<double>& moments) {
+  return {.name = "b",
+          .joint = {.kind = JointKind::revolute, .axis = axis},
+          .inertia = InertiaTensor<Body>::about_centre(mass, centre, moments.asDiagonal())};
+}
+
+struct Case {
+  Method method;
+  double tolerance = 1e-10;
+};
+
+/// By the default method and by those that share no code with it.
+const std::vector<Case> cases = {{Method::automatic},       {Method::taylor},
+                                 {Method::verner98},        {Method::radau13},
+                                 {Method::automatic, 1e-6}, {Method::automatic, 1e-13}};
+
+/// Holds the first angle at the outputs against what is right, to 1.2 of the error that is told.
+template <class Scene>
+void check(const Scene& scene, const typename Scene::State& start, const std::vector<double>& times,
+           const std::vector<double>& right, double digits) {
+  for (const Case& c : cases) {
+    const auto found =
+        solve(scene, start, {.times = times, .tolerance = c.tolerance, .method = c.method});
+    BOOST_TEST_CONTEXT(name(c.method) << ", " << c.tolerance << ": " << found.report.message) {
+      BOOST_TEST(found.report.tolerance_kept);
+      BOOST_TEST_REQUIRE(found.states.size() == times.size());
+      double size = 1e-3;
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        const double off = std::abs(found.states[i].coordinates[0] - right[i]);
+        size = std::max(size, std::abs(right[i]));
+        BOOST_TEST(off <= digits + 1.2 * size * found.report.error_estimate);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(plain_scenes)
+
+// The first acceleration is 1e-17 m/s^2, the rounding of a sine.
+BOOST_AUTO_TEST_CASE(a_pendulum_at_rest_on_a_rolling_ship) {
+  auto p = body({1, 0, 0}, 1, {0, 0, -0.5}, {0.1, 0.1, 0.02});
+  p.forces = {{.damping = 0.1}};
+  const HarmonicSeries<> roll{.terms = {{{0.157, 0, 0}, 0.785, pi / 2}}};
+  const HarmonicFrame<> ship(roll, {}, 0, 60);
+  const BodySystem scene(ship, {p}, UniformGravity<Inertial>{{0, 0, -g}});
+  check(scene, scene.rest(), {10, 60}, {-0.20358471, -0.00813001}, 6e-9);
+}
+
+// The angle has a series in t^2, t^6, t^10, ..: four terms in turn vanish.
+BOOST_AUTO_TEST_CASE(a_body_next_to_its_unstable_rest) {
+  const RotatingFrame<> table{.angular_velocity = {0, 1, 1}};
+  const BodySystem scene(table, {body({-1, 0, 0}, 1, {0, 0, 0}, {0.78, 1.02, 0.36})});
+  for (const double start : {0.0, -1e-20, 1e-14, -1e-9}) {
+    auto state = scene.rest();
+    state.coordinates[0] = start;
+    check(scene, state, {2}, {-1.2685309978123}, 3 * std::abs(start) + 5e-14);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_body_at_rest_stays_there) {
+  const RotatingFrame<> earth{.angular_velocity = {0, 7.3e-5, 0}};
+  const BodySystem scene(earth, {body({1, 0, 0}, 1, {0, 0, 0}, {0.1, 0.1, 0.2})});
+  for (const double start : {0.0, pi / 2, pi}) {
+    auto state = scene.rest();
+    state.coordinates[0] = start;
+    check(scene, state, {5}, {start}, 1e-15);
+  }
+}
+
+// Right values: 60 digits of a Taylor series of order 60.
+BOOST_AUTO_TEST_CASE(two_pendulums_let_go_from_the_horizontal) {
+  auto upper = body({0, 1, 0}, 1, {0, 0, -1}, {0.1, 0.1, 0.1});
+  auto lower = upper;
+  lower.name = "lower";
+  lower.parent = "b";
+  lower.joint.position = {0, 0, -1};
+  const BodySystem scene(RestingFrame<>{}, {upper, lower}, UniformGravity<Guide>{{0, 0, -g}});
+  auto state = scene.rest();
+  state.coordinates[0] = pi / 2;
+  check(scene, state, {4}, {-0.2634352815830}, 1e-12);
+}
+
+// Growth of a motion that is smaller than the error allowed is no error to be damped.
+BOOST_AUTO_TEST_CASE(an_upright_pendulum_falls_by_every_method) {
+  const BodySystem scene(RestingFrame<>{}, {body({0, 1, 0}, 1, {0, 0, 1}, {0.1, 0.1, 0.1})},
+                         UniformGravity<Guide>{{0, 0, -g}});
+  const double growth = std::sqrt(g / 1.1);
+  for (const double start : {1e-9, 1e-12}) {
+    auto state = scene.rest();
+    state.coordinates[0] = start;
+    for (const Method method : {Method::verner98, Method::taylor, Method::radau13}) {
+      const auto found =
+          solve(scene, state, {.times = {1, 2, 3}, .tolerance = 1e-8, .method = method});
+      for (std::size_t i = 0; i < found.states.size(); ++i) {
+        const double right = start * std::cosh(growth * found.times[i]);
+        const double off = std::abs(found.states[i].coordinates[0] / right - 1);
+        BOOST_TEST(off <= 1e-14 / start,
+                   name(method) << " from " << start << " at " << found.times[i] << ": " << off);
+      }
+    }
+  }
+}
+
+// The sizes by which errors count are those of the whole way, not of outputs alone: this sledge is at
+// rest at its only output, after 1000 m/s.
+BOOST_AUTO_TEST_CASE(the_report_does_not_depend_on_outputs) {
+  auto sledge = body({1, 0, 0}, 1, {0, 0, 0}, {1, 1, 1});
+  sledge.joint.kind = JointKind::prismatic;
+  sledge.forces = {{.constant = -10}};
+  auto pendulum = body({1, 0, 0}, 0.1, {0, 0, -0.1}, {1e-4, 1e-4, 1e-4});
+  pendulum.name = "pendulum";
+  pendulum.parent = "b";
+  pendulum.forces = {{.stiffness = 0.01}};
+  const BodySystem scene(RestingFrame<>{}, {sledge, pendulum});
+  auto state = scene.rest();
+  state.rates[0] = 1000;
+  state.coordinates[1] = 0.5;
+  std::vector<double> often;
+  for (int i = 1; i <= 1000; ++i) often.push_back(0.11 * i);
+  for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
+    const auto once = solve(scene, state, {.times = {110}, .tolerance = 1e-11, .method = method});
+    const auto many = solve(scene, state, {.times = often, .tolerance = 1e-11, .method = method});
+    const double ratio = once.report.error_estimate / many.report.error_estimate;
+    BOOST_TEST_MESSAGE(name(method) << ": told " << once.report.error_estimate << " and "
+                                    << many.report.error_estimate);
+    BOOST_TEST(once.report.tolerance_kept, name(method));
+    BOOST_TEST(ratio <= 1.5, name(method));
+    BOOST_TEST(ratio >= 1 / 1.5, name(method));
+    BOOST_TEST(std::abs(once.states[0].coordinates[1] - 0.111287085542196) <= 1e-11);
+  }
+}
+
+// A mode of 1e5 rad/s that is damped away, by ratios down to 1e-3, before the first output.
+BOOST_AUTO_TEST_CASE(lightly_damped_modes_cost_no_more) {
+  auto outer = body({1, 0, 0}, 0.5, {0, 0, 0}, {0.006, 0.0045, 0.005});
+  outer.forces = {{.stiffness = 2, .damping = 0.001}};
+  auto inner = body({0, 1, 0}, 0.5, {0, 0, 0}, {0.002, 0.0015, 0.0028});
+  inner.name = "inner";
+  inner.parent = "b";
+  auto rotor = body({0, 0, 1}, 1, {0, 0, 0}, {0.005, 0.005, 0.008});
+  rotor.name = "rotor";
+  rotor.parent = "inner";
+  rotor.rotor = Rotor{.mode = RotorMode::regulated};
+  for (const double ratio : {1e-1, 1e-2, 1e-3}) {
+    inner.forces = {{.stiffness = 1e8, .damping = 2 * ratio * std::sqrt(1e8 * 0.0065)}};
+    const BodySystem scene(RestingFrame<>{}, {outer, inner, rotor});
+    auto state = scene.rest();
+    state.coordinates[0] = 0.3;
+    state.rates[2] = 50;
+    Task task{.times = {0.5, 1, 1.5, 2}, .tolerance = 1e-8};
+    const auto found = solve(scene, state, task);
+    task.method = Method::radau13;
+    const auto implicit = solve(scene, state, task);
+    BOOST_TEST_MESSAGE("damping ratio "
+                       << ratio << ": " << found.report.all_evaluations << " evaluations, radau13 "
+                       << implicit.report.all_evaluations << "; " << found.report.changes);
+    BOOST_TEST(found.report.tolerance_kept);
+    BOOST_TEST(found.report.all_evaluations <= 3 * implicit.report.all_evaluations);
+    for (std::size_t i = 0; i < task.times.size(); ++i) {
+      const double apart =
+          std::abs(found.states[i].coordinates[0] - implicit.states[i].coordinates[0]);
+      BOOST_TEST(apart <= found.report.error_estimate + implicit.report.error_estimate);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
