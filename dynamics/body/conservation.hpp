@@ -1,8 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <dynamics/body/balance.hpp>
 #include <dynamics/body/loads.hpp>
@@ -102,9 +106,9 @@ enum class EnergyLaw {
   without_spin  ///< BodyBalance::carrier_energy and the potential one: T2 + V
 };
 
-/// Whether all forces of a tree have a potential, on a guide at rest, but for motors of regulated
+/// Whether no force of a tree changes the energy on a guide at rest, but for motors of regulated
 /// rotors.
-[[nodiscard]] inline bool have_potential(const BodyTree& tree) {
+[[nodiscard]] inline bool keeps_energy(const BodyTree& tree) {
   return std::none_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
     if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
     const auto takes = [&b](const JointForce& f) {
@@ -113,14 +117,14 @@ enum class EnergyLaw {
     return b.rule == JointRule::constant_rate ||
            std::any_of(b.forces.begin(), b.forces.end(), takes) ||
            !std::all_of(b.loads.begin(), b.loads.end(),
-                        [](const BodyLoad& load) { return load.has_potential(); });
+                        [](const BodyLoad& load) { return load.keeps_energy(); });
   });
 }
 
 /// Source : paper 000 (9)-(13) for L = const: d(u^t A* u)/dt = 2 u^t Q; no such law where a motor's
 ///          rate changes as time goes or where another has a torque of its own besides
 [[nodiscard]] inline EnergyLaw energy_law(const BodyTree& tree) {
-  if (!have_potential(tree)) return EnergyLaw::none;
+  if (!keeps_energy(tree)) return EnergyLaw::none;
   const auto any = [&tree](const auto& is) {
     return std::any_of(tree.bodies().begin(), tree.bodies().end(),
                        [&is](const BodyDescription& b) { return b.rotor && is(*b.rotor); });
@@ -132,16 +136,129 @@ enum class EnergyLaw {
   return driven || changed ? EnergyLaw::none : EnergyLaw::without_spin;
 }
 
-/// Whether nothing acts on a tree from outside, on a guide at rest.
-[[nodiscard]] inline bool keeps_momentum(const BodyTree& tree, const Gravity& gravity) {
-  if (!std::holds_alternative<std::monostate>(gravity)) return false;
-  return std::all_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
-    if (!b.loads.empty()) return false;
-    if (b.parent != "guide") return true;
-    const auto pushes = [](const JointForce& f) { return f.constant != 0 || f.damping != 0; };
-    return b.joint.kind == JointKind::free && b.rule == JointRule::forces &&
-           std::none_of(b.forces.begin(), b.forces.end(), pushes);
+/// A part of a tree that moves as one system: the link whose joint stands still in the guide, and
+/// all links behind it. Nothing but loads, gravity and that joint acts on it from outside.
+struct RootedPart {
+  std::size_t root = 0;
+  Motor<> momentum = {};  ///< on guide axes about the guide's origin
+  bool is_loaded = false;
+  bool has_weight = false;
+};
+
+/// Number of the part that each link belongs to; -1 for links that do not move in the guide.
+[[nodiscard]] inline std::vector<int> part_of_links(const BodyTree& tree,
+                                                    std::vector<RootedPart>& parts) {
+  std::vector<int> part(tree.links().size(), -1);
+  for (std::size_t i = 1; i < part.size(); ++i) {
+    const Link& link = tree.links()[i];
+    part[i] = part[static_cast<std::size_t>(link.parent)];
+    if (part[i] >= 0 || !link.moves()) continue;
+    part[i] = static_cast<int>(parts.size());
+    parts.push_back({.root = i});
+  }
+  return part;
+}
+
+/// The parts of a tree on a guide at rest, with their momenta. Needs poses and places in w.
+[[nodiscard]] inline std::vector<RootedPart> rooted_parts(const BodyTree& tree, const double* v,
+                                                          const BodyWorkspace& w) {
+  std::vector<RootedPart> parts;
+  const std::vector<int> part = part_of_links(tree, parts);
+  const auto with = [&](std::size_t link) {
+    return part[link] < 0 ? nullptr : &parts[static_cast<std::size_t>(part[link])];
+  };
+  for (std::size_t i = 1; i < part.size(); ++i) {
+    RootedPart* const own = with(i);
+    if (own == nullptr) continue;
+    const auto& [x, V] = w.place[i];
+    own->momentum += carried(x, w.inertia[i] * V);
+    own->has_weight = own->has_weight || w.inertia[i].mass != 0;
+  }
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    RootedPart* const own = with(carrier(rotor));
+    if (own == nullptr) continue;
+    const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
+    const double turn = dot(e, w.place[carrier(rotor)].V.resultant);
+    own->momentum.moment += momentum_weight(rotor, v[rotor.link.v], turn) * e;
+  }
+  for (const int body : tree.loaded()) {
+    const std::size_t slot = tree.link(body);
+    RootedPart* const own = with(is_rotor(tree, slot) ? carrier(rotor(tree, slot)) : slot);
+    if (own != nullptr) own->is_loaded = true;
+  }
+  return parts;
+}
+
+/// Whether the joint of a link exerts no force along its own rates.
+[[nodiscard]] inline bool moves_freely(const BodyTree& tree, const Link& link) {
+  if (!link.moved_by_forces()) return false;
+  const auto first = tree.forces().begin() + link.v;
+  return std::all_of(first, first + rate_count(link.kind), [](const JointForce& f) {
+    return f.stiffness == 0 && f.damping == 0 && f.constant == 0;
   });
+}
+
+using Invariants = std::vector<std::pair<std::string, double>>;
+
+/// Momenta that a part of a tree keeps on a guide at rest, by name: those along rates of its root
+/// joint on which neither that joint nor gravity acts.
+///
+///   free       linear momentum, angular momentum about the guide's origin
+///   spherical  angular momentum about the joint
+///   revolute, first axis of a universal joint   angular momentum about the axis
+///   prismatic  linear momentum along the axis
+///
+/// With gravity only the linear momentum across it and the angular momentum along it.
+///
+/// gravity : on guide axes
+/// only    : no other part moves, so that names do not tell the body
+inline void add_kept_momenta(const BodyTree& tree, const RootedPart& part,
+                             const Vector3<double>& gravity, bool only, const BodyWorkspace& w,
+                             Invariants& result) {
+  constexpr double rounding = 1e-15;  // of axes in decimals
+  const Link& link = tree.links()[part.root];
+  if (part.is_loaded || !moves_freely(tree, link)) return;
+  const Vector3<double> g = part.has_weight ? gravity : Vector3<double>(Vector3<double>::Zero());
+  const double size = std::sqrt(dot(g, g));
+  const std::string body = "'" + tree.body(link.body).name + "'";
+  const std::string whose = only ? "" : " of " + body;
+  const Vector3<double>& p = part.momentum.resultant;
+  Vector3<double> L = part.momentum.moment;
+  if (link.kind != LinkKind::free) L -= cross(w.place[part.root].x, p);
+  static constexpr const char* axes[] = {" x", " y", " z"};
+  if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
+    const bool slides = link.kind == LinkKind::prismatic;
+    const Vector3<double> axis =
+        multiply(w.pose[static_cast<std::size_t>(link.parent)].R, link.axis);
+    const Vector3<double> across = cross(axis, g);
+    const double acting = slides ? std::abs(dot(axis, g)) : std::sqrt(dot(across, across));
+    if (acting > rounding * size) return;
+    const char* const name =
+        slides ? "momentum along the axis of " : "angular momentum about the axis of ";
+    result.emplace_back(name + body, dot(axis, slides ? p : L));
+    return;
+  }
+  for (int k = 0; k < 3 && link.kind == LinkKind::free; ++k) {
+    if (std::abs(g[k]) > rounding * size) continue;
+    result.emplace_back(std::string("momentum") + axes[k] + whose, p[k]);
+  }
+  if (size > 0) {
+    result.emplace_back("angular momentum along gravity" + whose, dot(L, g) / size);
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    result.emplace_back(std::string("angular momentum") + axes[k] + whose, L[k]);
+  }
+}
+
+/// Momenta that do not change on a guide at rest, by name. Needs poses and places in w.
+inline void add_kept_momenta(const BodyTree& tree, const GuideNow<>& guide, const Gravity& gravity,
+                             const double* v, const BodyWorkspace& w, Invariants& result) {
+  const std::vector<RootedPart> parts = rooted_parts(tree, v, w);
+  for (const RootedPart& part : parts) {
+    add_kept_momenta(tree, part, field(gravity, guide), parts.size() == 1, w, result);
+  }
 }
 
 }  // namespace kreisel::detail

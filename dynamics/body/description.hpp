@@ -143,6 +143,7 @@ class BodyLoad {
     if constexpr (requires(const Situation<>& s) { load.potential(s); }) {
       potential_ = [load](const Situation<>& s) { return load.potential(s); };
     }
+    if constexpr (requires { load.keeps_energy(); }) keeps_energy_ = load.keeps_energy();
     if constexpr (Load<L, detail::AlongOne>) along_ = load;
     if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
   }
@@ -168,7 +169,8 @@ class BodyLoad {
   }
   [[nodiscard]] bool takes_dual_numbers() const { return static_cast<bool>(along_); }
 
-  [[nodiscard]] bool has_potential() const { return static_cast<bool>(potential_); }
+  /// Whether it does no work but that of its potential on a guide at rest: see Load.
+  [[nodiscard]] bool keeps_energy() const { return keeps_energy_; }
   [[nodiscard]] double potential(const Situation<>& s) const {
     return potential_ ? potential_(s) : 0;
   }
@@ -178,6 +180,7 @@ class BodyLoad {
   std::function<Force<Body>(const Situation<>&)> force_;
   std::function<double(const Situation<>&)> potential_;
   std::function<Force<Body, detail::AlongOne>(const Situation<detail::AlongOne>&)> along_;
+  bool keeps_energy_ = false;
   bool ignores_spin_ = false;
 };
 

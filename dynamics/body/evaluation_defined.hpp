@@ -278,14 +278,7 @@ KREISEL_DEFINED std::vector<std::pair<std::string, double>> conserved(const Body
       result.emplace_back("energy without spin", sums.carrier_energy + sums.potential_energy);
       break;
   }
-  if (keeps_momentum(tree, now.gravity)) {
-    const auto& [p, L] = sums.momentum.value;
-    static constexpr const char* linear[] = {"momentum x", "momentum y", "momentum z"};
-    static constexpr const char* angular[] = {"angular momentum x", "angular momentum y",
-                                              "angular momentum z"};
-    for (int k = 0; k < 3; ++k) result.emplace_back(linear[k], p[k]);
-    for (int k = 0; k < 3; ++k) result.emplace_back(angular[k], L[k]);
-  }
+  add_kept_momenta(tree, now.guide, now.gravity, rates_of(tree, y), w, result);
   return result;
 }
 

@@ -49,7 +49,7 @@ namespace kreisel::detail {
   }
   list.add("guide", "T_i *F + F x (T_i F)", !guide_rests, of_guide);
   list.add("Coriolis", "V'_i x (T_i F) + F x (T_i V'_i) + T_i (F x V'_i)", !guide_rests, of_guide);
-  list.add("load", falls ? field : "gravity", falls, falls ? "" : "none is given");
+  list.add("load", falls ? field : "uniform gravity", falls, falls ? "" : "none is given");
   list.add("load", "springs, dampers and constant forces in joints", true, missing);
   list.add("load", "loads on bodies", has_loads, has_loads ? "" : "none is given");
   list.add("load", "R_ij of the joints", false, "eliminated; reactions() has them");

@@ -20,9 +20,9 @@ namespace kreisel {
 template <class S = double>
 struct HarmonicSeries {
   struct Term {
-    Vector3<S> amplitude;
-    S frequency;
-    S phase;
+    Vector3<S> amplitude = Vector3<S>::Zero();
+    S frequency = S(0);
+    S phase = S(0);
   };
 
   Vector3<S> constant = Vector3<S>::Zero();

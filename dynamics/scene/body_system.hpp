@@ -249,10 +249,13 @@ class BodySystem {
     return detail::balance(tree_, at(t), y, w);
   }
 
-  /// What does not change during a motion, as far as the description shows it: the energy where the
-  /// guide rests and all forces have a potential, without that of the spin where rotors are
-  /// regulated; the momentum where nothing acts from outside; the cyclic momentum C (phi' + e.w) of
-  /// every free rotor.
+  /// Invariants of a motion, by name, as far as the description shows them:
+  ///
+  ///   energy            guide at rest, all loads keep it (see Load), no damper; without that of the
+  ///                     spin if rotors are regulated
+  ///   linear and angular momentum   guide at rest, along the rates of root joints on which nothing
+  ///                     acts: about the joint of a spherical root, along gravity if there is one
+  ///   cyclic momentum   C (phi' + e.w) of every free rotor, on any guide
   ///
   /// Source : paper 000 (4), and (9): T2 + V = const for L = const
   [[nodiscard]] std::vector<std::pair<std::string, S>> conserved(double t,

@@ -18,11 +18,11 @@ namespace kreisel {
 /// C of the rotor lies along its spin axis, B of the inner ring along the inner bearing, A of the
 /// outer ring along the outer one. A ring of zeros has no mass.
 ///
-/// Source : paper 002 section 6: Theta_A .. Theta_C with the indices 1, 2 and 3
+/// Source : paper 002 section 7: Theta_A .. Theta_C with the indices 1, 2 and 3
 /// Units  : kg m^2
 template <class P>
 struct BasicCardanMoments {
-  Vector3<P> rotor;
+  Vector3<P> rotor = Vector3<P>::Zero();
   Vector3<P> inner_ring = Vector3<P>::Zero();
   Vector3<P> outer_ring = Vector3<P>::Zero();
 };
@@ -73,7 +73,7 @@ struct FrictionlessRotor {
 /// of phi', which for an exact Jacobian has to take dual numbers.
 template <class Torque = double>
 struct DrivenRotor {
-  Torque torque;
+  Torque torque = {};
   double friction = 0;
 };
 template <class Torque>

@@ -208,13 +208,17 @@ class FreeBody {
     return remade(inertia_, guide_, detail::other_loads<L>(loads_));
   }
 
-  /// Jacobi's integral, by name: what a body keeps in a guide that moves steadily (its energy in one
-  /// at rest), if no load does work besides its potential.
+  /// Invariants, by name: Jacobi's integral in a guide that moves steadily (the energy in one at
+  /// rest), if no load does work besides its potential; momenta in a guide at rest on which no load
+  /// but uniform gravity acts.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
                                                                  const State& state) const {
     return std::apply(
         [&](const Loads&... all) {
-          return detail::kept_energy(guide_, situation(t, state), all...);
+          const Situation<S> s = situation(t, state);
+          auto kept = detail::kept_energy(guide_, s, all...);
+          detail::add_kept_momenta<M>(kept, s, Vector3<double>::Zero(), true, all...);
+          return kept;
         },
         loads_);
   }

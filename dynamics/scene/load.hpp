@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <limits>
 #include <type_traits>
 
 #include <dynamics/guide/motion.hpp>
@@ -53,6 +54,10 @@ struct Situation {
 /// a static member ignores_guide = true, which spares scenes to work the guide out. A static member
 /// kind is its name in terms().
 ///
+/// Energy is listed as an invariant only if each load has a member keeps_energy() that returns true:
+/// on a guide at rest the load then does no work but that of its potential(), which does not depend
+/// on the time. A load without that member counts as one that changes the energy.
+///
 /// Those here are called with situations in any numbers: what they do is differentiated by dual
 /// ones.
 template <class L, class S = double>
@@ -84,7 +89,7 @@ struct UniformGravity {
   static constexpr bool ignores_spin = !std::is_same_v<A, Body>;
   static constexpr bool on_guide_axes = std::is_same_v<A, Guide>;
 
-  Vector3<S> g;
+  Vector3<S> g = Vector3<S>::Zero();
 
   template <class N>
   [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
@@ -92,6 +97,9 @@ struct UniformGravity {
     const Inertia<N>& T = s.inertia.value;
     return {{T.mass * g_Body, T.first_moment.cross(g_Body)}};
   }
+
+  /// A field that turns with the body has no potential.
+  [[nodiscard]] bool keeps_energy() const { return !std::is_same_v<A, Body>; }
 
   /// Zero where the centre of mass is at the origin of A.
   [[nodiscard]] S potential(const Situation<S>& s) const {
@@ -147,8 +155,8 @@ struct Spring {
   static constexpr const char* kind = "spring";
   static constexpr bool ignores_guide = true;
 
-  Vector3<S> guide_end;
-  Vector3<S> body_end;
+  Vector3<S> guide_end = Vector3<S>::Zero();
+  Vector3<S> body_end = Vector3<S>::Zero();
   S stiffness = S(0);
   S rest_length = S(0);
   S damping = S(0);
@@ -185,8 +193,8 @@ struct ElasticMount {
   static constexpr const char* kind = "elastic mount";
   static constexpr bool ignores_guide = true;
 
-  Vector3<S> guide_end;
-  Vector3<S> body_end;
+  Vector3<S> guide_end = Vector3<S>::Zero();
+  Vector3<S> body_end = Vector3<S>::Zero();
   Matrix3<S> stiffness = Matrix3<S>::Zero();
   Matrix3<S> damping = Matrix3<S>::Zero();
   Vector3<S> preload = Vector3<S>::Zero();  ///< on the body, on guide axes, when both ends meet
@@ -202,7 +210,12 @@ struct ElasticMount {
     return {{f, end.cross(f)}};
   }
 
-  [[nodiscard]] bool keeps_energy() const { return damping.isZero(0); }
+  /// A stiffness that is not symmetric has no potential. Rounding passes: K = R D R^t in double is
+  /// symmetric up to 12u of its norm.
+  [[nodiscard]] bool keeps_energy() const {
+    const S rounding = S(8) * std::numeric_limits<S>::epsilon() * stiffness.norm();
+    return damping.isZero(0) && (stiffness - stiffness.transpose()).norm() <= rounding;
+  }
 
   [[nodiscard]] S potential(const Situation<S>& s) const {
     const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;

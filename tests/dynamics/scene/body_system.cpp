@@ -380,7 +380,7 @@ BOOST_AUTO_TEST_CASE(tells_which_terms_it_computes) {
     check(resting({arm}), name, 0);
     check(turning({arm}), name, acceleration(turning({arm}), 0) - bare);
   }
-  check(resting({arm}), "gravity", 0);
+  check(resting({arm}), "uniform gravity", 0);
   check(resting({arm}, weight), "gravity on guide axes",
         acceleration(resting({arm}, weight), 0) - bare);
   check(resting({arm}), "loads on bodies", 0);
@@ -537,7 +537,8 @@ BOOST_AUTO_TEST_CASE(keep_energy_on_a_resting_guide) {
   const auto system = resting(mobile(0), UniformGravity<Guide>{{1, 2, -9}});
   const Eigen::VectorXd y = start(system.tree().coordinates() + system.tree().rates());
   const auto before = system.conserved(0, system.from_vector(y));
-  BOOST_TEST_REQUIRE(before.size() == 1U);
+  BOOST_TEST_REQUIRE(before.size() == 2U);
+  BOOST_TEST_REQUIRE(before[0].first == "energy");
   const Eigen::VectorXd end = run(system, y, 0.5, nothing).first;
   const auto after = system.conserved(0.5, system.from_vector(end));
   BOOST_TEST_MESSAGE("energy " << before[0].second << ", drift "
@@ -557,16 +558,20 @@ BOOST_AUTO_TEST_CASE(keep_momentum_where_nothing_acts_from_outside) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(conserve_nothing_on_a_moving_guide_or_with_a_motor) {
+BOOST_AUTO_TEST_CASE(lose_energy_on_a_moving_guide_or_with_a_motor) {
+  const auto keeps_energy = [](const auto& system) {
+    const auto kept = system.conserved(0, system.rest());
+    return std::any_of(kept.begin(), kept.end(),
+                       [](const auto& invariant) { return invariant.first == "energy"; });
+  };
   const BodySystem<RotatingFrame<>> moving({.angular_velocity = {0, 0, 1}}, mobile(0));
   BOOST_TEST(moving.conserved(0, moving.rest()).empty());
+  const UniformGravity<Guide> gravity{z_axis};
+  BOOST_TEST(keeps_energy(resting(mobile(0), gravity)));
   auto bodies = mobile(0);
   bodies[1].rule = JointRule::constant_rate;
-  BOOST_TEST(
-      resting(bodies, UniformGravity<Guide>{z_axis}).conserved(0, resting(bodies).rest()).empty());
-  BOOST_TEST(resting(mobile(0.1), UniformGravity<Guide>{z_axis})
-                 .conserved(0, resting(bodies).rest())
-                 .empty());
+  BOOST_TEST(!keeps_energy(resting(bodies, gravity)));
+  BOOST_TEST(!keeps_energy(resting(mobile(0.1), gravity)));
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -90,16 +91,19 @@ BOOST_AUTO_TEST_CASE(stays_for_a_free_body) {
 BOOST_AUTO_TEST_CASE(is_not_named_where_it_does_not_stay) {
   const auto kept = [](const auto& guide, const auto&... loads) {
     const HeldBody body(lopsided_body(), {0.3, 0.1, -0.2}, guide, loads...);
-    return body.conserved(0, {}).size();
+    const auto all = body.conserved(0, {});
+    return std::count_if(all.begin(), all.end(), [](const auto& invariant) {
+      return std::string(invariant.first).find("momentum") == std::string::npos;
+    });
   };
   const RotatingFrame<> turning{{0.7, -0.3, 0.5}};
-  BOOST_TEST(kept(turning) == 1u);
-  BOOST_TEST(kept(RestingFrame<>{}, UniformGravity<Inertial>{{0, 0, -9}}) == 1u);
-  BOOST_TEST(kept(turning, UniformGravity<Inertial>{{0, 0, -9}}) == 0u);
-  BOOST_TEST(kept(turning, ViscousDrag<>{0.1, 0}) == 0u);
-  BOOST_TEST(kept(turning, Spring<>{{2, 1, 1}, {0.1, 0.2, 0}, 30, 0.5, 0.1}) == 0u);
-  BOOST_TEST(kept(turning, ConstantLoad<Guide>{.torque = {0, 0, 1}}) == 0u);
-  BOOST_TEST(kept([](double t) { return RotatingFrame<>{{0, 0, 1}}(t); }) == 0u);
+  BOOST_TEST(kept(turning) == 1);
+  BOOST_TEST(kept(RestingFrame<>{}, UniformGravity<Inertial>{{0, 0, -9}}) == 1);
+  BOOST_TEST(kept(turning, UniformGravity<Inertial>{{0, 0, -9}}) == 0);
+  BOOST_TEST(kept(turning, ViscousDrag<>{0.1, 0}) == 0);
+  BOOST_TEST(kept(turning, Spring<>{{2, 1, 1}, {0.1, 0.2, 0}, 30, 0.5, 0.1}) == 0);
+  BOOST_TEST(kept(turning, ConstantLoad<Guide>{.torque = {0, 0, 1}}) == 0);
+  BOOST_TEST(kept([](double t) { return RotatingFrame<>{{0, 0, 1}}(t); }) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(stays_for_a_cardan_gyro) {
