@@ -179,17 +179,22 @@ class SceneReader {
     }
     if (kind == "inertial") scene_.guide.emplace_back(scene_guide::Resting{});
     if (kind == "rotating") {
-      scene_.guide.emplace_back(scene_guide::Rotating{
-          guide.required_vector("angular_velocity"),
-          guide.vector("origin_acceleration").value_or(Vector3<double>::Zero())});
-    }
-    if (kind == "harmonic") {
-      if (!guide.has("angular_velocity") && !guide.has("origin_acceleration")) {
+      if (!guide.has("angular_velocity") && !guide.has("angular_velocity_deg")) {
         guide.refuse_missing("angular_velocity");
       }
+      const auto turning = guide.angles("angular_velocity", 3);
+      scene_.guide.emplace_back(scene_guide::Rotating{
+          turning ? three(*turning) : Vector3<double>(Vector3<double>::UnitX()),
+          guide.vector("origin_acceleration").value_or(Vector3<double>::Zero()),
+          read_frame_start(guide)});
+    }
+    if (kind == "harmonic") {
+      const bool turns = guide.has("angular_velocity") || guide.has("angular_velocity_deg");
+      if (!turns && !guide.has("origin_acceleration")) guide.refuse_missing("angular_velocity");
       scene_guide::Harmonic link;
-      link.angular_velocity = read_series(guide, "angular_velocity");
+      link.angular_velocity = read_angular_series(guide, "angular_velocity");
       link.origin_acceleration = read_series(guide, "origin_acceleration");
+      link.start = read_frame_start(guide);
       check_length(guide, link);
       scene_.guide.emplace_back(std::move(link));
     }
@@ -218,11 +223,23 @@ class SceneReader {
     series.constant = section->vector("constant").value_or(Vector3<double>::Zero());
     for (Section& term : section->sections("terms")) {
       const Vector3<double> amplitude = term.required_vector("amplitude");
-      const double frequency = term.required_number("frequency");
-      series.terms.push_back({amplitude, frequency, term.angle("phase").value_or(0)});
+      const auto frequency = term.angle("frequency");
+      if (!term.has("frequency") && !term.has("frequency_deg")) term.refuse_missing("frequency");
+      series.terms.push_back({amplitude, frequency.value_or(1), term.angle("phase").value_or(0)});
       term.finish();
     }
     section->finish();
+    return series;
+  }
+
+  /// In radian, or in degrees at the key that ends in _deg.
+  static HarmonicSeries<double> read_angular_series(Section& guide, const std::string& key) {
+    const std::string in_degrees = key + "_deg";
+    if (!guide.has(in_degrees)) return read_series(guide, key);
+    if (guide.has(key)) guide.refuse(in_degrees, "is given in radian too, as '" + key + "'");
+    HarmonicSeries<double> series = read_series(guide, in_degrees);
+    series.constant *= detail::radian_per_degree;
+    for (auto& term : series.terms) term.amplitude *= detail::radian_per_degree;
     return series;
   }
 
@@ -243,12 +260,19 @@ class SceneReader {
     }
   }
 
+  static scene_guide::Start read_frame_start(Section& guide) {
+    const Vector3<double> zero = Vector3<double>::Zero();
+    return {quaternion(guide, "attitude").value_or(Eigen::Quaterniond::Identity()),
+            guide.vector("origin_position").value_or(zero),
+            guide.vector("origin_velocity").value_or(zero)};
+  }
+
   void read_earth(Section& guide) {
     scene_guide::Earth link;
     link.site.latitude = guide.required_number("latitude_deg");
     link.site.height = guide.required_number("height");
     link.site.azimuth = guide.required_number("azimuth_deg");
-    link.site.rotation_rate = guide.number("rate").value_or(link.site.rotation_rate);
+    link.site.rotation_rate = guide.angle("rate").value_or(link.site.rotation_rate);
     if (!scene_.guide.empty()) {
       guide.refuse("kind",
                    "'earth' must be the first link: the earth moves against no frame but "
@@ -558,7 +582,7 @@ class SceneReader {
       }
     };
     const auto values = [n](Section& from, const std::string& key) {
-      return n == 2 ? from.numbers(key, 2) : from.single(key);
+      return from.number_or_list(key, n == 3 ? 1 : n);
     };
     if (n == 0 || n == 6) {
       for (const char* const key : {"spring", "damping", "force"}) {
@@ -577,7 +601,7 @@ class SceneReader {
         set(&JointForce::stiffness, values(*spring, "stiffness"));
         if (!spring->has("stiffness")) spring->refuse_missing("stiffness");
         const bool slides = body.joint.kind == JointKind::prismatic;
-        set(&JointForce::rest, slides ? values(*spring, "rest") : spring->angles("rest", n));
+        set(&JointForce::rest, slides ? values(*spring, "rest") : spring->angle_or_list("rest", n));
         spring->finish();
       }
       set(&JointForce::constant, values(section, "force"));

@@ -24,14 +24,23 @@ namespace scene_guide {
 
 struct Resting {};
 
+/// Pose and velocity of a frame at t = 0, on the axes of the frame before it.
+struct Start {
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
+  Vector3<double> origin_position = Vector3<double>::Zero();
+  Vector3<double> origin_velocity = Vector3<double>::Zero();
+};
+
 struct Rotating {
   Vector3<double> angular_velocity = Vector3<double>::Zero();     ///< on the frame's own axes
   Vector3<double> origin_acceleration = Vector3<double>::Zero();  ///< inertial, on its own axes
+  Start start = {};
 };
 
 struct Harmonic {
   HarmonicSeries<double> angular_velocity = {};
   HarmonicSeries<double> origin_acceleration = {};
+  Start start = {};
 };
 
 /// The local level at a site. With a gravity given as a number its latitude is that of the plumb

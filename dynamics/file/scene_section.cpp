@@ -13,8 +13,6 @@ namespace kreisel::detail {
 
 namespace {
 
-constexpr double degree = 0.017453292519943295;
-
 /// How many letters have to be put in, taken out, changed or swapped with their neighbour.
 std::size_t edits(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -165,11 +163,8 @@ double Section::required_number(std::string_view key, Range range) {
 }
 
 std::optional<double> Section::angle(const std::string& key) {
-  const std::string in_degrees = key + "_deg";
-  if (!has(in_degrees)) return number(key);
-  if (has(key)) refuse(in_degrees, "is given in radian too, as '" + key + "'");
-  const auto value = number(in_degrees);
-  return value ? std::optional(*value * degree) : std::nullopt;
+  const auto value = angles(key, 1);
+  return value ? std::optional(value->front()) : std::nullopt;
 }
 
 std::optional<std::vector<double>> Section::numbers_in(const toml::node& node,
@@ -204,17 +199,35 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
   return values;
 }
 
-std::optional<std::vector<double>> Section::angles(const std::string& key, std::size_t count) {
-  if (count == 1) {
-    const auto value = angle(key);
-    return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
-  }
+template <class Read>
+std::optional<std::vector<double>> Section::in_radian(const std::string& key, const Read& read) {
   const std::string in_degrees = key + "_deg";
-  if (!has(in_degrees)) return numbers(key, count);
+  if (!has(in_degrees)) return read(key);
   if (has(key)) refuse(in_degrees, "is given in radian too, as '" + key + "'");
-  auto values = numbers(in_degrees, count);
-  if (values) std::for_each(values->begin(), values->end(), [](double& x) { x *= degree; });
+  auto values = read(in_degrees);
+  if (values)
+    std::for_each(values->begin(), values->end(), [](double& x) { x *= radian_per_degree; });
   return values;
+}
+
+std::optional<std::vector<double>> Section::angles(const std::string& key, std::size_t count) {
+  return in_radian(key, [this, count](const std::string& name) {
+    return count == 1 ? single(name) : numbers(name, count);
+  });
+}
+
+std::optional<std::vector<double>> Section::number_or_list(std::string_view key,
+                                                           std::size_t count) {
+  const toml::node* const node = find(key);
+  if (count > 1 && node != nullptr && node->is_array()) return numbers(key, count);
+  const auto value = number(key);
+  return value ? std::optional(std::vector<double>(count, *value)) : std::nullopt;
+}
+
+std::optional<std::vector<double>> Section::angle_or_list(const std::string& key,
+                                                          std::size_t count) {
+  return in_radian(key,
+                   [this, count](const std::string& name) { return number_or_list(name, count); });
 }
 
 std::optional<Vector3<double>> Section::vector(std::string_view key) {

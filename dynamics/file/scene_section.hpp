@@ -11,6 +11,8 @@
 
 namespace kreisel::detail {
 
+inline constexpr double radian_per_degree = 0.017453292519943295;  ///< rad
+
 /// What is wrong with a file, line by line.
 class Mistakes {
  public:
@@ -64,9 +66,15 @@ class Section {
 
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key);
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count);
-  /// One number or `count` in brackets, angles as angle() takes them.
+  /// One number if `count` is 1, else `count` in brackets; angles as angle() takes them.
   [[nodiscard]] std::optional<std::vector<double>> angles(const std::string& key,
                                                           std::size_t count);
+  /// One number, which then counts `count` times, or `count` in brackets.
+  [[nodiscard]] std::optional<std::vector<double>> number_or_list(std::string_view key,
+                                                                  std::size_t count);
+  /// The same of angles: the key itself, or key_deg in degrees.
+  [[nodiscard]] std::optional<std::vector<double>> angle_or_list(const std::string& key,
+                                                                 std::size_t count);
   [[nodiscard]] std::optional<Vector3<double>> vector(std::string_view key);
   [[nodiscard]] Vector3<double> required_vector(std::string_view key);
 
@@ -107,6 +115,10 @@ class Section {
                                                 Range range);
   [[nodiscard]] std::optional<std::vector<double>> numbers_in(const toml::node& node,
                                                               const std::string& key);
+  /// What `read` returns for the key, or for key_deg turned into radian.
+  template <class Read>
+  [[nodiscard]] std::optional<std::vector<double>> in_radian(const std::string& key,
+                                                             const Read& read);
 
   const toml::table* table_;
   std::string path_;

@@ -28,15 +28,21 @@ struct Overloaded : Cases... {
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
+Displacement<Inertial, Guide> pose(const scene_guide::Start& start) {
+  return {Pose<>::from(start.attitude, start.origin_position)};
+}
+
 SceneGuide make_link(const scene_guide::Link& link, double t_end) {
   return std::visit(
       Overloaded{[](const scene_guide::Resting&) -> SceneGuide { return RestingFrame<>{}; },
                  [](const scene_guide::Rotating& kind) -> SceneGuide {
-                   return RotatingFrame<>{kind.angular_velocity, kind.origin_acceleration};
+                   return RotatingFrame<>{kind.angular_velocity, kind.origin_acceleration,
+                                          pose(kind.start), kind.start.origin_velocity};
                  },
                  [t_end](const scene_guide::Harmonic& kind) -> SceneGuide {
                    return HarmonicFrame<>(kind.angular_velocity, kind.origin_acceleration, 0,
-                                          t_end * past_the_end);
+                                          t_end * past_the_end, pose(kind.start),
+                                          kind.start.origin_velocity);
                  },
                  [](const scene_guide::Earth& kind) -> SceneGuide {
                    // The centrifugal part at the origin is in the number.
