@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
 
@@ -32,6 +33,26 @@ Verdict verdict(const Modes& modes, bool all_directions, const Growth& growth) {
   return result;
 }
 
+/// From where a mode about a steady motion is seen. Attitudes vary by angles on the body's own axes,
+/// which in a steady motion may turn; single coordinates vary against the parent.
+std::string frame_of(const System& system, const VectorXd& state) {
+  const kreisel::BodyTree& tree = system.tree();
+  std::string carriers;
+  for (const auto& link : tree.links()) {
+    const int count = kreisel::detail::rate_count(link.kind);
+    if (count == 0 || link.kind == kreisel::detail::LinkKind::prismatic) continue;
+    const int turning = std::min(count, 3);
+    if (state.segment(tree.coordinates() + link.v, turning).cwiseAbs().maxCoeff() < 1e-9) continue;
+    const std::string& name = tree.body(link.body).name;
+    if (count >= 3) return "on body axes, which turn with '" + name + "'";
+    const bool carries = std::any_of(tree.bodies().begin(), tree.bodies().end(),
+                                     [&name](const auto& body) { return body.parent == name; });
+    if (carries && carriers.empty()) carriers = name;
+  }
+  if (carriers.empty()) return "against the guide";
+  return "against the parent of each body; '" + carriers + "' turns against the guide";
+}
+
 Linear linear_about(const System& system, const VectorXd& state) {
   const Linearisation there = linearized(system, 0, state);
   const Directions directions(system);
@@ -39,6 +60,7 @@ Linear linear_about(const System& system, const VectorXd& state) {
   const std::vector<int> kept = list(out, false);
   Linear linear;
   linear.names = there.names;
+  linear.frame = frame_of(system, state);
   linear.has_rotors = !system.tree().rotors().empty();
   for (const int i : list(out)) linear.left_out.push_back(there.names[static_cast<std::size_t>(i)]);
   if (kept.empty()) return linear;
@@ -60,6 +82,71 @@ Linear linear_about(const System& system, const VectorXd& state) {
   linear.verdict =
       verdict(linear.modes, !drifts, [](const GyroscopicMode& mode) { return mode.root.real(); });
   return linear;
+}
+
+/// Whether a guide moves so that a body at rest on it has an energy: it rests or moves steadily.
+bool is_steady(const kreisel::SceneFile& scene) {
+  using namespace kreisel::scene_guide;
+  return scene.guide.size() == 1 && !has_link<Harmonic>(scene) && !has_link<Table>(scene);
+}
+
+/// Whether no force on the bodies at rest gives energy without end: all of it is gravity on guide
+/// axes or that of the earth the guide is on, springs, constant joint forces, loads with a
+/// potential, and dampers.
+bool has_potential(const System& system, const kreisel::SceneFile& scene) {
+  const bool stands_still =
+      std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity);
+  if (!is_steady(scene) || (stands_still && !scene.rests())) return false;
+  return std::all_of(scene.bodies.begin(), scene.bodies.end(), [&system](const auto& body) {
+    const bool is_pushed = body.forces.size() > 2 &&
+                           std::any_of(body.forces.begin(), body.forces.end(),
+                                       [](const auto& force) { return force.constant != 0; });
+    const bool turns = body.rule == kreisel::JointRule::constant_rate;
+    const auto keeps = [](const auto& load) { return load.keeps_energy(); };
+    return !is_pushed && !turns && std::all_of(body.loads.begin(), body.loads.end(), keeps);
+  });
+}
+
+/// Whether the potential energy is least at an equilibrium, but along its own family. The matrix
+/// that turns displacements into accelerations is minus mass^-1 stiffness.
+///
+/// Source : Lagrange and Dirichlet; gyroscopic forces and dampers do not spoil it
+bool is_lowest(const System& system, const Equilibrium& equilibrium) {
+  const Linearisation there = linearized(system, 0, equilibrium.state);
+  const Directions directions(system);
+  const Places fixed =
+      joined(directions.held,
+             directions.cyclic(there.A, linearized(system, 0, off(system, equilibrium.state)).A));
+  std::vector<int> free;
+  for (int i = 0; i < directions.rates; ++i) {
+    if (!fixed[static_cast<std::size_t>(i)]) free.push_back(i);
+  }
+  if (free.empty() || equilibrium.degenerate) return false;
+  const MatrixXd J = there.A.bottomRows(directions.rates)(free, free);
+  const Eigen::VectorXd values = kreisel::detail::eigenvalues(J).real();
+  const double zero = 1e-9 * values.cwiseAbs().maxCoeff();
+  const auto falls = [zero](double value) { return value < -zero; };
+  return values.maxCoeff() <= zero &&
+         std::count_if(values.begin(), values.end(), falls) + equilibrium.neutral == values.size();
+}
+
+std::vector<Rest> rests(const System& system, const kreisel::SceneFile& scene,
+                        const Equilibria& equilibria, const VectorXd& start) {
+  const bool conserves = has_potential(system, scene);
+  std::vector<Rest> result;
+  for (const Equilibrium& equilibrium : equilibria.list) {
+    Rest rest{equilibrium, linear_about(system, equilibrium.state)};
+    rest.distance = distance(system, start, equilibrium.state);
+    rest.stability = rest.linear.verdict;
+    if (rest.stability == Verdict::marginal && conserves && is_lowest(system, equilibrium)) {
+      rest.stability = Verdict::stable;
+    }
+    result.push_back(std::move(rest));
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Rest& a, const Rest& b) {
+    return a.stability != b.stability ? a.stability < b.stability : a.distance < b.distance - 1e-9;
+  });
+  return result;
 }
 
 bool oscillates(const GyroscopicMode& mode) { return mode.root.imag() > mode.error; }
@@ -244,7 +331,10 @@ Analysis analyze(const System& system, const kreisel::SceneFile& scene, const Re
   Analysis result;
   const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
   const bool logged = has_link<kreisel::scene_guide::Table>(scene);
-  result.steady = find_steady(system, scene, start);
+  const Equilibria equilibria = find_equilibria(system, scene, start);
+  result.starts = equilibria.starts;
+  result.equilibria = rests(system, scene, equilibria, start);
+  result.steady = find_steady(system, scene, start, equilibria);
   if (result.steady.exists()) result.linear = linear_about(system, result.steady.state);
   if (!logged && !swings && lost_spin(system, start, result.steady)) {
     result.notes.emplace_back(

@@ -20,6 +20,7 @@ struct Linear {
   std::vector<kreisel::GyroscopicMode> modes;
   std::vector<std::string> names;     ///< of the directions
   std::vector<std::string> left_out;  ///< those on which nothing depends here, or that are given
+  std::string frame;                  ///< from which the modes are seen: "against the guide", ..
   bool has_rotors = false;            ///< so that modes are of some kind
   Verdict verdict = Verdict::marginal;
 };
@@ -44,7 +45,19 @@ struct Floquet {
   Verdict verdict = Verdict::marginal;
 };
 
+/// An equilibrium and the linear equations about it.
+struct Rest {
+  steady_motion::Equilibrium equilibrium;
+  Linear linear;
+
+  /// By the roots; where they do not decide stable if the potential energy is least there.
+  Verdict stability = Verdict::marginal;
+  double distance = 0;  ///< of the coordinates from the file's start, greatest
+};
+
 struct Analysis {
+  std::vector<Rest> equilibria;  ///< stable ones first, then by their distance from the start
+  int starts = 0;                ///< states from which they were searched
   Steady steady;
   std::optional<Linear> linear;
   std::optional<Campbell> campbell;

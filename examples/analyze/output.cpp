@@ -83,13 +83,31 @@ ordered_json json(const Steady& steady, const Result& result) {
           {"reactions", reactions_json(result, reactions)}};
 }
 
-ordered_json json(const Linear& linear) {
+ordered_json roots_json(const Linear& linear) {
   ordered_json roots = ordered_json::array();
   for (const GyroscopicMode& mode : linear.modes) {
     roots.push_back(json(mode, linear.has_rotors));
     roots.back()["mostly"] = mostly(mode, linear.names);
   }
-  return {{"verdict", name(linear.verdict)}, {"roots", roots}, {"left_out", linear.left_out}};
+  return roots;
+}
+
+ordered_json json(const Linear& linear) {
+  return {{"verdict", name(linear.verdict)},
+          {"frame", linear.frame},
+          {"roots", roots_json(linear)},
+          {"left_out", linear.left_out}};
+}
+
+ordered_json json(const Rest& rest, const Result& result) {
+  const Eigen::VectorXd& state = rest.equilibrium.state;
+  return {{"stability", name(rest.stability)},
+          {"distance", rest.distance},
+          {"residual", rest.equilibrium.residual},
+          {"neutral", rest.equilibrium.neutral},
+          {"joints", joints_json(result, state, result.system.reactions(0, state))},
+          {"frame", rest.linear.frame},
+          {"roots", roots_json(rest.linear)}};
 }
 
 ordered_json json(const Campbell& campbell) {
@@ -152,16 +170,57 @@ ordered_json json(const PrecessionCheck& check) {
   return result;
 }
 
+/// The coordinates of all joints that have some, in one line.
+std::string coordinates_text(const ordered_json& joints) {
+  std::string text;
+  for (const auto& [body, values] : joints.items()) {
+    for (const char* const key : {"coordinate", "attitude", "position"}) {
+      if (!values.contains(key)) continue;
+      text += fmt::format("{}{} {} {}", text.empty() ? "" : ", ", kreisel::printable(body, 60), key,
+                          joint_tables::text(values[key]));
+    }
+  }
+  return text;
+}
+
+std::string roots_text(const Linear& linear) {
+  std::string text;
+  for (const GyroscopicMode& mode : linear.modes) {
+    text += text.empty() ? "" : ", ";
+    const double growth = std::abs(mode.root.real()) > mode.error ? mode.root.real() : 0;
+    text += fmt::format("{:.8g}", growth);
+    if (mode.root.imag() > 0) text += fmt::format(" +- {:.8g}i", mode.root.imag());
+  }
+  return text.empty() ? "none" : text;
+}
+
+void print_equilibria(const Result& result) {
+  const Analysis& a = result.analysis;
+  if (a.starts == 0) return;
+  fmt::print("equilibria: {} found from {} start{}\n", a.equilibria.size(), a.starts,
+             a.starts == 1 ? "" : "s");
+  for (const Rest& rest : a.equilibria) {
+    const std::string where = coordinates_text(json(rest, result)["joints"]);
+    const int neutral = rest.equilibrium.neutral;
+    const std::string family = neutral == 0 ? ""
+                                            : fmt::format(", one of a family in {} direction{}",
+                                                          neutral, neutral == 1 ? "" : "s");
+    fmt::print("  {:9} {}{}\n            roots, 1/s, {}: {}\n", name(rest.stability), where, family,
+               kreisel::printable(rest.linear.frame), roots_text(rest.linear));
+  }
+  fmt::print("\n");
+}
+
 void print(const Steady& steady, const Result& result) {
   if (!steady.exists()) {
-    fmt::print("no equilibrium and no steady motion: {}\n", steady.reason);
+    fmt::print("no equilibrium and no steady motion: {}\n", kreisel::printable(steady.reason));
     return;
   }
   const char* const what = steady.turns ? "steady motion" : "equilibrium";
   if (steady.kind == Steady::Kind::start) {
     fmt::print("{}: the start of the file\n", what);
   } else {
-    fmt::print("{}: not the start of the file but found from there, up to {:.3g} away\n", what,
+    fmt::print("{}: not the start of the file but the one next to it, up to {:.3g} away\n", what,
                steady.distance);
   }
   const ordered_json table = json(steady, result);
@@ -171,6 +230,7 @@ void print(const Steady& steady, const Result& result) {
 
 void print(const Linear& linear) {
   fmt::print("\nlinear equations there: {}\n", name(linear.verdict));
+  if (!linear.modes.empty()) fmt::print("  roots as seen {}\n", kreisel::printable(linear.frame));
   if (!linear.modes.empty()) {
     fmt::print("  {:>16} {:>18} {:>14} {:>12}  {:12} {}\n", "growth, 1/s", "frequency, rad/s", "Hz",
                "damping", "kind", "mostly");
@@ -261,7 +321,12 @@ const char* kind(const GyroscopicMode& mode, bool has_rotors) {
 
 void print_json(const Result& result) {
   const Analysis& a = result.analysis;
-  ordered_json all{{"title", result.scene.title}, {"steady", json(a.steady, result)}};
+  ordered_json equilibria = ordered_json::array();
+  for (const Rest& rest : a.equilibria) equilibria.push_back(json(rest, result));
+  ordered_json all{{"title", result.scene.title},
+                   {"equilibria", equilibria},
+                   {"equilibrium_starts", a.starts},
+                   {"steady", json(a.steady, result)}};
   if (a.linear) all["linear"] = json(*a.linear);
   if (a.campbell) all["campbell"] = json(*a.campbell);
   if (a.floquet) all["floquet"] = json(*a.floquet, result);
@@ -275,6 +340,7 @@ void print_summary(const Result& result) {
   if (!result.scene.title.empty()) {
     fmt::print("{}\n\n", kreisel::printable(result.scene.title));
   }
+  print_equilibria(result);
   print(a.steady, result);
   if (a.linear) print(*a.linear);
   if (a.campbell) print(*a.campbell);

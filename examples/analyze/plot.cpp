@@ -81,7 +81,8 @@ std::string roots(const Result& result, const Linear& linear) {
   s << gnuplot::style << "set zeroaxis lc rgb '#555555'\nset key outside right top\n"
     << "set format '%.4g'\nset xlabel 'growth rate [1/s]'\nset ylabel 'frequency [rad/s]'\n"
     << "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
-    << "set title " << title_of(result, "roots of the linear equations") << '\n';
+    << "set title " << title_of(result, "roots of the linear equations, seen " + linear.frame)
+    << '\n';
   // Rounding is no growth to be seen.
   if (growth < 1e-9 * size) fmt::print(s, "set xrange [{:.3g}:{:.3g}]\n", -0.1 * size, 0.1 * size);
   s << "plot " << points(shown, 1.4) << "\nunset output\n";

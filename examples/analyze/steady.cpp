@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <motor/error.hpp>
 
@@ -106,9 +107,6 @@ VectorXd off(const System& system, const VectorXd& y) {
   return tangent.moved(y, eta);
 }
 
-namespace {
-
-/// Whether the linear equations stay what they are along the motion and with time.
 bool stays(const System& system, const Linearisation& linear, double t_end) {
   const kreisel::Tangent tangent = tangent_of(system, linear.state);
   const double fastest = linear.rate.cwiseAbs().maxCoeff();
@@ -122,6 +120,8 @@ bool stays(const System& system, const Linearisation& linear, double t_end) {
            (then.rate - linear.rate).norm() <= 1e-9 * (1 + linear.rate.norm());
   });
 }
+
+namespace {
 
 Steady steady_at(const System& system, const Linearisation& linear) {
   Steady steady;
@@ -180,17 +180,86 @@ Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
   return steady;
 }
 
-Steady find_steady(const System& system, const kreisel::SceneFile& scene, const VectorXd& start) {
-  Steady none;
-  if (has_link<kreisel::scene_guide::Table>(scene)) {
-    none.reason = "the guide follows a log";
-    return none;
-  }
+namespace {
+
+/// Why a scene has no steady motion whatever its bodies do; empty where it may have one.
+std::string changes(const kreisel::SceneFile& scene) {
+  if (has_link<kreisel::scene_guide::Table>(scene)) return "the guide follows a log";
   if (has_link<kreisel::scene_guide::Harmonic>(scene)) {
-    none.reason = "the guide swings: the motions that stay repeat it";
-    return none;
+    return "the guide swings: the motions that stay repeat it";
   }
-  return find_steady(system, start, scene.t_end);
+  return "";
+}
+
+/// Rotors on which a torque acts that no friction balances, as the end of a reason.
+std::string driven_rotors(const System& system) {
+  std::string text;
+  for (const auto& rotor : system.tree().rotors()) {
+    if (rotor.mode != kreisel::RotorMode::torque) continue;
+    const auto& force = system.tree().forces()[static_cast<std::size_t>(rotor.link.v)];
+    if (force.constant == 0 || force.damping != 0) continue;
+    text += "; the torque on rotor '" + system.tree().body(rotor.link.body).name +
+            "' goes on acting, and no friction balances it";
+  }
+  return text;
+}
+
+double growth(const System& system, const VectorXd& state) {
+  return kreisel::detail::eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
+}
+
+/// The equilibrium next to a state; null where there is none.
+const Equilibrium* nearest(const System& system, const Equilibria& equilibria,
+                           const VectorXd& state) {
+  const Equilibrium* best = nullptr;
+  double least = 0;
+  for (const Equilibrium& candidate : equilibria.list) {
+    const double d = distance(system, state, candidate.state);
+    const bool ties = best != nullptr && std::abs(d - least) <= 1e-6 * (1 + least);
+    const bool wins =
+        best == nullptr ||
+        (ties ? growth(system, candidate.state) < growth(system, best->state) : d < least);
+    if (!wins) continue;
+    best = &candidate;
+    least = d;
+  }
+  return best;
+}
+
+}  // namespace
+
+Equilibria find_equilibria(const System& system, const kreisel::SceneFile& scene,
+                           const VectorXd& start) {
+  return changes(scene).empty() ? find_equilibria(system, start, scene.t_end) : Equilibria{};
+}
+
+Steady find_steady(const System& system, const kreisel::SceneFile& scene, const VectorXd& start,
+                   const Equilibria& equilibria) {
+  Steady steady;
+  steady.reason = changes(scene);
+  if (!steady.reason.empty()) return steady;
+  steady = find_steady(system, start, scene.t_end);
+  if (steady.kind == Steady::Kind::start || (steady.exists() && steady.turns)) return steady;
+  const Equilibrium* const near = nearest(system, equilibria, start);
+  if (near == nullptr) {
+    if (!steady.exists()) steady.reason += driven_rotors(system);
+    return steady;
+  }
+  // A family stands in the list with one member, and another may lie nearer.
+  if (steady.exists() &&
+      distance(system, start, steady.state) < distance(system, start, near->state) - 1e-6) {
+    return steady;
+  }
+  const VectorXd state = in_turns_of(system, near->state, start);
+  Steady rest = steady_at(system, linearized(system, 0, state));
+  rest.kind = Steady::Kind::found;
+  rest.residual = near->residual;
+  rest.distance = (state - start).cwiseAbs().maxCoeff();
+  return rest;
+}
+
+Steady find_steady(const System& system, const kreisel::SceneFile& scene, const VectorXd& start) {
+  return find_steady(system, scene, start, find_equilibria(system, scene, start));
 }
 
 }  // namespace steady_motion

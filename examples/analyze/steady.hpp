@@ -11,6 +11,7 @@
 #include <dynamics/study/body_states.hpp>
 #include <dynamics/study/linearize.hpp>
 
+#include "equilibria.hpp"
 #include "system.hpp"
 
 /// A state in which the motion does not change, but for angles on which nothing depends.
@@ -78,10 +79,21 @@ template <class Kind>
                      [](const auto& link) { return std::holds_alternative<Kind>(link); });
 }
 
+/// Whether the linear equations stay what they are along the motion and with time.
+[[nodiscard]] bool stays(const System& system, const Linearisation& linear, double t_end);
+
 /// The steady motion at the guess, or next to it.
 [[nodiscard]] Steady find_steady(const System& system, const Eigen::VectorXd& guess, double t_end);
 
-/// The same, or none where the scene's guide goes on changing.
+/// Equilibria of a scene; none where its guide goes on changing.
+[[nodiscard]] Equilibria find_equilibria(const System& system, const kreisel::SceneFile& scene,
+                                         const Eigen::VectorXd& start);
+
+/// The steady motion at a scene's start; else a turning one that Newton's method finds from there;
+/// else the nearest of the equilibria and of what Newton's method finds, of several at the same
+/// distance that whose neighbouring motions grow least.
+[[nodiscard]] Steady find_steady(const System& system, const kreisel::SceneFile& scene,
+                                 const Eigen::VectorXd& start, const Equilibria& equilibria);
 [[nodiscard]] Steady find_steady(const System& system, const kreisel::SceneFile& scene,
                                  const Eigen::VectorXd& start);
 

@@ -12,18 +12,14 @@ using nlohmann::ordered_json;
 
 namespace joint_tables {
 
-namespace {
-
-std::string list(const ordered_json& numbers) {
+std::string text(const ordered_json& numbers) {
   if (numbers.is_number()) return fmt::format("{:.15g}", numbers.get<double>());
-  std::string text;
+  std::string all;
   for (const auto& x : numbers) {
-    text += fmt::format("{}{:.15g}", text.empty() ? "" : ", ", x.get<double>());
+    all += fmt::format("{}{:.15g}", all.empty() ? "" : ", ", x.get<double>());
   }
-  return "(" + text + ")";
+  return "(" + all + ")";
 }
-
-}  // namespace
 
 ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -68,10 +64,10 @@ void print(const char* title, const ordered_json& table) {
       if (numbers.is_object()) {
         for (const auto& [part, vector] : numbers.items()) {
           fmt::print("  {:20} {:17} {}\n", body, fmt::format("{} {}", quantity, part),
-                     list(vector));
+                     text(vector));
         }
       } else {
-        fmt::print("  {:20} {:17} {}\n", body, quantity, list(numbers));
+        fmt::print("  {:20} {:17} {}\n", body, quantity, text(numbers));
       }
     }
   }

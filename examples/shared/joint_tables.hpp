@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <string>
+
 #include <motor/motor.hpp>
 
 #include "joints.hpp"
@@ -21,6 +23,9 @@ namespace joint_tables {
 [[nodiscard]] nlohmann::ordered_json joint(const kreisel::BodyTree& tree, int body,
                                            const JointState& state,
                                            const kreisel::JointReactions& reactions);
+
+/// A number, or a list of them in brackets, with 15 digits.
+[[nodiscard]] std::string text(const nlohmann::ordered_json& numbers);
 
 /// Of objects of numbers, lists or objects of those, by body.
 void print(const char* title, const nlohmann::ordered_json& table);

@@ -1,0 +1,321 @@
+#include "equilibria.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <dynamics/decompositions.hpp>
+#include <dynamics/study/equilibrium.hpp>
+#include <motor/error.hpp>
+
+#include "steady.hpp"
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+using kreisel::detail::Link;
+using kreisel::detail::LinkKind;
+using std::numbers::pi;
+
+namespace steady_motion {
+
+namespace {
+
+/// Places of the angles at which a whole turn changes nothing.
+std::vector<int> periodic_angles(const System& system) {
+  std::vector<int> places;
+  for (const Link& link : system.tree().links()) {
+    const bool turns = link.kind == LinkKind::revolute && link.moved_by_forces();
+    if (turns && system.tree().forces()[static_cast<std::size_t>(link.v)].stiffness == 0) {
+      places.push_back(link.q);
+    }
+  }
+  return places;
+}
+
+/// The element of Halton's sequence in a base, in (0, 1).
+double halton(int index, int base) {
+  double result = 0;
+  double digit = 1;
+  for (int rest = index + 1; rest > 0; rest /= base) {
+    digit /= base;
+    result += digit * (rest % base);
+  }
+  return result;
+}
+
+/// The states from which equilibria are searched.
+class Starts {
+ public:
+  /// fixed : directions that keep their values
+  Starts(const System& system, VectorXd base, const Places& fixed)
+      : base_(std::move(base)), choices_(1) {
+    int dimension = 0;
+    for (const Link& link : system.tree().links()) {
+      if (!link.moved_by_forces() || fixed[static_cast<std::size_t>(link.v)]) continue;
+      links_.push_back(&link);
+      dimension += kreisel::detail::rate_count(link.kind);
+      choices_ = std::min(most_choices, choices_ * choices(link.kind));
+    }
+    const int most = std::max(16, 6000 / std::max(1, dimension * dimension));
+    count_ = links_.empty() ? 1 : std::min(most, choices_ + 1 + random_starts);
+    for (int n = 2; static_cast<int>(primes_.size()) < dimension; ++n) {
+      const bool is_prime =
+          std::none_of(primes_.begin(), primes_.end(), [n](int p) { return n % p == 0; });
+      if (is_prime) primes_.push_back(n);
+    }
+  }
+
+  [[nodiscard]] int count() const { return count_; }
+
+  [[nodiscard]] VectorXd operator()(int k) const {
+    if (k == 1 || links_.empty()) return base_;
+    return k <= choices_ ? corner(k == 0 ? 0 : k - 1) : random(k - choices_ - 1);
+  }
+
+ private:
+  static constexpr int most_choices = 64;
+  static constexpr int random_starts = 24;
+
+  static int choices(LinkKind kind) {
+    if (kind == LinkKind::revolute) return 2;
+    return kind == LinkKind::prismatic ? 1 : 4;
+  }
+
+  /// Angles of 0 or pi; attitudes turned by pi about one of the axes, or not at all.
+  [[nodiscard]] VectorXd corner(int number) const {
+    VectorXd y = base_;
+    for (const Link* const link : links_) {
+      const int choice = number % choices(link->kind);
+      number /= choices(link->kind);
+      y.segment(link->q, kreisel::detail::coordinate_count(link->kind)).setZero();
+      if (link->kind == LinkKind::revolute) y[link->q] = choice * pi;
+      if (choices(link->kind) == 4) y[link->q + (choice + 3) % 4] = 1;
+    }
+    return y;
+  }
+
+  [[nodiscard]] VectorXd random(int index) const {
+    VectorXd y = base_;
+    auto prime = primes_.begin();
+    const auto next = [&] { return halton(index, *prime++); };
+    const auto spread = [&](int q) { y[q] += (1 + std::abs(y[q])) * (2 * next() - 1); };
+    for (const Link* const link : links_) {
+      if (link->kind == LinkKind::revolute) y[link->q] = pi * (2 * next() - 1);
+      if (link->kind == LinkKind::prismatic) spread(link->q);
+      if (choices(link->kind) != 4) continue;
+      // Uniform over all attitudes, after Shoemake.
+      const double share = next();
+      const double a = 2 * pi * next();
+      const double b = 2 * pi * next();
+      y.segment<4>(link->q) << std::sqrt(1 - share) * std::sin(a),
+          std::sqrt(1 - share) * std::cos(a), std::sqrt(share) * std::sin(b),
+          std::sqrt(share) * std::cos(b);
+      for (int k = 4; link->kind == LinkKind::free && k < 7; ++k) spread(link->q + k);
+    }
+    return y;
+  }
+
+  VectorXd base_;
+  std::vector<const Link*> links_;
+  std::vector<int> primes_;
+  int choices_;
+  int count_ = 1;
+};
+
+/// Searches equilibria of a system and keeps those that differ.
+class Search {
+ public:
+  Search(const System& system, const VectorXd& start, double t_end)
+      : system_(system),
+        directions_(system),
+        tangent_(tangent_of(system, start)),
+        t_end_(t_end),
+        base_(start) {
+    const int q = system.tree().coordinates();
+    for (int i = 0; i < directions_.rates; ++i) {
+      if (!directions_.held[static_cast<std::size_t>(directions_.rates + i)]) base_[q + i] = 0;
+    }
+    const Places cyclic = directions_.cyclic(linearized(system, 0, base_).A,
+                                             linearized(system, 0, off(system, base_)).A);
+    fixed_ = joined(directions_.held, cyclic);
+    running_ = list(joined(directions_.running, cyclic));
+    for (int i = 0; i < directions_.rates; ++i) {
+      if (!fixed_[static_cast<std::size_t>(i)]) free_.push_back(i);
+    }
+  }
+
+  Equilibria run() {
+    const Starts starts(system_, base_, fixed_);
+    found_.starts = starts.count();
+    for (int k = 0; k < starts.count() && found_.list.size() < most_found; ++k) {
+      const VectorXd guess = starts(k);
+      refine(guess);
+      descend(guess);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  static constexpr std::size_t most_found = 64;
+  static constexpr double shares[] = {0.21, 0.5, 0.83};
+
+  /// Keeps the equilibrium that Newton's method reaches, if there is one. A start may also lie where
+  /// the accelerations are not determined.
+  void refine(const VectorXd& guess) {
+    try {
+      const auto reached = kreisel::find_equilibrium(
+          system_, 0, guess, {.held = list(fixed_), .running = running_, .most_iterations = 40});
+      add(reached.state, reached.residual);
+    } catch (const kreisel::ComputationFailed&) {
+      // Another start may lead to one.
+    }
+  }
+
+  /// The same from where a descent leads.
+  void descend(const VectorXd& guess) {
+    std::optional<VectorXd> low;
+    try {
+      low = descended(guess);
+    } catch (const kreisel::ComputationFailed&) {
+      // As above.
+    }
+    if (low) refine(*low);
+  }
+
+  /// Along  dq/ds = q''(q), the acceleration of a body let go at rest, by implicit Euler steps that
+  /// grow as the acceleration falls: close to an equilibrium they are Newton's.
+  [[nodiscard]] std::optional<VectorXd> descended(VectorXd y) const {
+    if (free_.empty()) return std::nullopt;
+    double step = 0;
+    double before = 0;
+    for (int i = 0; i < 50; ++i) {
+      const auto there = kreisel::detail::derivatives(system_, 0, y, tangent_.basis(y),
+                                                      kreisel::detail::InTime::no);
+      const auto r = kreisel::detail::reduced(tangent_, y, there);
+      const VectorXd a = r.v.tail(directions_.rates)(free_);
+      const double size = a.cwiseAbs().maxCoeff();
+      if (!std::isfinite(size)) return std::nullopt;
+      if (i == 0) {
+        if (size == 0) return std::nullopt;
+        step = 0.1 / size;
+      } else {
+        if (size <= 1e-9 * (1 + before)) return y;
+        step *= std::clamp(before / size, 0.3, 5.0);
+      }
+      before = size;
+      const MatrixXd J = r.A.bottomRows(directions_.rates)(free_, free_);
+      const MatrixXd M = MatrixXd::Identity(J.rows(), J.cols()) / step - J;
+      VectorXd move = kreisel::detail::shortest_solution(M, a, 1e-15).x;
+      move *= std::min(1.0, 1 / move.cwiseAbs().maxCoeff());
+      y = tangent_.moved(y, kreisel::detail::scattered(tangent_.dimension(), free_, move));
+    }
+    return y;
+  }
+
+  void add(VectorXd state, double residual) {
+    const Linearisation there = linearized(system_, 0, state);
+    const VectorXd& rate = there.rate;
+    for (int i = 0; i < directions_.rates; ++i) {
+      const bool runs = directions_.running[static_cast<std::size_t>(i)];
+      if (!runs && std::abs(rate[i]) > 1e-9) return;
+    }
+    Equilibrium equilibrium{in_turns_of(system_, std::move(state), VectorXd::Zero(base_.size())),
+                            residual};
+    note_neutral(there.A, equilibrium);
+    const auto is_same = [&](std::size_t k) {
+      const Equilibrium& other = found_.list[k];
+      if (distance(system_, other.state, equilibrium.state) <= 1e-6) return true;
+      return other.neutral > 0 && other.neutral == equilibrium.neutral &&
+             ((traces_[k] - traces(there.A)).cwiseAbs().maxCoeff() <= 1e-6 ||
+              are_joined(other.state, equilibrium.state, there.A.norm()));
+    };
+    for (std::size_t k = 0; k < found_.list.size(); ++k) {
+      if (is_same(k)) return;
+    }
+    if (!stays(system_, there, t_end_)) return;
+    found_.list.push_back(std::move(equilibrium));
+    traces_.push_back(traces(there.A));
+  }
+
+  /// The accelerations of the coordinates that are searched.
+  [[nodiscard]] VectorXd accelerations(const VectorXd& y) const {
+    const VectorXd rate = tangent_.inverse(y) * system_.rates(0, y);
+    return rate.tail(directions_.rates)(free_);
+  }
+
+  /// Whether all states on the way from one to the other are equilibria.
+  [[nodiscard]] bool are_joined(const VectorXd& from, const VectorXd& to, double norm) const {
+    const VectorXd way = tangent_.between(from, in_turns_of(system_, to, from));
+    return std::all_of(std::begin(shares), std::end(shares), [&](double share) {
+      const VectorXd y = tangent_.moved(from, VectorXd(share * way));
+      return accelerations(y).cwiseAbs().maxCoeff() <= 1e-9 * norm;
+    });
+  }
+
+  /// Traces of powers of A over those of its norm: equal for matrices with the same roots.
+  [[nodiscard]] static Eigen::Vector4d traces(const MatrixXd& A) {
+    const double norm = A.norm();
+    Eigen::Vector4d result = Eigen::Vector4d::Zero();
+    if (norm == 0) return result;
+    MatrixXd power = A / norm;
+    for (int k = 0; k < 4; ++k) {
+      result[k] = power.trace();
+      power = power * A / norm;
+    }
+    return result;
+  }
+
+  /// Counts the directions in which the equilibrium is not isolated.
+  void note_neutral(const MatrixXd& A, Equilibrium& equilibrium) const {
+    const MatrixXd J = A.bottomRows(directions_.rates)(free_, free_);
+    if (J.size() == 0) return;
+    const auto [values, U, V] = kreisel::detail::singular_values(J);
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (values[k] > 1e-9 * values[0]) continue;
+      const double reach = 0.2;
+      const VectorXd eta =
+          kreisel::detail::scattered(tangent_.dimension(), free_, VectorXd(reach * V.col(k)));
+      const VectorXd a = accelerations(tangent_.moved(equilibrium.state, eta));
+      const bool is_family = a.cwiseAbs().maxCoeff() <= 1e-8 * (1e-9 + reach * values[0]);
+      equilibrium.neutral += is_family ? 1 : 0;
+      equilibrium.degenerate = equilibrium.degenerate || !is_family;
+    }
+  }
+
+  const System& system_;
+  Directions directions_;
+  kreisel::Tangent tangent_;
+  double t_end_;
+  VectorXd base_;
+  Places fixed_;
+  std::vector<int> running_;
+  std::vector<int> free_;
+  Equilibria found_;
+  std::vector<Eigen::Vector4d> traces_;
+};
+
+}  // namespace
+
+Equilibria find_equilibria(const System& system, const VectorXd& start, double t_end) {
+  return Search(system, start, t_end).run();
+}
+
+VectorXd in_turns_of(const System& system, VectorXd state, const VectorXd& other) {
+  for (const int q : periodic_angles(system)) {
+    state[q] -= 2 * pi * std::ceil((state[q] - other[q]) / (2 * pi) - 0.5);
+  }
+  return state;
+}
+
+double distance(const System& system, const VectorXd& a, const VectorXd& b) {
+  const VectorXd near = in_turns_of(system, b, a);
+  const VectorXd eta = tangent_of(system, a).between(a, near);
+  return eta.head(system.tree().rates()).cwiseAbs().maxCoeff();
+}
+
+}  // namespace steady_motion
