@@ -15,7 +15,8 @@ namespace kreisel {
 ///   <alpha'> = -H w^2 sin(beta_0) (A_3 + C_2)/(2 J(beta_0)^2),   w = amplitude of beta
 ///   J(beta) = A_3 + C_2 sin^2 beta + (A_1 + A_2) cos^2 beta
 ///
-/// Source : K. Magnus's drift law, here from the exact equations (paper 002 section 6) by averaging
+/// Source : K. Magnus 1955 (reference 4 of paper 000), here from the exact equations (paper 002
+///          section 7) by averaging
 /// Units  : N m s, rad, rad/s
 /// Error  : drift and period relatively O(w^2): 7e-4 of the drift at w = 0.025, H = 0.4
 ///          (tests/dynamics/scene/cardan_gyro_laws.cpp)

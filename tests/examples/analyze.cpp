@@ -12,6 +12,7 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <support/json.hpp>
@@ -298,6 +299,174 @@ BOOST_AUTO_TEST_CASE(campbell_diagram_of_a_gyro_on_springs) {
                                                   : "precession"));
     }
   }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+namespace {
+
+/// A point mass at 1 m on a hinge along y, which hangs at 0.
+std::string point_pendulum(const std::string& rest) {
+  return "[[body]]\nname = \"bob\"\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1\n"
+         "centre = [0, 0, -1]\ninertia = [0, 0, 0]\n" +
+         rest + "\n[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[solve]\nt_end = 5\n";
+}
+
+/// Coordinates and stability of all equilibria, in the order of the program.
+std::vector<std::pair<std::vector<double>, std::string>> equilibria(
+    const json& result, const std::vector<std::string>& bodies) {
+  std::vector<std::pair<std::vector<double>, std::string>> all;
+  for (const json& one : result.at("equilibria")) {
+    std::vector<double> coordinates;
+    for (const std::string& body : bodies) {
+      coordinates.push_back(one.at("joints").at(body).at("coordinate"));
+    }
+    all.emplace_back(std::move(coordinates), one.at("stability"));
+  }
+  return all;
+}
+
+void check_equilibria(const json& result, const std::vector<std::string>& bodies,
+                      const std::vector<std::pair<std::vector<double>, std::string>>& wanted) {
+  const auto found = equilibria(result, bodies);
+  BOOST_TEST_REQUIRE(found.size() == wanted.size());
+  for (const auto& one : wanted) {
+    const bool is_there = std::any_of(found.begin(), found.end(), [&one](const auto& other) {
+      double off = 0;
+      for (std::size_t i = 0; i < one.first.size(); ++i) {
+        off = std::max(off, std::abs(other.first[i] - one.first[i]));
+      }
+      return off <= 1e-12 && other.second == one.second;
+    });
+    BOOST_TEST(is_there, one.second << " at " << one.first.front());
+  }
+  const auto rank = [](const auto& one) {
+    return one.second == "stable" ? 0 : one.second == "marginal" ? 1 : 2;
+  };
+  BOOST_TEST(std::is_sorted(found.begin(), found.end(),
+                            [&](const auto& a, const auto& b) { return rank(a) < rank(b); }));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(analyze_lists_equilibria)
+
+BOOST_AUTO_TEST_CASE(of_a_pendulum_wherever_it_begins) {
+  for (const double degrees : {0.0, 30.0, 75.0, 83.0, 90.0, 91.0, 135.0, 179.0, 180.0, -100.0}) {
+    const json result =
+        answer_to(point_pendulum("initial = { angle_deg = " + std::to_string(degrees) + " }"));
+    check_equilibria(result, {"bob"}, {{{0}, "stable"}, {{pi}, "unstable"}});
+    const double next = result.at("steady").at("joints").at("bob").at("coordinate");
+    const double wanted = std::abs(degrees) <= 90 ? 0 : std::copysign(pi, degrees);
+    check_near("the next one to " + std::to_string(degrees), next, wanted, 1e-12);
+  }
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", point_pendulum("")).string();
+  const Outcome text = run(file);
+  BOOST_TEST(text.out.find("equilibria: 2 found from ") != std::string::npos, text.out);
+  BOOST_TEST(text.out.find("\n  stable    bob coordinate 0\n") != std::string::npos, text.out);
+  BOOST_TEST(text.out.find("\n  unstable  bob coordinate 3.14159265358979\n") != std::string::npos);
+  BOOST_TEST(run(file).out == text.out);
+}
+
+BOOST_AUTO_TEST_CASE(of_a_double_pendulum_all_four) {
+  const std::string two = point_pendulum("initial = { angle_deg = 180 }") +
+                          "[[body]]\nname = \"lower\"\nparent = \"bob\"\njoint = { kind = "
+                          "\"revolute\", axis = [0, 1, 0], position = [0, 0, -1] }\nmass = 2\n"
+                          "centre = [0, 0, -1]\ninertia = [0, 0, 0]\n";
+  const json result = answer_to(two);
+  check_equilibria(
+      result, {"bob", "lower"},
+      {{{0, 0}, "stable"}, {{pi, 0}, "unstable"}, {{0, pi}, "unstable"}, {{pi, pi}, "unstable"}});
+  BOOST_TEST(result.at("steady").at("found") == "start");
+}
+
+// k q = m g l sin(q) with k = m g l/2: a spring tells whole turns apart, and the mass stands on it.
+BOOST_AUTO_TEST_CASE(of_a_mass_that_bends_its_spring) {
+  const double bent = 1.8954942670339809;
+  std::string text = point_pendulum("spring = { stiffness = 4.905 }\ndamping = 0.1");
+  text.replace(text.find("[0, 0, -1]"), 10, "[0, 0, 1]");
+  check_equilibria(answer_to(text), {"bob"},
+                   {{{bent}, "stable"}, {{-bent}, "stable"}, {{0}, "unstable"}});
+}
+
+// On a guide that turns about the vertical it rests where  w^2 l cos(q) = g.
+BOOST_AUTO_TEST_CASE(of_a_governor) {
+  const double w = 5;
+  const double out = std::acos(9.81 / (w * w));
+  check_equilibria(answer_to("[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 5]\n" +
+                             point_pendulum("")),
+                   {"bob"},
+                   {{{out}, "stable"}, {{-out}, "stable"}, {{0}, "unstable"}, {{pi}, "unstable"}});
+}
+
+// What goes on as a family is listed once.
+BOOST_AUTO_TEST_CASE(of_families_one) {
+  std::string ball = point_pendulum("initial = { attitude = [0.8, 0.6, 0, 0] }");
+  ball.replace(ball.find("kind = \"revolute\", axis = [0, 1, 0]"), 34, "kind = \"spherical\"");
+  ball.replace(ball.find("[0, 0, 0]"), 9, "[0.1, 0.2, 0.25]");
+  const json hanging = answer_to(ball).at("equilibria");
+  BOOST_TEST_REQUIRE(hanging.size() == 2U);
+  BOOST_TEST(hanging.at(0).at("stability") == "stable");
+  BOOST_TEST(hanging.at(0).at("neutral") == 1);
+  BOOST_TEST(hanging.at(1).at("stability") == "unstable");
+  BOOST_TEST(answer(scene("cardan_gyro_free")).at("equilibria").size() == 1U);
+  BOOST_TEST(answer(scene("gimbal_lock")).at("equilibria").size() == 1U);
+}
+
+BOOST_AUTO_TEST_CASE(none_where_a_torque_goes_on_acting) {
+  const std::string wheel = R"([[body]]
+name = "wheel"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1
+inertia = [1, 1, 1]
+rotor = { mode = "torque", torque = 0.1 }
+[solve]
+t_end = 1
+)";
+  const json result = answer_to(wheel);
+  BOOST_TEST(result.at("equilibria").empty());
+  const std::string reason = result.at("steady").at("reason");
+  BOOST_TEST(reason.find("the torque on rotor 'wheel' goes on acting") != std::string::npos,
+             reason);
+  BOOST_TEST(result.at("precession").at("reason").get<std::string>().find("nothing but rotors") !=
+             std::string::npos);
+  for (const char* const mode : {"\"free\", speed = 3", "\"regulated\", speed = 3"}) {
+    std::string text = wheel;
+    text.replace(text.find("\"torque\", torque = 0.1"), 22, mode);
+    BOOST_TEST(answer_to(text).at("steady").at("found") == "start", mode);
+  }
+}
+
+// Roots of a body whose axes turn along differ by that turning from those on resting axes.
+BOOST_AUTO_TEST_CASE(roots_name_the_frame_they_are_seen_from) {
+  const std::string top = R"([[body]]
+name = "top"
+joint = { kind = "spherical" }
+mass = 0.5
+centre = [0, 0, 0.5]
+inertia = [0.175, 0.175, 0.1]
+initial = { angular_velocity = [0, 0, 40] }
+[gravity]
+kind = "uniform"
+vector = [0, 0, -10]
+[solve]
+t_end = 1
+)";
+  BOOST_TEST(answer_to(top).at("linear").at("frame") == "on body axes, which turn with 'top'");
+  const json pendulum = answer_to(point_pendulum(""));
+  BOOST_TEST(pendulum.at("linear").at("frame") == "against the guide");
+  BOOST_TEST(pendulum.at("equilibria").at(0).at("frame") == "against the guide");
+  const json gimbals = answer(scene("cardan_gyro_springs"));
+  BOOST_TEST(gimbals.at("linear").at("frame") == "against the guide");
+  const json carried = answer_to(
+      "[[body]]\nname = \"table\"\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 1\n"
+      "inertia = [1, 1, 1]\ndrive = \"constant-rate\"\ninitial = { rate = 1 }\n[[body]]\nname = "
+      "\"rod\"\nparent = \"table\"\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1\n"
+      "centre = [0, 0, -1]\ninertia = [0.1, 0.1, 0.1]\n[gravity]\nkind = \"uniform\"\nvector = "
+      "[0, 0, -10]\n[solve]\nt_end = 1\n");
+  BOOST_TEST(carried.at("linear").at("frame") ==
+             "against the parent of each body; 'table' turns against the guide");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,6 +2,9 @@
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <vector>
+
 #include <dynamics/law/momentum.hpp>
 #include <dynamics/law/relative.hpp>
 #include <dynamics/law/vector_form.hpp>
@@ -86,6 +89,18 @@ void check_20(const MovingBody& body) {
   BOOST_TEST(near(P.value, body.force(), sizes_20(body), 12));
 }
 
+/// A body that turns about a point held in a moving guide.
+MovingBody held_body(unsigned seed) {
+  test::Sample sample(seed);
+  const std::vector<test::PointMass> masses = sample.solid_masses();
+  test::Motion relative = test::motion(sample);
+  for (test::Wave* const wave : {&relative.x, &relative.y, &relative.z}) {
+    *wave = wave->still(0);
+  }
+  return {masses, test::truth(test::motion(sample), relative, Digits50(0), masses),
+          test::inertia<Digits50>(masses)};
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(equations_18_to_20)
@@ -131,6 +146,39 @@ BOOST_DATA_TEST_CASE(nineteen_with_the_plain_derivative_counts_once, data::xrang
   const Motor<> surplus{b.T.value.mass * once, b.T.value.first_moment.cross(once)};
   const auto scale = vector_form_19(t.T, t.V_rel, t.F, t.dV_rel.body, t.dF.guide).total();
   BOOST_TEST(near(parts.total().value - surplus, body.force(), scale.value, 16));
+}
+
+// The same equation with true rates, the moments of o(T V') and o(T F), in which no v' is left.
+BOOST_DATA_TEST_CASE(twenty_as_printed_holds_for_true_rates, data::xrange(100u), seed) {
+  const MovingBody body = test::moving_body(seed);
+  const Typed<double> b = body.numbers();
+  const Motor<> sum = momentum(body.truth.J.value).value + momentum(body.truth.J_f.value).value;
+  const Motor<> rate = cast<double>(body.truth.J.T.guide) + cast<double>(body.truth.J_f.T.guide);
+  const auto& [u, v] = b.F.value;
+  const Motor<> printed{rate.resultant + u.cross(sum.resultant),
+                        rate.moment + u.cross(sum.moment) + v.cross(sum.resultant)};
+  BOOST_TEST(near(printed, body.force(), sizes_20(body), 12));
+}
+
+// (48) as printed leaves v x (G + G_f), the momentum times the velocity of the held point: 0 only if
+// that point rests or the body is held at its centre of mass.
+BOOST_AUTO_TEST_CASE(forty_eight_needs_the_velocity_of_the_guide) {
+  double largest = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const MovingBody body = held_body(seed);
+    const Typed<double> b = body.numbers();
+    BOOST_TEST(b.V_rel.value.moment.norm() <= 1e-30);
+    const Motor<> sum = momentum(body.truth.J.value).value + momentum(body.truth.J_f.value).value;
+    const Vector3<double> rate =
+        (cast<double>(body.truth.J.P.guide) + cast<double>(body.truth.J_f.P.guide)).moment;
+    const auto& [u, v] = b.F.value;
+    const Vector3<double> printed = rate + u.cross(sum.moment);
+    const Vector3<double> missing = v.cross(sum.resultant);
+    BOOST_TEST(
+        near(Motor<>{body.force().resultant, printed + missing}, body.force(), sizes_20(body), 12));
+    largest = std::max(largest, missing.norm() / body.force().moment.norm());
+  }
+  BOOST_TEST(largest > 0.5);
 }
 
 // Counterexample L: the guide is inertial, nothing acts; S goes with (1, 0, 0), the body spins with
