@@ -6,6 +6,7 @@
 
 #include <dynamics/file/log_options.hpp>
 #include <dynamics/file/motion_log.hpp>
+#include <dynamics/file/rates_log.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
@@ -57,6 +58,7 @@ class SceneReader {
     read_solve();
     read_guide();
     read_gravity();
+    give_gravity_to_rates();
     read_bodies();
     read_report();
     root_.finish();
@@ -168,8 +170,8 @@ class SceneReader {
   }
 
   void read_links(Section& guide, int depth) {
-    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic",
-                                         "earth",    "table",    "chain"};
+    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth",
+                                         "table",    "rates",    "chain"};
     const std::string kind =
         depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
     if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
@@ -200,6 +202,7 @@ class SceneReader {
     }
     if (kind == "earth") read_earth(guide);
     if (kind == "table") read_table(guide);
+    if (kind == "rates") read_rates(guide);
     if (kind == "chain") {
       constexpr int deepest = 8;
       if (!guide.has("links")) guide.refuse_missing("links");
@@ -298,23 +301,85 @@ class SceneReader {
     scene_.guide.emplace_back(std::move(link));
   }
 
-  void read_table(Section& guide) {
+  /// A log's file and how to read it; nothing where that is wrong.
+  struct LogPlace {
+    std::string name;
+    std::filesystem::path file;
+    LogOptions options;
+  };
+
+  std::optional<LogPlace> read_log_place(Section& guide, const std::vector<LogRequest>& columns) {
     const std::size_t before = mistakes_.count();
     const std::string name = guide.required_text("file");
-    const LogOptions options = read_log_options(guide, motion_log_columns(), {0, scene_.t_end});
+    const LogOptions options = read_log_options(guide, columns, {0, scene_.t_end});
     if (name.empty() && guide.has("file") && guide.find("file")->is_string()) {
       guide.refuse("file", "is empty");
     }
+    if (mistakes_.count() > before) return std::nullopt;
+    return LogPlace{name, path_.parent_path() / name, options};
+  }
+
+  void read_table(Section& guide) {
     (void)guide.has("sigma");  // is read with the log, and a key also where that is refused
-    if (mistakes_.count() > before) return;
-    const std::filesystem::path file = path_.parent_path() / name;
+    const auto place = read_log_place(guide, motion_log_columns());
+    if (!place) return;
     try {
-      LoggedMotion log = read_motion_log(file, options);
-      check_covers_run(guide, name, options, log.motion.times);
-      const LogSpline spline = read_smoothing(guide, log.motion);
-      scene_.guide.emplace_back(scene_guide::Table{file, std::move(log.motion), spline});
+      MotionLog<double> log = read_motion_log(place->file, place->options).motion;
+      check_covers_run(guide, place->name, place->options, log.times);
+      const LogSpline spline = read_smoothing(guide, log);
+      scene_.guide.emplace_back(scene_guide::Table{place->file, std::move(log), spline});
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
+    }
+  }
+
+  void read_rates(Section& guide) {
+    if (!scene_.guide.empty()) {
+      guide.refuse("kind",
+                   "'rates' must be the first link: gyros measure against the inertial "
+                   "frame");
+    }
+    RatesStart start;
+    start.attitude = quaternion(guide, "attitude").value_or(start.attitude);
+    start.velocity = guide.vector("origin_velocity").value_or(start.velocity);
+    const bool felt =
+        guide.choice("acceleration", {"specific force", "kinematic"}) == "specific force";
+    const auto gravity = guide.vector("gravity");
+    start.gravity = gravity.value_or(start.gravity);
+    if (!felt && guide.has("gravity")) {
+      guide.refuse("gravity", "is for acceleration = 'specific force'");
+    }
+    auto place = read_log_place(guide, rates_log_columns());
+    if (!place) return;
+    place->options.run.reset();  // the attitude is that at the first time of all
+    try {
+      RatesLog log = read_rates_log(place->file, place->options);
+      check_covers_run(guide, place->name, place->options, log.times);
+      if (felt && !log.accelerations.empty() && !guide.has("gravity")) {
+        rates_without_gravity_ = guide;
+      }
+      const RatesFrame<> checked(log, start);
+      const LogSpline spline = read_smoothing(guide, log);
+      scene_.guide.emplace_back(scene_guide::Rates{place->file, std::move(log), start, spline});
+    } catch (const InvalidInput& error) {
+      guide.refuse("file", error.what());
+    }
+  }
+
+  /// Specific forces lack gravity: the guide's own, or that of a scene where it is uniform.
+  void give_gravity_to_rates() {
+    if (!rates_without_gravity_) return;
+    const auto* const uniform = std::get_if<UniformGravity<Inertial>>(&scene_.gravity);
+    if (uniform == nullptr) {
+      rates_without_gravity_->refuse(
+          "acceleration",
+          "'specific force' needs gravity: 'gravity' = [x, y, z] in m/s^2 on inertial axes, or "
+          "[gravity] kind = 'inertial'");
+      return;
+    }
+    if (scene_.guide.empty()) return;
+    if (auto* const rates = std::get_if<scene_guide::Rates>(&scene_.guide.front())) {
+      rates->start.gravity = uniform->g;
     }
   }
 
@@ -355,8 +420,9 @@ class SceneReader {
   }
 
   /// How a log is smoothed: by the noise that `sigma` gives, one number or that of the attitude and
-  /// that of the place; else by what the log itself shows.
-  static LogSpline read_smoothing(Section& guide, const MotionLog<double>& log) {
+  /// that of the place (of rates: that of both rates); else by what the log itself shows.
+  template <class Log>
+  static LogSpline read_smoothing(Section& guide, const Log& log) {
     LogNoise::Components sigma;
     if (guide.has("sigma")) {
       const auto given =
@@ -754,6 +820,7 @@ class SceneReader {
   const SolveRequest& request_;
   Mistakes& mistakes_;
   SceneFile scene_;
+  std::optional<Section> rates_without_gravity_ = {};  ///< of a link that has specific forces
   scene_gravity::Field site_gravity_ = scene_gravity::None{};  ///< what the guide itself asks for
 };
 
@@ -801,6 +868,18 @@ bool SceneFile::rests() const {
   return std::all_of(guide.begin(), guide.end(), [](const scene_guide::Link& link) {
     return std::holds_alternative<scene_guide::Resting>(link);
   });
+}
+
+std::vector<std::filesystem::path> SceneFile::log_files() const {
+  std::vector<std::filesystem::path> files;
+  for (const scene_guide::Link& link : guide) {
+    std::visit(
+        [&files](const auto& kind) {
+          if constexpr (requires { kind.log; }) files.push_back(kind.file);
+        },
+        link);
+  }
+  return files;
 }
 
 std::optional<Method> method_named(std::string_view word) {

@@ -10,6 +10,7 @@
 #include <dynamics/body/description.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/tabulated.hpp>
 #include <dynamics/solve/task.hpp>
 #include <motor/error.hpp>
@@ -56,7 +57,15 @@ struct Table {
   LogSpline spline = {};
 };
 
-using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table>;
+/// A log of rates on the frame's own axes.
+struct Rates {
+  std::filesystem::path file;
+  RatesLog log;
+  RatesStart start;
+  LogSpline spline = {};
+};
+
+using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates>;
 
 }  // namespace scene_guide
 
@@ -121,6 +130,10 @@ struct SceneFile {
 
   /// Whether the guide rests, so that nothing of its motion needs to be computed.
   [[nodiscard]] bool rests() const;
+
+  /// Of the logs that the guide and its parts follow.
+  [[nodiscard]] std::vector<std::filesystem::path> log_files() const;
+  [[nodiscard]] bool follows_log() const { return !log_files().empty(); }
 };
 
 /// What is wrong with a scene file: a line for each mistake,  file:line:column: key: reason

@@ -32,6 +32,15 @@ Displacement<Inertial, Guide> pose(const scene_guide::Start& start) {
   return {Pose<>::from(start.attitude, start.origin_position)};
 }
 
+/// A frame that is known up to its end, asked no later than there.
+template <class Frame>
+SceneGuide within(Frame known) {
+  const auto frame = std::make_shared<const Frame>(std::move(known));
+  return [frame](double t) {
+    return (*frame)(t > frame->end() && t <= frame->end() * past_the_end ? frame->end() : t);
+  };
+}
+
 SceneGuide make_link(const scene_guide::Link& link, double t_end) {
   return std::visit(
       Overloaded{[](const scene_guide::Resting&) -> SceneGuide { return RestingFrame<>{}; },
@@ -50,12 +59,10 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
                    return earth_frame(kind.site);
                  },
                  [](const scene_guide::Table& kind) -> SceneGuide {
-                   const auto frame =
-                       std::make_shared<const TabulatedFrame<>>(kind.log, kind.spline);
-                   return [frame](double t) {
-                     return (*frame)(
-                         t > frame->end() && t <= frame->end() * past_the_end ? frame->end() : t);
-                   };
+                   return within(TabulatedFrame<>(kind.log, kind.spline));
+                 },
+                 [](const scene_guide::Rates& kind) -> SceneGuide {
+                   return within(RatesFrame<>(kind.log, kind.start, kind.spline));
                  }},
       link);
 }

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/guide/piecewise.hpp>
+#include <dynamics/guide/pose_series.hpp>
 #include <dynamics/guide/series.hpp>
 
 namespace kreisel {
@@ -158,8 +158,6 @@ class HarmonicFrame {
   // The chain of pieces is carried in more digits than it is read in.
   using Wide =
       std::conditional_t<std::is_same_v<S, double> || std::is_same_v<S, float>, long double, S>;
-  using Quaternion = Eigen::Quaternion<Wide>;
-  using Taylor = std::vector<Vector3<Wide>>;
 
   static void check(const HarmonicSeries<S>& series, const char* what) {
     const auto finite = [](const auto& x) { return x - x == S(0); };
@@ -191,64 +189,20 @@ class HarmonicFrame {
     }
     const auto pieces = static_cast<std::size_t>(wanted) + 1;
 
-    Quaternion q = quaternion(X.rotation).template cast<Wide>();
-    Vector3<Wide> x = X.translation.template cast<Wide>();
-    Vector3<Wide> v = velocity.template cast<Wide>();
+    detail::PoseChain<Wide> chain{quaternion(X.rotation).template cast<Wide>(),
+                                  X.translation.template cast<Wide>(),
+                                  velocity.template cast<Wide>()};
     for (std::size_t piece = 0; piece < pieces; ++piece) {
       const auto at = [&](std::size_t k) {
         return k == pieces ? end : S(begin + span * (S(double(k)) / S(double(pieces))));
       };
       const S t = at(piece);
       const Wide step = Wide(at(piece + 1)) - Wide(t);
-      q.normalize();
-      const auto [attitudes, places] = series(u.coefficients(Wide(t), Wide(1), degree),
-                                              a.coefficients(Wide(t), Wide(1), degree), q, x, v);
-      std::vector<typename PiecewisePose<S>::Components> coefficients;
-      for (std::size_t n = 0; n < attitudes.size(); ++n) {
-        coefficients.push_back(PiecewisePose<S>::components(attitudes[n].template cast<S>(),
-                                                            places[n].template cast<S>()));
-      }
-      pose_.append(t, coefficients);
-      q.coeffs().setZero();
-      x.setZero();
-      v.setZero();
-      for (std::size_t n = attitudes.size(); n-- > 0;) {
-        q.coeffs() = q.coeffs() * step + attitudes[n].coeffs();
-        v = v * step + x;
-        x = x * step + places[n];
-      }
+      detail::append_piece(pose_, chain, t, step, u.coefficients(Wide(t), Wide(1), degree),
+                           a.coefficients(Wide(t), Wide(1), degree),
+                           Vector3<Wide>(Vector3<Wide>::Zero()));
     }
     pose_.end_at(end);
-  }
-
-  /// Coefficients of attitude and place from those of u and a:  q' = q u / 2,  x'' = q a q^-1.
-  [[nodiscard]] static std::pair<std::vector<Quaternion>, Taylor> series(const Taylor& u,
-                                                                         const Taylor& a,
-                                                                         const Quaternion& q0,
-                                                                         const Vector3<Wide>& x0,
-                                                                         const Vector3<Wide>& v0) {
-    const std::size_t terms = u.size();
-    const auto pure = [](const Vector3<Wide>& v) {
-      return Quaternion(Wide(0), v.x(), v.y(), v.z());
-    };
-    const auto number = [](std::size_t n) { return Wide(static_cast<double>(n)); };
-    std::vector<Quaternion> q{q0};
-    std::vector<Quaternion> qa;  // of q a
-    Taylor x{x0, v0};
-    for (std::size_t n = 0; n + 1 < terms; ++n) {
-      Quaternion qu_n(Wide(0), Wide(0), Wide(0), Wide(0));
-      Quaternion qa_n = qu_n;
-      Vector3<Wide> acceleration = Vector3<Wide>::Zero();
-      for (std::size_t k = 0; k <= n; ++k) {
-        qu_n.coeffs() += (q[k] * pure(u[n - k])).coeffs();
-        qa_n.coeffs() += (q[k] * pure(a[n - k])).coeffs();
-      }
-      q.emplace_back(Eigen::Matrix<Wide, 4, 1>(qu_n.coeffs() / number(2 * (n + 1))));
-      qa.push_back(qa_n);
-      for (std::size_t k = 0; k <= n; ++k) acceleration += (qa[k] * q[n - k].conjugate()).vec();
-      if (n + 2 < terms) x.push_back(acceleration / number((n + 1) * (n + 2)));
-    }
-    return {std::move(q), std::move(x)};
   }
 
   HarmonicSeries<S> u_;

@@ -9,11 +9,13 @@
 #include <random>
 #include <vector>
 
+#include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/tabulated.hpp>
 
 namespace kreisel {
 
-/// The errors of a log's samples, by component: quaternion x, y, z, w, then position x, y, z.
+/// The errors of a log's samples, by component: quaternion x, y, z, w, then position x, y, z; of a
+/// log of rates angular velocity, 0, acceleration.
 struct LogNoise {
   using Components = PiecewisePose<double>::Components;
   Components white = Components::Zero();  ///< standard deviation, independent from sample to sample
@@ -27,15 +29,56 @@ namespace detail {
 
 using LogComponents = LogNoise::Components;
 
-/// The components of a log as it was written.
-[[nodiscard]] inline std::vector<LogComponents> log_components(const MotionLog<double>& log) {
+/// A log by components, as it was written and as it is followed.
+struct LogSamples {
+  std::vector<double> times;
+  std::vector<LogComponents> written;
   std::vector<LogComponents> values;
+};
+
+[[nodiscard]] inline LogSamples samples_of(const MotionLog<double>& log) {
+  LogSamples result;
+  const TabulatedFrame<> frame(log);
+  result.times = log.times;
   for (std::size_t i = 0; i < log.times.size(); ++i) {
-    values.push_back(PiecewisePose<double>::components(
-        log.attitudes[i],
-        log.positions.empty() ? Vector3<double>(Vector3<double>::Zero()) : log.positions[i]));
+    const auto components = [i](const MotionLog<double>& of) {
+      const Vector3<double> rest = Vector3<double>::Zero();
+      return PiecewisePose<double>::components(of.attitudes[i],
+                                               of.positions.empty() ? rest : of.positions[i]);
+    };
+    result.written.push_back(components(log));
+    result.values.push_back(components(frame.samples()));
   }
-  return values;
+  return result;
+}
+
+/// Rates in the place of quaternions' vectors, accelerations in that of positions.
+[[nodiscard]] inline LogSamples samples_of(const RatesLog& log) {
+  LogSamples result;
+  result.times = log.times;
+  for (std::size_t i = 0; i < log.times.size(); ++i) {
+    result.written.push_back(rates_components(log, i));
+  }
+  result.values = result.written;
+  return result;
+}
+
+[[nodiscard]] inline MotionLog<double> with_values(MotionLog<double> log,
+                                                   const std::vector<LogComponents>& values) {
+  log.positions.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    log.attitudes[i].coeffs() = values[i].head<4>().normalized();
+    log.positions[i] = values[i].tail<3>();
+  }
+  return log;
+}
+
+[[nodiscard]] inline RatesLog with_values(RatesLog log, const std::vector<LogComponents>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    log.angular_velocities[i] = values[i].head<3>();
+    if (!log.accelerations.empty()) log.accelerations[i] = values[i].tail<3>();
+  }
+  return log;
 }
 
 /// The greatest power of ten, from 1e-1 to 1e-12, of which all values are multiples; 0 if there is
@@ -103,7 +146,7 @@ using LogComponents = LogNoise::Components;
 
 }  // namespace detail
 
-/// The errors of a log's samples, from the log itself.
+/// The errors of a log's samples, MotionLog or RatesLog, from the log itself.
 ///
 /// High-order differences of a smooth motion are small, those of noise are not: the noise is the
 /// least of what the orders 4 to 24 leave, each scaled for independent errors. Where the least two
@@ -112,20 +155,15 @@ using LogComponents = LogNoise::Components;
 ///
 /// Error  : some 20 % for independent errors and 100 samples
 ///          (tests/dynamics/guide/log_noise.cpp)
-/// Units  : 1 (quaternion), metre
-[[nodiscard]] inline LogNoise noise_of(const MotionLog<double>& written) {
+/// Units  : those of the samples
+template <class Log>
+[[nodiscard]] LogNoise noise_of(const Log& log) {
   LogNoise noise;
-  const auto raw = detail::log_components(written);
-  noise.step.head<4>().setConstant(detail::decimal_step(raw, 0, 4));
-  if (!written.positions.empty()) {
-    noise.step.tail<3>().setConstant(detail::decimal_step(raw, 4, 3));
-  }
-  const MotionLog<double> log = TabulatedFrame<>(written).samples();
-  const auto values = detail::log_components(log);
+  const auto [times, written, values] = detail::samples_of(log);
+  noise.step.head<4>().setConstant(detail::decimal_step(written, 0, 4));
+  noise.step.tail<3>().setConstant(detail::decimal_step(written, 4, 3));
   std::vector<double> steps;
-  for (std::size_t i = 1; i < log.times.size(); ++i) {
-    steps.push_back(log.times[i] - log.times[i - 1]);
-  }
+  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
                    steps.end());
   const double step = steps[steps.size() / 2];
@@ -133,7 +171,7 @@ using LogComponents = LogNoise::Components;
   noise.white.setConstant(std::numeric_limits<double>::infinity());
   noise.resolved.setConstant(false);
   for (const std::size_t order : {4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24}) {
-    const auto size = detail::difference_size(log.times, values, order, step);
+    const auto size = detail::difference_size(times, values, order, step);
     if (!size) break;
     for (int c = 0; c < 7; ++c) {
       // Two orders that find the same have found noise.
@@ -142,9 +180,8 @@ using LogComponents = LogNoise::Components;
     }
     before = *size;
   }
-  if (before[0] < 0) {
-    noise.white.setZero();
-    noise.resolved.setConstant(false);
+  for (double& white : noise.white) {
+    if (!std::isfinite(white)) white = 0;  // too few samples, or times too close for differences
   }
   return noise;
 }
@@ -174,17 +211,16 @@ namespace detail {
 /// steps apart.
 ///
 /// Units  : sigma as LogNoise
-[[nodiscard]] inline LogSpline smoothing(const MotionLog<double>& written,
-                                         const LogNoise::Components& sigma) {
+template <class Log>
+[[nodiscard]] LogSpline smoothing(const Log& log, const LogNoise::Components& sigma) {
   LogSpline best;
-  const MotionLog<double> log = TabulatedFrame<>(written).samples();
-  const auto values = detail::log_components(log);
-  const std::size_t n = log.times.size();
+  const detail::LogSamples samples = detail::samples_of(log);
+  const auto& values = samples.values;
+  const std::size_t n = values.size();
   LogNoise::Components size = LogNoise::Components::Zero();
   for (const auto& value : values) size = size.cwiseMax(value.cwiseAbs());
   LogNoise::Components way = LogNoise::Components::Constant(std::numeric_limits<double>::min());
   for (std::size_t i = 1; i < n; ++i) way += (values[i] - values[i - 1]).cwiseAbs();
-  const auto raw = detail::log_components(written);
   const auto choose = [&](const LogNoise::Components& group, double step, std::size_t& every) {
     const double variance = sigma.cwiseAbs2().dot(group);
     const double rounding = 1e-14 * size.cwiseProduct(group).norm();
@@ -195,8 +231,8 @@ namespace detail {
                                   ? std::max<std::size_t>(2, static_cast<std::size_t>(apart))
                                   : 2;
     for (std::size_t m = first; m < n; m += 1 + m / 3) {
-      const detail::SplineInterpolation<double> spline(log.times, values, best.degree, m);
-      const double residual = detail::squared_residual(spline, log.times, values).dot(group);
+      const detail::SplineInterpolation<double> spline(samples.times, values, best.degree, m);
+      const double residual = detail::squared_residual(spline, samples.times, values).dot(group);
       const double expected = residual + 2 * variance * static_cast<double>(spline.controls());
       if (expected < least) {
         least = expected;
@@ -206,8 +242,8 @@ namespace detail {
     }
   };
   const auto attitude = (LogNoise::Components() << 1, 1, 1, 1, 0, 0, 0).finished();
-  choose(attitude, detail::decimal_step(raw, 0, 4), best.attitude_every);
-  choose(LogNoise::Components::Ones() - attitude, detail::decimal_step(raw, 4, 3),
+  choose(attitude, detail::decimal_step(samples.written, 0, 4), best.attitude_every);
+  choose(LogNoise::Components::Ones() - attitude, detail::decimal_step(samples.written, 4, 3),
          best.position_every);
   return best;
 }
@@ -225,26 +261,31 @@ namespace detail {
 }
 
 /// The samples that a spline of the log has at its times.
-[[nodiscard]] inline MotionLog<double> smoothed(const MotionLog<double>& written,
-                                                const LogSpline& smooth) {
-  const TabulatedFrame<> frame(written, smooth);
-  MotionLog<double> log = frame.samples();
-  for (std::size_t i = 0; i < log.times.size(); ++i) {
-    const PoseDerivatives<double> pose = frame.derivatives(log.times[i]);
-    log.attitudes[i] = pose.q.normalized();
-    log.positions[i] = pose.x;
+template <class Log>
+[[nodiscard]] Log smoothed(const Log& log, const LogSpline& how) {
+  const detail::LogSamples samples = detail::samples_of(log);
+  const std::size_t p = how.degree_for(samples.times.size());
+  const detail::SplineInterpolation<double> first(samples.times, samples.values, p,
+                                                  how.attitude_every);
+  const detail::SplineInterpolation<double> last(samples.times, samples.values, p,
+                                                 how.position_every);
+  std::vector<detail::LogComponents> values;
+  for (const double t : samples.times) {
+    values.push_back(first.value(t));
+    values.back().tail<3>() = last.value(t).tail<3>();
   }
-  return log;
+  return detail::with_values(log, values);
 }
 
 /// The log as it might as well have been written: smoothed, its noise and its rounding drawn anew.
 ///
 /// Rounding is drawn by where the decimals begin, so that of a slow motion it stays in steps as it
 /// is, and of one at rest it is an offset.
-[[nodiscard]] inline MotionLog<double> drawn_again(const MotionLog<double>& written,
-                                                   const LogNoise& noise, const LogSpline& smooth,
-                                                   std::uint64_t seed) {
-  MotionLog<double> log = smoothed(written, smooth);
+template <class Log>
+[[nodiscard]] Log drawn_again(const Log& written, const LogNoise& noise, const LogSpline& smooth,
+                              std::uint64_t seed) {
+  const Log log = smoothed(written, smooth);
+  auto values = detail::samples_of(log).values;
   std::mt19937_64 engine(seed);
   // Sums of twelve draws: the same on every machine, which std::normal_distribution is not.
   const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53 - 0.5; };
@@ -260,16 +301,14 @@ namespace detail {
     white[c] = white[c] > rounded ? std::sqrt(white[c] * white[c] - rounded * rounded) : 0;
     offset[c] = noise.step[c] * uniform();
   }
-  for (std::size_t i = 0; i < log.times.size(); ++i) {
+  for (detail::LogComponents& value : values) {
     for (int c = 0; c < 7; ++c) {
-      double& x = c < 4 ? log.attitudes[i].coeffs()[c] : log.positions[i][c - 4];
       const double step = noise.step[c];
-      x += (white[c] > 0 ? white[c] * normal() : 0);
-      if (step > 0) x = std::round((x + offset[c]) / step) * step - offset[c];
+      value[c] += white[c] > 0 ? white[c] * normal() : 0;
+      if (step > 0) value[c] = std::round((value[c] + offset[c]) / step) * step - offset[c];
     }
-    log.attitudes[i].normalize();
   }
-  return log;
+  return detail::with_values(log, values);
 }
 
 /// How far a result that follows a log may be off for the log's own errors.
@@ -292,8 +331,8 @@ namespace detail {
 /// `distance` : of two results, as numbers not below 0
 /// Cost       : thirteen times follow()
 /// Error      : see tests/dynamics/guide/log_noise.cpp
-template <class Result, class Follow, class Distance>
-[[nodiscard]] Eigen::VectorXd error_of_log(const MotionLog<double>& log, const LogSpline& spline,
+template <class Log, class Result, class Follow, class Distance>
+[[nodiscard]] Eigen::VectorXd error_of_log(const Log& log, const LogSpline& spline,
                                            const Result& result, const Follow& follow,
                                            const Distance& distance) {
   constexpr int draws = 5;
@@ -306,12 +345,12 @@ template <class Result, class Follow, class Distance>
   Eigen::VectorXd degree = square(follow(log, higher), result);
   if (noise.white.isZero(0) && noise.step.isZero(0)) return 2 * degree.cwiseSqrt();
   const LogSpline smooth = smoothing(log, smoothing_sigma(noise));
-  const MotionLog<double> middle_log = smoothed(log, smooth);
+  const Log middle_log = smoothed(log, smooth);
   const Result middle = follow(middle_log, spline);
   degree += square(follow(middle_log, higher), middle);
   Eigen::VectorXd drawn = 0 * degree;
   for (std::uint64_t i = 1; i <= draws; ++i) {
-    const MotionLog<double> again = drawn_again(log, noise, smooth, i);
+    const Log again = drawn_again(log, noise, smooth, i);
     const Result one = follow(again, spline);
     drawn += square(one, middle) / draws;
     degree -= square(follow(again, higher), one) / draws;

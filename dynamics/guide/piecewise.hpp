@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -39,6 +40,12 @@ class PiecewisePose {
   [[nodiscard]] const S& begin() const { return begins_.front(); }
   [[nodiscard]] const S& end() const { return end_; }
   [[nodiscard]] const std::vector<S>& breakpoints() const { return begins_; }
+
+  /// Of powers of (t - begin) of that piece, lowest first.
+  [[nodiscard]] std::span<const Components> coefficients(std::size_t piece) const {
+    const auto terms = static_cast<std::size_t>(degree_) + 1;
+    return {coefficients_.data() + piece * terms, terms};
+  }
 
   /// Throws : InvalidInput outside [begin, end]: nothing is extrapolated
   void require(const S& t) const {

@@ -26,6 +26,11 @@ struct LogSpline {
   std::size_t degree = 5;  ///< odd; less where the log is too short for it
   std::size_t attitude_every = 1;
   std::size_t position_every = 1;
+
+  /// The degree for so many samples.
+  [[nodiscard]] std::size_t degree_for(std::size_t samples) const {
+    return std::min(degree, samples < 6 ? 3 : (samples - 2) / 2 * 2 + 1);
+  }
 };
 
 /// How far an interpolated motion may be off, the greatest over the table.
@@ -112,8 +117,7 @@ class TabulatedFrame {
   [[nodiscard]] static std::size_t full_degree(std::size_t samples) { return samples < 6 ? 3 : 5; }
 
   [[nodiscard]] static PiecewisePose<S> fitted(const MotionLog<S>& log, const LogSpline& how) {
-    const std::size_t n = log.times.size();
-    const std::size_t p = std::min(how.degree, n < 6 ? 3 : (n - 2) / 2 * 2 + 1);
+    const std::size_t p = how.degree_for(log.times.size());
     const detail::SplineInterpolation<S> attitude(log.times, components(log), p,
                                                   how.attitude_every);
     if (how.attitude_every == how.position_every) return attitude.pieces("motion log");

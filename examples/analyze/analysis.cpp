@@ -330,7 +330,7 @@ Analysis analyze(const System& system, const kreisel::SceneFile& scene, const Re
   if (rates.size() == 0) throw InvalidInput("nothing in this scene can move");
   Analysis result;
   const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
-  const bool logged = has_link<kreisel::scene_guide::Table>(scene);
+  const bool logged = scene.follows_log();
   const Equilibria equilibria = find_equilibria(system, scene, start);
   result.starts = equilibria.starts;
   result.equilibria = rests(system, scene, equilibria, start);

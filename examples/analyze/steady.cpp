@@ -184,7 +184,7 @@ namespace {
 
 /// Why a scene has no steady motion whatever its bodies do; empty where it may have one.
 std::string changes(const kreisel::SceneFile& scene) {
-  if (has_link<kreisel::scene_guide::Table>(scene)) return "the guide follows a log";
+  if (scene.follows_log()) return "the guide follows a log";
   if (has_link<kreisel::scene_guide::Harmonic>(scene)) {
     return "the guide swings: the motions that stay repeat it";
   }

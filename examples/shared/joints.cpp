@@ -7,11 +7,8 @@ using kreisel::BodyTree;
 
 std::vector<std::filesystem::path> files_read(const std::filesystem::path& scene_file,
                                               const kreisel::SceneFile& scene) {
-  std::vector<std::filesystem::path> files{scene_file};
-  for (const auto& link : scene.guide) {
-    const auto* const table = std::get_if<kreisel::scene_guide::Table>(&link);
-    if (table != nullptr) files.push_back(table->file);
-  }
+  std::vector<std::filesystem::path> files = scene.log_files();
+  files.insert(files.begin(), scene_file);
   return files;
 }
 

@@ -12,7 +12,6 @@
 #include <motor/error.hpp>
 
 using Eigen::VectorXd;
-using kreisel::scene_guide::Table;
 
 namespace {
 
@@ -134,18 +133,28 @@ class Beside {
   End end_;
 };
 
-/// The error that the log of one link makes.
-VectorXd error_of_link(const kreisel::SceneFile& scene, std::size_t link, const Beside& beside,
-                       double tolerance) {
-  const Table& table = std::get<Table>(scene.guide[link]);
-  return kreisel::error_of_log(
-      table.log, table.spline, beside.end(),
-      [&](const kreisel::MotionLog<double>& log, const kreisel::LogSpline& spline) {
-        kreisel::SceneFile other = scene;
-        other.guide[link] = Table{table.file, log, spline};
-        return beside.end_of(other, tolerance);
-      },
-      [&](const End& a, const End& b) { return numbers_of(beside.distance(a, b)); });
+/// Squares of the errors that the log of one link makes; nothing where the link follows none.
+std::optional<VectorXd> squares_of_link(const kreisel::SceneFile& scene, std::size_t i,
+                                        const Beside& beside, double tolerance) {
+  const auto along = [&](const auto& link) -> std::optional<VectorXd> {
+    if constexpr (requires { link.log; }) {
+      const VectorXd error = kreisel::error_of_log(
+          link.log, link.spline, beside.end(),
+          [&](const auto& log, const kreisel::LogSpline& spline) {
+            auto other_link = link;
+            other_link.log = log;
+            other_link.spline = spline;
+            kreisel::SceneFile other = scene;
+            other.guide[i] = other_link;
+            return beside.end_of(other, tolerance);
+          },
+          [&](const End& a, const End& b) { return numbers_of(beside.distance(a, b)); });
+      return error.cwiseAbs2();
+    } else {
+      return std::nullopt;
+    }
+  };
+  return std::visit(along, scene.guide[i]);
 }
 
 }  // namespace
@@ -153,9 +162,7 @@ VectorXd error_of_link(const kreisel::SceneFile& scene, std::size_t link, const 
 std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene, const Model& model,
                                       const kreisel::Trajectory<JointState>& run,
                                       const std::function<bool()>& interrupted) {
-  const auto& links = scene.guide;
-  const auto is_log = [](const auto& link) { return std::holds_alternative<Table>(link); };
-  if (std::none_of(links.begin(), links.end(), is_log)) return LogError{};
+  if (!scene.follows_log()) return LogError{};
   const Beside beside(model, run, interrupted);
   LogError error = beside.distance(beside.end(), beside.end());
   // A run to a coarse tolerance tells a great error as well as a fine one does.
@@ -164,8 +171,9 @@ std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene, const Mod
   try {
     while (true) {
       VectorXd squares = VectorXd::Zero(numbers_of(error).size());
-      for (std::size_t i = 0; i < links.size(); ++i) {
-        if (is_log(links[i])) squares += error_of_link(scene, i, beside, tolerance).cwiseAbs2();
+      for (std::size_t i = 0; i < scene.guide.size(); ++i) {
+        const auto of_link = squares_of_link(scene, i, beside, tolerance);
+        if (of_link) squares += *of_link;
       }
       set_numbers(error, squares.cwiseSqrt());
       const bool moves = model.tree().rates() > 0;

@@ -26,12 +26,6 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 int bodies(const Result& result) { return static_cast<int>(result.scene.bodies.size()); }
 
-template <class Kind>
-bool has_link(const kreisel::SceneFile& scene) {
-  return std::any_of(scene.guide.begin(), scene.guide.end(),
-                     [](const auto& link) { return std::holds_alternative<Kind>(link); });
-}
-
 std::string gravity_name(const kreisel::SceneFile& scene) {
   static constexpr const char* names[] = {
       "", "uniform on guide axes", "uniform on inertial axes",
@@ -46,10 +40,13 @@ ordered_json json(const std::vector<Term>& terms) {
   return list;
 }
 
-/// The terms that the equation of motion holds, or those that it does not.
+/// The terms that the equation of motion holds, or those that it does not. Gravity is told apart, by
+/// the kind that the scene has: that of a place enters the equation as a load on each body.
 std::vector<Term> equation_terms(const Result& result, bool kept) {
   std::vector<Term> terms;
   for (const kreisel::Term& term : result.model.equation_terms()) {
+    const bool is_told_apart = term.part == "load" && term.name == "gravity";
+    if (is_told_apart && result.scene.gravity.index() != 0) continue;
     if (term.kept == kept) terms.push_back({term.part + ": " + term.name, term.why});
   }
   return terms;
@@ -152,7 +149,7 @@ std::vector<Term> terms_dropped(const Result& result) {
   if (scene.gravity.index() == 4) {
     terms.push_back({"gravity gradient", "the gravity at the site is the same for all bodies"});
   }
-  if (has_link<kreisel::scene_guide::Table>(scene)) {
+  if (scene.follows_log()) {
     terms.push_back(
         {"motion faster than the table's samples", "a spline runs through the samples"});
   }

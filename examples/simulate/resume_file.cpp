@@ -48,10 +48,7 @@ std::uint64_t identity(std::string_view scene_text, const kreisel::SceneFile& sc
   Hash hash;
   hash.add(std::string_view(KREISEL_VERSION));
   hash.add(scene_text);
-  for (const auto& link : scene.guide) {
-    const auto* const table = std::get_if<kreisel::scene_guide::Table>(&link);
-    if (table != nullptr) add_table(hash, table->file);
-  }
+  for (const auto& file : scene.log_files()) add_table(hash, file);
   for (const double x : {scene.t_end, scene.tolerance, static_cast<double>(scene.method),
                          static_cast<double>(scene.reactions)}) {
     hash.add(x);

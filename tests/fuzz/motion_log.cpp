@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <dynamics/file/motion_log.hpp>
+#include <dynamics/guide/log_noise.hpp>
 #include <dynamics/guide/tabulated.hpp>
 
 #include "memory_file.hpp"
@@ -47,6 +48,9 @@ void read(const kreisel::test::MemoryFile& file, const kreisel::LogOptions& opti
       (void)frame(t);
     }
     (void)frame.interpolation_error();
+    const auto sigma = smoothing_sigma(noise_of(frame.samples()));
+    const kreisel::TabulatedFrame<> smooth(frame.samples(), smoothing(frame.samples(), sigma));
+    (void)smooth(smooth.end());
   } catch (const kreisel::InvalidInput&) {  // as it should be
   }
 }

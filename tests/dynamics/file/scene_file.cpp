@@ -117,6 +117,38 @@ BOOST_AUTO_TEST_CASE(follow_a_log_beside_the_scene) {
                     SceneMistakes);
 }
 
+BOOST_AUTO_TEST_CASE(integrate_logged_rates) {
+  const test::Scratch folder;
+  std::string table = "t,wx,wy,wz,ax,ay,az\n";
+  RatesLog log;
+  for (int i = 0; i <= 10; ++i) {
+    const double t = 0.5 * i;
+    log.times.push_back(t);
+    log.angular_velocities.emplace_back(0.25 * i, -0.125, 0);
+    log.accelerations.emplace_back(0, 0.5 * i, 9.75);
+    table += std::to_string(t) + "," + std::to_string(0.25 * i) + ",-0.125,0,0," +
+             std::to_string(0.5 * i) + ",9.75\n";
+  }
+  (void)folder.write("log.csv", table);
+  const auto read = [&](const std::string& keys, const std::string& more = "") {
+    const std::string text =
+        "[guide]\nkind = \"rates\"\nfile = \"log.csv\"\n" + keys + more + body + run;
+    return make_guide(parse_scene(text, folder.path() / "scene.toml"));
+  };
+  const Vector3<double> gravity(0, 0, -9.75);
+  check_same(
+      read("gravity = [0, 0, -9.75]\nattitude = [0, 1, 0, 0]\norigin_velocity = [1, 2, 3]\n"),
+      RatesFrame<>(log, {{0, 1, 0, 0}, {1, 2, 3}, gravity}));
+  check_same(read("", "[gravity]\nkind = \"inertial\"\nvector = [0, 0, -9.75]\n"),
+             RatesFrame<>(log, {Eigen::Quaterniond::Identity(), {0, 0, 0}, gravity}));
+  check_same(read("acceleration = \"kinematic\"\n"), RatesFrame<>(log));
+  BOOST_CHECK_THROW((void)read(""), SceneMistakes);
+  BOOST_CHECK_THROW((void)read("acceleration = \"kinematic\"\ngravity = [0, 0, 1]\n"),
+                    SceneMistakes);
+  BOOST_CHECK_THROW((void)read("gravity = [0, 0, 1]\nattitude = [2, 0, 0, 0]\n"), SceneMistakes);
+  BOOST_CHECK_THROW((void)read("gravity = [0, 0, 1]\nsigma = -1\n"), SceneMistakes);
+}
+
 BOOST_AUTO_TEST_CASE(chain_as_the_library_has_it) {
   struct Earth;
   struct Ship;
