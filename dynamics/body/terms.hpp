@@ -19,19 +19,10 @@ namespace kreisel::detail {
     ruled += body.name;
     ruled += "'";
   }
-  std::string missing;
-  const auto note = [&missing](bool is_there, const char* what) {
-    if (is_there) return;
-    missing += missing.empty() ? "no " : ", no ";
-    missing += what;
-  };
   const auto any_force = [&tree](double JointForce::*number) {
     return std::any_of(tree.forces().begin(), tree.forces().end(),
                        [number](const JointForce& force) { return force.*number != 0; });
   };
-  note(any_force(&JointForce::stiffness), "spring");
-  note(any_force(&JointForce::damping), "damper");
-  note(any_force(&JointForce::constant), "constant force");
   const std::string of_guide = guide_rests ? "the guide rests" : "";
   const bool has_rotors = !tree.rotors().empty();
   const bool has_loads = !tree.loaded().empty();
@@ -50,7 +41,13 @@ namespace kreisel::detail {
   list.add("guide", "T_i *F + F x (T_i F)", !guide_rests, of_guide);
   list.add("Coriolis", "V'_i x (T_i F) + F x (T_i V'_i) + T_i (F x V'_i)", !guide_rests, of_guide);
   list.add("load", falls ? field : "uniform gravity", falls, falls ? "" : "none is given");
-  list.add("load", "springs, dampers and constant forces in joints", true, missing);
+  const auto in_joints = [&](const char* name, double JointForce::*number) {
+    const bool given = any_force(number);
+    list.add("load", name, given, given ? "" : "none is given");
+  };
+  in_joints("springs in joints", &JointForce::stiffness);
+  in_joints("dampers in joints", &JointForce::damping);
+  in_joints("constant forces in joints", &JointForce::constant);
   list.add("load", "loads on bodies", has_loads, has_loads ? "" : "none is given");
   list.add("load", "R_ij of the joints", false, "eliminated; reactions() has them");
   return list;
