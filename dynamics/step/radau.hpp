@@ -140,7 +140,7 @@ class RadauIntegrator {
     bookmark(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
              step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst, rate_,
              stages_.value, tangent_, noise_, added_, effort_, rates_of_field_, fastest_, growth_,
-             steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
+             steps_to_spectrum_, looked_at_, quiet_, resumed_, barrier_.length, barrier_.steps,
              barrier_.patience, strict_.steps, strict_.patience);
   }
 
@@ -261,6 +261,7 @@ class RadauIntegrator {
   int steps_to_spectrum_ = 0;       ///< until the eigenvalues are computed anew
   double looked_at_ = 0;            ///< length of the step for which they were
   bool quiet_ = false;              ///< nothing unresolved was found to live
+  double resumed_ = 0;              ///< length of step to go on with after a stricter check
   Precaution barrier_;  ///< steps no longer than what resolves the fastest living motion
   Precaution strict_;   ///< the estimate counts as the error
   Effort effort_;

@@ -187,11 +187,9 @@ KREISEL_DEFINED void RadauIntegrator::note_spectrum() {
 }
 
 KREISEL_DEFINED double RadauIntegrator::limited(double step) const {
-  // A motion too small for the estimate has to grow as it should: with 7 stages a step of z time
-  // constants errs by 7e-15 |z|^14 of it.
-  const double time_constants =
-      std::clamp(std::pow(accuracy_.relative / 7e-15, 1.0 / 14), 1.0, 4.0);
-  const double limit = growth_ > 0 ? time_constants / growth_ : step;
+  // A motion too small for the estimate has to grow as it should: a step of 3 time constants errs by
+  // 2e-9 of it.
+  const double limit = growth_ > 0 ? 3 / growth_ : step;
   return std::min({step, limit, barrier_.steps > 0 ? barrier_.length : step});
 }
 
@@ -387,6 +385,7 @@ KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most
     const double shortened = std::abs(h) / rejected_.step;
     if (worst > rejected_.worst * std::pow(shortened, 4)) strict_.take();
   }
+  if (fastest == 0 && worst < 1) resumed_ = std::max(resumed_, std::abs(h));
   rejected_ = {t() + h, std::abs(h), worst};
 }
 
@@ -421,7 +420,7 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
   if (worst >= 1 && !lives && (again || effort_.steps == 0 || is_new)) {
     worst = filtered_estimate(field);
   }
-  const bool sampled = strict_.steps > 0 || std::fmod(effort_.steps, 32) == 4;
+  const bool sampled = strict_.steps > 0 || std::fmod(effort_.steps, 64) == 4;
   const bool strict = sampled || lives;
   if (strict) worst = estimate_beyond_rounding();
   double most = 1;
@@ -438,6 +437,8 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
   barrier_.steps = std::max(barrier_.steps - 1, 0);
   strict_.steps = std::max(strict_.steps - 1, 0);
   set_next_step(h, std::max(worst, 1e-8), again);
+  if (strict_.steps == 0) step_ = std::max(step_, resumed_);
+  resumed_ = 0;
   h_before_ = h;
   effort_.steps += 1;
   note_noise();

@@ -248,22 +248,31 @@ class TaylorSteps {
   }
 
   /// To where the last two terms are what a step of about `length` may err by: two, for of an even or
-  /// odd solution one of them vanishes. Where both are smaller than the three before them let expect,
-  /// as where only every fourth term is there, these count: by a ratio of terms that stays, not by one
-  /// that falls as that of 1/k!.
+  /// odd solution one of them vanishes. Where that is much longer than the unit of time, the last
+  /// step, both may have vanished, as where only every fourth term is there.
   [[nodiscard]] double reached(double length) const {
     const Vector change = length * coefficient_.col(1);
-    const double allowed = std::log(accuracy_.relative) / (order_ - 1);
-    const auto log_size = [&](int k) {
-      return std::log(sizes_.relative(coefficient_.col(k), change)) / k;
-    };
-    double steepest = std::max(log_size(order_ - 1) - allowed,
-                               log_size(order_) - std::log(accuracy_.relative) / order_);
+    const double steepest =
+        std::max(log_size(order_ - 1, change) - std::log(accuracy_.relative) / (order_ - 1),
+                 log_size(order_, change) - std::log(accuracy_.relative) / order_);
+    constexpr double much_longer = 1.25;
+    const bool looks_back = effort_.steps == 0 || std::exp(-steepest) > much_longer;
+    return std::exp(-(looks_back ? looked_back(steepest, change) : steepest));
+  }
+
+  /// log of the k-th root of the k-th term's size.
+  [[nodiscard]] double log_size(int k, const Vector& change) const {
+    return std::log(sizes_.relative(coefficient_.col(k), change)) / k;
+  }
+
+  /// -log of the reach: where the last two terms are smaller than the three before them let expect,
+  /// these count, by a ratio of terms that stays, not by one that falls as that of 1/k!.
+  [[nodiscard]] double looked_back(double steepest, const Vector& change) const {
     for (int k = order_ - 4; k < order_ - 1; ++k) {
-      const double from_this = log_size(k) - allowed;
+      const double from_this = log_size(k, change) - std::log(accuracy_.relative) / (order_ - 1);
       if (from_this - falls_[std::size_t(k - order_ + 4)] > steepest) steepest = from_this;
     }
-    return std::exp(-steepest);
+    return steepest;
   }
 
   /// What the series makes of the state in s of its units of time, from the smallest terms on.
