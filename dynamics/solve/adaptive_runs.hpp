@@ -19,6 +19,7 @@
 ///   falls(x, y)            what the error of steps at y is of that at x
 ///   may_be_rounding(x)     whether what steps at x err by, after others that erred by too much, may be
 ///                          rounding that has grown
+///   is_fine(x)             whether an error that does not fall as the steps do may be rounding
 ///   begins_near_rounding() whether the first setting errs by little more than rounding
 ///   shakes()               whether one of a pair is shaken, by pair_digits()
 ///   of_pair(r)             what it is off by for that, where rounding grows to r
@@ -85,6 +86,9 @@ class AdaptiveRuns {
     if (method_ == Method::radau13 && digits_off(task_) == 0) return false;
     return accuracy <= 5e-14 && accuracy < task_.tolerance / 50;
   }
+
+  /// The error of coarser steps may fall slower than their accuracy without rounding.
+  [[nodiscard]] static bool is_fine(double accuracy) { return accuracy <= 1e-9; }
 
   [[nodiscard]] static double falls(double from, double to) { return to / from; }
   [[nodiscard]] double tightened(double accuracy, double ratio) const {

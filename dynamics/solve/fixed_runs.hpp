@@ -45,6 +45,7 @@ class FixedRuns {
   [[nodiscard]] static bool can_look_for_rounding(const EqualLength& /*step*/, bool /*missed*/) {
     return false;
   }
+  [[nodiscard]] static bool is_fine(const EqualLength& /*step*/) { return true; }
   [[nodiscard]] bool last(const EqualLength& step) const { return step.longest <= shortest_; }
   [[nodiscard]] double falls(const EqualLength& from, const EqualLength& to) const {
     return std::pow(to.longest / from.longest, 1 / root_);

@@ -569,7 +569,8 @@ template <class Runs>
     if (too_close) digits = lost;
     const bool by_chance =
         !rounding && !too_coarse && !last_try && complete && missed.falls_by_chance(runs, setting);
-    const bool only_rounds = rounds_too_much || missed.stays(runs, setting);
+    const bool only_rounds =
+        rounds_too_much || (runs.is_fine(setting) && missed.stays(runs, setting));
     const bool stays = by_chance || (too_coarse && only_rounds);
     if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
     const bool finer_will_do = !stays && expected < runs.finer_by(setting) * task.tolerance &&

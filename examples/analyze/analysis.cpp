@@ -273,6 +273,7 @@ double field_misses(const System& system, const VectorXd& start, double period) 
 }
 
 Floquet multipliers(const System& system, const VectorXd& start, double period, double t_of_guide) {
+  constexpr double most_evaluations = 2e5;  // of one period: seconds, and 20 periods at the most
   Floquet floquet;
   floquet.period = period;
   const Directions directions(system);
@@ -283,7 +284,8 @@ Floquet multipliers(const System& system, const VectorXd& start, double period, 
         kreisel::periodic_motion(system, 0, period, start,
                                  {.held = list(joined(directions.held, cyclic)),
                                   .running = list(joined(directions.running, cyclic)),
-                                  .most_iterations = 20});
+                                  .most_iterations = 20},
+                                 {.relative = 1e-12, .most_evaluations = most_evaluations});
     floquet.start = motion.start;
     floquet.residual = motion.residual;
     const std::vector<int> kept =

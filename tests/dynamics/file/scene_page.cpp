@@ -181,7 +181,8 @@ BOOST_AUTO_TEST_CASE(two_coordinates_take_a_number_for_both) {
     }
   }
   BOOST_TEST(forces("damping = [0.1, 0.2]").at(1).damping == 0.2);
-  BOOST_TEST(contains(mistakes(one(universal + "damping = [1, 2, 3]")), "must be 2 numbers, not 3"));
+  BOOST_TEST(
+      contains(mistakes(one(universal + "damping = [1, 2, 3]")), "must be 2 numbers, not 3"));
   BOOST_TEST(contains(mistakes(one(universal + "damping = true")), "must be a number, not true"));
   BOOST_TEST(contains(mistakes(one(universal + "damping = -0.1")), "must not be below 0"));
   const auto of_ball = scene(one(ball + "damping = 0.3")).bodies.at(0).forces;
