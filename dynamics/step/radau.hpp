@@ -260,7 +260,7 @@ class RadauIntegrator {
   double growth_ = 0;               ///< the greatest real part, beyond rounding
   int steps_to_spectrum_ = 0;       ///< until the eigenvalues are computed anew
   double looked_at_ = 0;            ///< length of the step for which they were
-  bool quiet_ = false;              ///< nothing unresolved was found to live
+  int quiet_ = 0;                   ///< steps for which nothing unresolved is taken to live
   double resumed_ = 0;              ///< length of step to go on with after a stricter check
   Precaution barrier_;  ///< steps no longer than what resolves the fastest living motion
   Precaution strict_;   ///< the estimate counts as the error

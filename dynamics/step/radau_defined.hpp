@@ -157,7 +157,7 @@ KREISEL_DEFINED void RadauIntegrator::begin_step(StiffField& field, double goal)
   if (step_ == 0) step_ = sizes_.first_step(rate_);
   note_jacobian(field);
   const bool at_jump = std::find(jumps_.begin(), jumps_.end(), t()) != jumps_.end();
-  if (at_jump) quiet_ = false;
+  if (at_jump) quiet_ = 0;
   if (steps_to_spectrum_ == 0 || at_jump || step_ > 2 * looked_at_) note_spectrum();
   steps_to_spectrum_ = std::max(steps_to_spectrum_ - 1, 0);
   before_ = {time_, state_};
@@ -181,7 +181,7 @@ KREISEL_DEFINED void RadauIntegrator::note_spectrum() {
     fastest_ = std::max(fastest_, std::abs(rate));
     if (rate.real() > rounding) growth_ = std::max(growth_, rate.real());
   }
-  if (fastest_ > 2 * fastest_before) quiet_ = false;
+  if (fastest_ > 2 * fastest_before) quiet_ = 0;
   steps_to_spectrum_ = steps_between;
   looked_at_ = step_;
 }
@@ -415,7 +415,7 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
   // and then every one, has to be as small as the accuracy.
   double worst = estimate(h);
   const Unresolved fast = unresolved(std::abs(h), std::abs(output - t()));
-  const bool is_new = fast.fastest > 0 && !quiet_;
+  const bool is_new = fast.fastest > 0 && quiet_ == 0;
   const bool lives = is_new && !(estimate_beyond_rounding() * fast.remains < least_allowed());
   if (worst >= 1 && !lives && (again || effort_.steps == 0 || is_new)) {
     worst = filtered_estimate(field);
@@ -430,8 +430,10 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
     reject(h, worst, most, lives ? fast.fastest : 0, strict);
     return false;
   }
-  if (fast.fastest > 0) {
-    quiet_ = true;
+  quiet_ = std::max(quiet_ - 1, 0);
+  if (is_new) {
+    constexpr int steps_between = 16;
+    quiet_ = steps_between;
     barrier_.patience = 8;
   }
   barrier_.steps = std::max(barrier_.steps - 1, 0);

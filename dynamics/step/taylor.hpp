@@ -91,7 +91,7 @@ class TaylorSteps {
     expand(std::abs(left));
     before_ = {time_, state_};
     double reach = scale_ * reach_;
-    while (!attempt(reach, left, goal)) reach /= 4;
+    while (!attempt(reach, left, goal)) reach = std::min(reach, std::abs(left)) / 4;
     sizes_.note(y());
     effort_.steps += 1;
     squares_ += length() * length();
