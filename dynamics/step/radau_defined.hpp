@@ -385,7 +385,7 @@ KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most
     const double shortened = std::abs(h) / rejected_.step;
     if (worst > rejected_.worst * std::pow(shortened, 4)) strict_.take();
   }
-  if (fastest == 0 && worst < 1) resumed_ = std::max(resumed_, std::abs(h));
+  if (strict && fastest == 0 && worst < 1 && rejected_.step == 0) resumed_ = std::abs(h);
   rejected_ = {t() + h, std::abs(h), worst};
 }
 

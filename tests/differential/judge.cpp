@@ -110,9 +110,18 @@ class Judge {
   /// What the samples of a log leave unknown of its motion.
   [[nodiscard]] double unknown() const { return scene_.has_log() ? 1e-5 : 0; }
 
+  /// Errors are measured by the sizes of all steps, not of outputs alone.
+  void note_way(Distance& distance, double to) const {
+    const Answer& way = answers_.way;
+    for (std::size_t i = 0; i < way.states.size() && way.times[i] <= to; ++i) {
+      distance.note(way.states[i]);
+    }
+  }
+
   void judge_by_reference(const Answer& answer) {
     Distance distance(scene_);
     for (std::size_t i = 0; i < reference_.others.size(); ++i) {
+      note_way(distance, reference_.times[i]);
       const JointValues* const y = state_at(answer, reference_.times[i]);
       const JointValues& truth = reference_.others[i];
       distance.note(truth);
@@ -151,6 +160,7 @@ class Judge {
   void judge_pair(const Answer& a, const Answer& b) {
     Distance distance(scene_);
     for (std::size_t i = 0; i < std::min(a.states.size(), b.states.size()); ++i) {
+      note_way(distance, a.times[i]);
       distance.note(a.states[i]);
       distance.note(b.states[i]);
       const double off = distance(a.states[i], b.states[i]);

@@ -1,5 +1,6 @@
 #include "runs.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <examples/simulate/model.hpp>
 #include <exception>
@@ -78,6 +79,15 @@ Answer run_by(const Model& model, const Scene& scene, const kreisel::SceneFile& 
   return answer;
 }
 
+/// The same scene at 300 times between its outputs.
+kreisel::SceneFile with_many_outputs(kreisel::SceneFile file) {
+  constexpr int many = 300;
+  file.tolerance = std::max(file.tolerance, 1e-6);
+  file.output_times.clear();
+  for (int i = 0; i <= many; ++i) file.output_times.push_back(i * (file.t_end / many));
+  return file;
+}
+
 /// Terms that the report both keeps and drops.
 std::vector<std::string> contradictions(const kreisel::Terms& terms) {
   std::set<std::string> kept;
@@ -117,6 +127,8 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
       begin(method);
       answers.by_method.push_back(run_by(*model, scene, file, method, limits));
     }
+    begin("sizes");
+    answers.way = run_by(*model, scene, with_many_outputs(file), "auto", limits);
   } catch (const std::exception& error) {
     answers.refused = error.what();
   }

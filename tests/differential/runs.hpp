@@ -43,6 +43,7 @@ struct Answer {
 struct Answers {
   std::string refused = {};  ///< by the reader or when the system was made
   std::vector<Answer> by_method = {};
+  Answer way = {};  ///< at many times and roughly, for the sizes that errors are measured by
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
 };
 

@@ -113,7 +113,9 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
     auto start = system.rest();
     for (double& q : start.coordinates) q += sample.uniform(-0.5, 0.5);
     for (double& v : start.rates) v = sample.uniform(-1, 1);
-    Task task{.times = {0.5, 1, 1.5, 2}, .tolerance = 1e-13, .method = Method::verner98};
+    // So often that the sizes by which errors count, those of all steps, are those of the outputs.
+    Task task{.times = {}, .tolerance = 1e-13, .method = Method::verner98};
+    for (int i = 0; i <= 200; ++i) task.times.push_back(0.01 * i);
     const auto truth = solve(system, start, task);
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
       task.tolerance = tolerance;
@@ -318,7 +320,8 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
     c.task.offer_bookmark = [&](const auto& bookmark) { bookmarks.push_back(bookmark()); };
     const auto whole = solve(system, start, c.task);
     BOOST_TEST(whole.report.method == c.method);
-    BOOST_TEST(*std::max_element(whole.errors.begin(), whole.errors.end()) ==
+    // Runs are also compared between outputs.
+    BOOST_TEST(*std::max_element(whole.errors.begin(), whole.errors.end()) <=
                whole.report.error_estimate);
     BOOST_TEST((bookmarks.size() >= c.task.times.size()) == c.begins_again, bookmarks.size());
     for (const auto& bookmark : bookmarks) {
