@@ -140,8 +140,8 @@ class RadauIntegrator {
     bookmark(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
              step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst, rate_,
              stages_.value, tangent_, noise_, added_, effort_, rates_of_field_, fastest_, growth_,
-             steps_to_spectrum_, looked_at_, quiet_, resumed_, barrier_.length, barrier_.steps,
-             barrier_.patience, strict_.steps, strict_.patience);
+             steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
+             barrier_.patience);
   }
 
  private:
@@ -157,11 +157,12 @@ class RadauIntegrator {
     double worst = 0;
   };
 
-  /// For how many steps a precaution is still taken, and for how many it will be the next time.
-  struct Precaution {
+  /// The longest step that resolves the fastest living motion: for how many steps it is kept to, and
+  /// for how many it will be the next time.
+  struct Barrier {
+    double length = 0;
     int steps = 0;
     int patience = 8;
-    double length = 0;
 
     void take() {
       steps = patience;
@@ -203,7 +204,7 @@ class RadauIntegrator {
   KREISEL_DECLARED void set_next_step(double h, double worst, bool again);
 
   /// Shortens the next step after one of length h that erred by so much.
-  KREISEL_DECLARED void reject(double h, double worst, double most, double fastest, bool strict);
+  KREISEL_DECLARED void reject(double h, double worst, double most, double fastest);
 
   KREISEL_DECLARED void evaluate(StiffField& field, double t, const Eigen::VectorXd& y,
                                  double* result);
@@ -261,9 +262,7 @@ class RadauIntegrator {
   int steps_to_spectrum_ = 0;       ///< until the eigenvalues are computed anew
   double looked_at_ = 0;            ///< length of the step for which they were
   int quiet_ = 0;                   ///< steps for which nothing unresolved is taken to live
-  double resumed_ = 0;              ///< length of step to go on with after a stricter check
-  Precaution barrier_;  ///< steps no longer than what resolves the fastest living motion
-  Precaution strict_;   ///< the estimate counts as the error
+  Barrier barrier_;
   Effort effort_;
 };
 

@@ -370,8 +370,7 @@ KREISEL_DEFINED double RadauIntegrator::estimate_beyond_rounding() {
   return sizes_.relative(point_, change_) / allowed_;
 }
 
-KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most, double fastest,
-                                             bool strict) {
+KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most, double fastest) {
   const double root = 1.0 / (stages() + 1);
   stages_.value = kept_;
   effort_.rejected += 1;
@@ -380,12 +379,7 @@ KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most
   if (fastest > 0) {
     barrier_.length = 2 / fastest;
     barrier_.take();
-  } else if (strict && rejected_.step != 0 && strict_.steps == 0) {
-    // An oscillation that the step does not resolve: its estimate falls with no power of the length.
-    const double shortened = std::abs(h) / rejected_.step;
-    if (worst > rejected_.worst * std::pow(shortened, 4)) strict_.take();
   }
-  if (strict && fastest == 0 && worst < 1 && rejected_.step == 0) resumed_ = std::abs(h);
   rejected_ = {t() + h, std::abs(h), worst};
 }
 
@@ -411,23 +405,21 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
     return false;
   }
   // The estimate is of lower order and held against more than is allowed, which a motion of less than
-  // that can hide behind, if the steps do not resolve it. One that is left at the next output, and now
-  // and then every one, has to be as small as the accuracy.
+  // that can hide behind, if the steps do not resolve it: one that is left at the next output has to be
+  // as small as the accuracy.
   double worst = estimate(h);
   const Unresolved fast = unresolved(std::abs(h), std::abs(output - t()));
   const bool is_new = fast.fastest > 0 && quiet_ == 0;
   const bool lives = is_new && !(estimate_beyond_rounding() * fast.remains < least_allowed());
-  if (worst >= 1 && !lives && (again || effort_.steps == 0 || is_new)) {
+  if (lives) {
+    worst = estimate_beyond_rounding();
+  } else if (worst >= 1 && (again || effort_.steps == 0 || is_new)) {
     worst = filtered_estimate(field);
   }
-  const bool sampled = strict_.steps > 0 || std::fmod(effort_.steps, 64) == 4;
-  const bool strict = sampled || lives;
-  if (strict) worst = estimate_beyond_rounding();
-  double most = 1;
-  if (lives) most = std::min(1.0, least_allowed() / fast.remains);
-  if (sampled || jumps_within(h, worst)) most = least_allowed();
+  double most = lives ? std::min(1.0, least_allowed() / fast.remains) : 1;
+  if (jumps_within(h, worst)) most = least_allowed();
   if (!(worst < most)) {
-    reject(h, worst, most, lives ? fast.fastest : 0, strict);
+    reject(h, worst, most, lives ? fast.fastest : 0);
     return false;
   }
   quiet_ = std::max(quiet_ - 1, 0);
@@ -437,10 +429,7 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
     barrier_.patience = 8;
   }
   barrier_.steps = std::max(barrier_.steps - 1, 0);
-  strict_.steps = std::max(strict_.steps - 1, 0);
   set_next_step(h, std::max(worst, 1e-8), again);
-  if (strict_.steps == 0) step_ = std::max(step_, resumed_);
-  resumed_ = 0;
   h_before_ = h;
   effort_.steps += 1;
   note_noise();
