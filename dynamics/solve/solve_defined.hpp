@@ -505,7 +505,8 @@ template <class Runs>
         hold_beside(*fine);
         for (RunSoFar& other : others) hold_beside(other);
         double noise = coarse->noise();
-        if (rounding) {
+        // Coarse steps beside a stiff motion go ways of their own when shaken, and that is no growth.
+        if (rounding && !coarse->changed_to()) {
           const double now = rounding->at(t, end);
           noise = worse(noise, now);
           grown_to = worse(grown_to, now);
@@ -537,12 +538,13 @@ template <class Runs>
     }
     spend_on_others();
     const bool complete = report.status == RunStatus::complete;
-    const bool unsure = pair_is_shaken && !looks_for_rounding &&
+    const bool implicit = coarse->changed_to().has_value();
+    const bool unsure = !implicit && pair_is_shaken && !looks_for_rounding &&
                         report.error_estimate > task.tolerance / 8 &&
                         runs.can_look_for_rounding(setting, missed.error > 0);
     // The shaken one is off by so much for having been shaken.
-    const bool shaken_too_much =
-        pair_is_shaken && !rounds_too_much && runs.of_pair(grown_to) > report.error_estimate / 3;
+    const bool shaken_too_much = !implicit && pair_is_shaken && !rounds_too_much &&
+                                 runs.of_pair(grown_to) > report.error_estimate / 3;
     bool asks_again = false;
     if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
       asks_again = complete && rounds_too_much && !last_try && cheap.refine(grown_to, setting);

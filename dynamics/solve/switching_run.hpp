@@ -129,7 +129,8 @@ class SwitchingRun final : public SteppedRun {
   void read(double t, double* y) override { run_->read(t, y); }
 
   [[nodiscard]] Effort effort() const override { return sum(finished_, run_->effort()); }
-  [[nodiscard]] double noise() const override { return noise_ + run_->noise(); }
+  /// Of the last method: what is stiff and damped forgets the noise of explicit steps.
+  [[nodiscard]] double noise() const override { return run_->noise(); }
   [[nodiscard]] std::optional<Method> changed_to() const override {
     if (changes_.empty()) return std::nullopt;
     return method_;
@@ -166,7 +167,7 @@ class SwitchingRun final : public SteppedRun {
     if (now != method_) run_ = run_by(now, vector_of<Eigen::VectorXd>(run_->state()));
     method_ = now;
     SteppedRun::pass(bookmark);
-    bookmark(finished_, noise_, next_look_, needless_);
+    bookmark(finished_, next_look_, needless_);
     run_->pass(bookmark);
   }
 
@@ -212,7 +213,6 @@ class SwitchingRun final : public SteppedRun {
 
   void adopt(Method method, std::unique_ptr<SteppedRun> run, double t) {
     finished_ = sum(finished_, run_->effort());
-    noise_ += run_->noise();
     changes_.push_back({t, method});
     method_ = method;
     run_ = std::move(run);
@@ -268,7 +268,6 @@ class SwitchingRun final : public SteppedRun {
   std::unique_ptr<SteppedRun> run_;
   std::vector<Change> changes_;
   Effort finished_;  ///< of the methods before
-  double noise_ = 0;
   double next_look_ = first_look;
   int needless_ = 0;  ///< steps of radau13 in turn that explicit ones could have made
 };
