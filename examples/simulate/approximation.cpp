@@ -15,6 +15,7 @@
 
 #include "../analyze/steady.hpp"
 #include "gimbal_motion.hpp"
+#include "measured.hpp"
 
 using Eigen::VectorXd;
 using kreisel::InvalidInput;
@@ -22,12 +23,6 @@ using kreisel::RunStatus;
 using kreisel::Trajectory;
 
 namespace {
-
-VectorXd joined(const JointState& state) {
-  VectorXd y(state.coordinates.size() + state.rates.size());
-  y << state.coordinates, state.rates;
-  return y;
-}
 
 /// States of the linear equations about a steady motion.
 class LinearMotion {
@@ -82,12 +77,6 @@ class PrecessionMotion {
 
  private:
   System system_;
-};
-
-/// What ErrorMeasure wants to know of a system.
-struct Measured {
-  using Vector = VectorXd;
-  std::vector<int> blocks;
 };
 
 template <class Motion>

@@ -11,21 +11,11 @@
 #include <dynamics/solve/error_measure.hpp>
 #include <motor/error.hpp>
 
+#include "measured.hpp"
+
 using Eigen::VectorXd;
 
 namespace {
-
-VectorXd joined(const JointState& state) {
-  VectorXd y(state.coordinates.size() + state.rates.size());
-  y << state.coordinates, state.rates;
-  return y;
-}
-
-/// What ErrorMeasure wants to know of a system.
-struct Measured {
-  using Vector = VectorXd;
-  std::vector<int> blocks;
-};
 
 /// Thrown where a signal wants the program to end.
 struct Interrupted {};

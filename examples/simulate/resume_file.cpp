@@ -16,7 +16,7 @@
 
 namespace {
 
-constexpr std::size_t largest = std::size_t(1) << 30U;
+constexpr std::size_t largest_checkpoint = std::size_t(1) << 30U;
 
 /// The last line is the hash of all lines before it.
 std::string with_sum(const std::string& text) {
@@ -36,7 +36,7 @@ std::optional<std::string> without_sum(const std::string& text) {
 void add_table(Hash& hash, const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) {
-    hash.add(kreisel::read_text(file, largest));
+    hash.add(kreisel::read_text(file, largest_checkpoint));
   } else {
     hash.add(static_cast<double>(std::random_device()()));
   }
@@ -65,7 +65,7 @@ std::optional<Checkpoint> ResumeFile::read(std::string& why_not) const {
   why_not = "is missing";
   if (!std::filesystem::is_regular_file(place_, error)) return std::nullopt;
   why_not = "is damaged";
-  const auto text = without_sum(kreisel::read_text(place_, largest));
+  const auto text = without_sum(kreisel::read_text(place_, largest_checkpoint));
   if (!text) return std::nullopt;
   std::istringstream words(*text);
   std::string word;

@@ -23,7 +23,7 @@
 namespace {
 
 /// Of a file of rows that is gone on with: what memory holds.
-constexpr std::size_t largest = std::size_t(4) << 30U;
+constexpr std::size_t largest_table = std::size_t(4) << 30U;
 
 std::string line(const std::vector<std::string>& fields) {
   std::string text;
@@ -82,7 +82,7 @@ RowFile::Row RowFile::parsed(std::string_view text, std::size_t number) const {
 }
 
 std::vector<RowFile::Row> RowFile::read_rows() {
-  const std::string text = kreisel::read_text(place_, largest);
+  const std::string text = kreisel::read_text(place_, largest_table);
   if (!std::filesystem::is_regular_file(place_)) refuse("--resume: is no file that holds rows");
   file_ = ::open(place_.c_str(), O_RDWR | O_CLOEXEC);  // NOLINT: how POSIX has it
   if (file_ < 0) refuse(std::strerror(errno));

@@ -64,7 +64,7 @@ class RowFile {
   void lock() const;
   void put(const std::string& text);
   void write_held();
-  Row parsed(std::string_view line, std::size_t number) const;
+  [[nodiscard]] Row parsed(std::string_view line, std::size_t number) const;
   [[noreturn]] void refuse(const std::string& why) const;
   [[noreturn]] void fail(const std::string& why) const;
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+#include "../shared/joints.hpp"
+
+/// Coordinates and rates of joints as one vector.
+[[nodiscard]] inline Eigen::VectorXd joined(const JointState& state) {
+  Eigen::VectorXd y(state.coordinates.size() + state.rates.size());
+  y << state.coordinates, state.rates;
+  return y;
+}
+
+/// The blocks of a system's state, for kreisel::detail::ErrorMeasure.
+struct Measured {
+  using Vector = Eigen::VectorXd;
+  std::vector<int> blocks;
+};
