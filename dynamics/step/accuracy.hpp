@@ -117,6 +117,13 @@ class BlockSizes {
     for (Block& block : blocks_) block.size = larger(block.size, norm(y, block));
   }
 
+  /// Takes over the sizes that blocks have had before.
+  void know(std::span<const double> sizes) {
+    for (std::size_t i = 0; i < std::min(sizes.size(), blocks_.size()); ++i) {
+      blocks_[i].size = larger(blocks_[i].size, Number(Scalar(sizes[i])));
+    }
+  }
+
   /// The greatest size of each block so far, at least the smallest that counts; of packs the greatest
   /// lane's.
   [[nodiscard]] std::vector<Scalar> sizes() const {

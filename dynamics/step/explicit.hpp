@@ -77,6 +77,9 @@ class ExplicitSteps {
   ///          of the field, from two stages at the same time, against what the method is stable for
   [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
+  /// Takes over the sizes that blocks have had before, which errors are measured by.
+  void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
+
   /// Times at which the field jumps (a thrust that sets in, a guide that is jerked), in any order.
   /// Steps end there exactly and see the field of their own side only.
   void stop_at(std::vector<Scalar> jumps) { jumps_ = std::move(jumps); }
@@ -94,16 +97,12 @@ class ExplicitSteps {
       detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
     const Scalar goal = detail::next_stop(t(), end, jumps_);
-    fill_stage(0, detail::on_this_side(t(), goal, jumps_), y());
+    begin_step(goal);
     if (!detail::finite(stage_[0])) detail::stop_integration(t(), "the field is not finite");
-    before_.time = time_;
-    before_.state = state_;
-    before_.rate = Memory::own(stage_[0]);
     if (step_ == Scalar(0)) step_ = first_step(goal);
-    polynomial_known_ = false;
     while (true) {
       const Scalar left = (goal - time_.value) - time_.rest;
-      const bool last = abs(left) <= abs(step_);
+      const bool last = detail::is_last(step_, left);
       const Scalar wanted = step_;
       last_stage_time_ = detail::on_this_side(goal, t(), jumps_);
       if (!attempt(last ? left : std::copysign(step_, left))) continue;
@@ -113,6 +112,28 @@ class ExplicitSteps {
       }
       return;
     }
+  }
+
+  /// A first step of length h, or to `end` if that is nearer; false, and no step, where it does not
+  /// stand.
+  [[nodiscard]] bool try_first_step(const Scalar& h, const Scalar& end) {
+    const Scalar goal = detail::next_stop(t(), end, jumps_);
+    begin_step(goal);
+    last_stage_time_ = detail::on_this_side(goal, t(), jumps_);
+    const Scalar left = goal - t();
+    return attempt(std::abs(left) <= h ? left : std::copysign(h, left));
+  }
+
+  /// The step that another run of the same field has made last, whatever this one errs by in it.
+  void follow(const ExplicitSteps& leader) {
+    const Scalar h = leader.before_.length;
+    last_stage_time_ = leader.last_stage_time_;
+    begin_step(last_stage_time_);
+    fill_stages(h, std::make_index_sequence<Tableau::stages - 1>());
+    typename Memory::Passing change = stage_.change();
+    Memory::put(change, [&](const auto& part) { return h * mean_rate(part); });
+    take(h, change);
+    time_ = leader.time_;
   }
 
   /// Whether a time lies within the last step.
@@ -337,13 +358,23 @@ class ExplicitSteps {
     while (true) {
       const Scalar ahead = std::copysign(h, goal - t());
       point = y() + ahead * before_.rate;
-      evaluate(h < most ? t() + ahead : detail::on_this_side(goal, t(), jumps_), point, bend);
+      const Scalar there = h < most ? t() + ahead : detail::on_this_side(goal, t(), jumps_);
+      if (!failure_.is_spared(t(), [&] { evaluate(there, point, bend); })) return h;
       bend -= before_.rate;
       if (!detail::finite(bend)) return h;
       const Scalar found = part * sizes_.bending_time(before_.rate, bend, h);
       if (h == most || found <= farther * h) return std::clamp(found, h, most);
       h = std::min(farther * h, most);
     }
+  }
+
+  /// The field where a step towards `goal` begins.
+  void begin_step(const Scalar& goal) {
+    fill_stage(0, detail::on_this_side(t(), goal, jumps_), y());
+    before_.time = time_;
+    before_.state = state_;
+    before_.rate = Memory::own(stage_[0]);
+    polynomial_known_ = false;
   }
 
   /// One step of length h; says whether it stood. Sets the length of the next.
@@ -355,12 +386,18 @@ class ExplicitSteps {
     using std::max;
     using std::pow;
     if (abs(h) <= Scalar(4) * std::numeric_limits<Scalar>::epsilon() * abs(t()) || h == Scalar(0)) {
+      failure_.tell(t());
       detail::stop_integration(t(), "the step has become too short to move time on");
     }
     if (effort_.evaluations > accuracy_.most_evaluations) {
       detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
     }
-    fill_stages(h, std::make_index_sequence<Tableau::stages - 1>());
+    const auto fill = [&] { fill_stages(h, std::make_index_sequence<Tableau::stages - 1>()); };
+    if (!failure_.is_spared(t(), fill)) {
+      step_ = Scalar(0.125) * abs(h);
+      effort_.rejected += 1;
+      return false;
+    }
     typename Memory::Passing change = stage_.change();
     typename Memory::Passing error = stage_.error();
     Memory::put(change, [&](const auto& part) { return h * mean_rate(part); });
@@ -377,6 +414,21 @@ class ExplicitSteps {
       return false;
     }
     rejected_ = {};
+    set_next_step(h, worst);
+    steps_taken_ += 1;
+    squares_ += h * h;
+    if (steps_taken_ % 8 == 0) look_for_stiffness();
+    if (steps_taken_ % 64 == 16) note_noise();
+    take(h, change);
+    time_.add(h);
+    return true;
+  }
+
+  void set_next_step(const Scalar& h, const Scalar& worst) {
+    using std::abs;
+    using std::exp;
+    using std::log;
+    using std::max;
     // PI: the next step answers this one's error and, a little, its change since the step before.
     constexpr Scalar little = Scalar(0.04);
     const Scalar log_worst = log(max(worst, Scalar(1e-12)));
@@ -385,17 +437,15 @@ class ExplicitSteps {
                           little * log_worst_before_);
     step_ = abs(h) * std::clamp(aim, Scalar(0.2), Scalar(5));
     log_worst_before_ = max(log_worst, Scalar(-9.21));
+  }
+
+  /// The state at the end of a step that stands.
+  void take(const Scalar& h, typename Memory::Passing change) {
     effort_.steps += 1;
-    steps_taken_ += 1;
-    squares_ += h * h;
-    if (steps_taken_ % 8 == 0) look_for_stiffness();
-    if (steps_taken_ % 64 == 16) note_noise();
     detail::shake(change, accuracy_.shaken, effort_.steps, static_cast<double>(h));
     state_.set_sum(before_.state, change);
-    time_.add(h);
     before_.length = h;
     sizes_.note(y());
-    return true;
   }
 
   void look_for_stiffness() {
@@ -537,6 +587,7 @@ class ExplicitSteps {
   int short_steps_ = 0;
   std::array<Vector, coefficients> coefficient_;  ///< the polynomial's coefficients
   Effort effort_;
+  detail::TrialFailure<Scalar> failure_;
 };
 
 }  // namespace kreisel

@@ -115,6 +115,9 @@ class RadauIntegrator {
   [[nodiscard]] const Eigen::VectorXd& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
+  /// Takes over the sizes that blocks have had before, which errors are measured by.
+  void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
+
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
 
   /// One step towards `end`, not past it.
@@ -126,6 +129,9 @@ class RadauIntegrator {
   /// The same, if a first step of length h stands; else nothing changes and false is returned.
   KREISEL_DECLARED [[nodiscard]] bool try_first_step(StiffField& field, double h, double end,
                                                      double output);
+
+  /// What the estimate of a step is held against, relative to sizes: it is of lower order than the step.
+  [[nodiscard]] double allowed() const { return allowed_; }
 
   /// The greatest rate of the field times the length of the last step.
   [[nodiscard]] double fastest_times_step() const { return fastest_ * std::abs(h_before_); }
@@ -208,6 +214,8 @@ class RadauIntegrator {
 
   KREISEL_DECLARED void evaluate(StiffField& field, double t, const Eigen::VectorXd& y,
                                  double* result);
+  /// The rate of the point that a step tries; whether there is one.
+  KREISEL_DECLARED [[nodiscard]] bool try_rate(StiffField& field, double at, double* result);
   KREISEL_DECLARED void note_jacobian(StiffField& field);
 
   /// Newton's method for  Z = h (A (x) 1) field(y + Z).
@@ -264,6 +272,7 @@ class RadauIntegrator {
   int quiet_ = 0;                   ///< steps for which nothing unresolved is taken to live
   Barrier barrier_;
   Effort effort_;
+  TrialFailure<double> failure_;
 };
 
 /// Of so many stages, made once.

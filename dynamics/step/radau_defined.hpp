@@ -216,7 +216,7 @@ KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end
   while (true) {
     const double left = (goal - time_.value) - time_.rest;
     const double wanted = limited(step_);
-    const bool last = std::abs(left) <= wanted;
+    const bool last = is_last(wanted, left);
     last_stage_time_ = on_this_side(goal, t(), jumps_);
     if (!attempt(field, last ? left : std::copysign(wanted, left), output, again)) {
       again = true;
@@ -289,6 +289,10 @@ KREISEL_DEFINED void RadauIntegrator::evaluate(StiffField& field, double t,
   field.rate(t, y, result);
 }
 
+KREISEL_DEFINED bool RadauIntegrator::try_rate(StiffField& field, double at, double* result) {
+  return failure_.is_spared(t(), [&] { evaluate(field, at, point_, result); });
+}
+
 KREISEL_DEFINED void RadauIntegrator::note_jacobian(StiffField& field) {
   effort_.jacobians += 1;
   tangent_.resize(y().size(), y().size());
@@ -312,7 +316,7 @@ KREISEL_DEFINED bool RadauIntegrator::solve_stages(StiffField& field,
       const double at = time.value + (coefficients_->node[i] * h + time.rest);
       const bool late = h > 0 ? at > last_stage_time_ : at < last_stage_time_;
       point_ = state.value + (stages_.value.col(i) + state.rest);
-      evaluate(field, late ? last_stage_time_ : at, point_, rates_.col(i).data());
+      if (!try_rate(field, late ? last_stage_time_ : at, rates_.col(i).data())) return false;
     }
     if (!finite(rates_)) return false;
     const Eigen::MatrixXd& correction = stages_.correct(rates_, h);
@@ -355,7 +359,7 @@ KREISEL_DEFINED double RadauIntegrator::estimate(double h) {
 
 KREISEL_DEFINED double RadauIntegrator::filtered_estimate(StiffField& field) {
   point_ = y() + error_;
-  evaluate(field, start_time_, point_, error_.data());
+  if (!try_rate(field, start_time_, error_.data())) return std::numeric_limits<double>::infinity();
   error_ += from_stages_;
   stages_.solve(error_);
   return sizes_.relative(error_, change_) / allowed_;
@@ -386,6 +390,7 @@ KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most
 KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, double output,
                                               bool again) {
   if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t()) || h == 0) {
+    failure_.tell(t());
     stop_integration(t(), "the step has become too short to move time on");
   }
   if (effort_.evaluations > accuracy_.most_evaluations) {

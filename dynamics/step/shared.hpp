@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -35,6 +36,34 @@ template <class Failure = ComputationFailed, class S, class... Words>
   throw Failure(text.str());
 }
 
+/// What a field throws at points that steps only try: a shorter step may not come there. Where none is
+/// short enough, that is why.
+template <class S>
+class TrialFailure {
+ public:
+  /// Whether a step from t finds rates at all points that it asks for.
+  template <class Ask>
+  [[nodiscard]] bool is_spared(const S& t, const Ask& ask) {
+    try {
+      ask();
+      return true;
+    } catch (const ComputationFailed&) {
+      last_ = std::current_exception();
+      t_ = t;
+      return false;
+    }
+  }
+
+  /// Throws it again, if it was met from t on.
+  void tell(const S& t) const {
+    if (last_ && t == t_) std::rethrow_exception(last_);
+  }
+
+ private:
+  std::exception_ptr last_;
+  S t_ = S(0);
+};
+
 inline void require_blocks(std::span<const int> blocks, int components) {
   int sum = 0;
   for (const int size : blocks) sum += size;
@@ -58,6 +87,14 @@ template <class S>
     if (on_the_way) next = jump;
   }
   return next;
+}
+
+/// Whether a step of length h is the last before what is `left`: where less than a rounding would be
+/// left behind it, it takes that too.
+template <class S>
+[[nodiscard]] bool is_last(const S& h, const S& left) {
+  using std::abs;
+  return abs(left) <= abs(h) * (S(1) + S(256) * std::numeric_limits<S>::epsilon());
 }
 
 /// Whether a field writes its rate into a vector that has its size already.
@@ -128,7 +165,7 @@ void shake(Vector& change, double digits, double step, double length) {
   using Scalar = ScalarOf<Number>;
   if (digits == 0) return;
   std::uint64_t bits = (static_cast<std::uint64_t>(step) + 1) * 0x9E3779B97F4A7C15U;
-  bits += std::bit_cast<std::uint64_t>(length);
+  bits += std::bit_cast<std::uint64_t>(length) + std::bit_cast<std::uint64_t>(digits);
   bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
   bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
   bits ^= bits >> 31U;

@@ -73,6 +73,9 @@ class TaylorSteps {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const Effort& effort() const { return effort_; }
 
+  /// Takes over the sizes that blocks have had before, which errors are measured by.
+  void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
+
   /// Times at which the field jumps, in any order. Steps end there exactly.
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
 
@@ -90,13 +93,24 @@ class TaylorSteps {
     const double left = (goal - time_.value) - time_.rest;
     expand(std::abs(left));
     before_ = {time_, state_};
+    doubted_ = {};
     double reach = scale_ * reach_;
     while (!attempt(reach, left, goal)) reach = std::min(reach, std::abs(left)) / 4;
-    sizes_.note(y());
-    effort_.steps += 1;
     squares_ += length() * length();
     if (std::fmod(effort_.steps, 4) == 1) note_noise();
     next_scale_ = reach < std::numeric_limits<double>::max() ? reach : length();
+  }
+
+  /// As ExplicitSteps::follow().
+  void follow(const TaylorSteps& leader) {
+    const double h = leader.time_.value - leader.before_.time.value;
+    scale_ = leader.scale_;
+    coefficient_.col(0) = y();
+    series_(t(), scale_, order_, coefficient_);
+    effort_.evaluations += order_;
+    before_ = {time_, state_};
+    take(h, change(h / scale_));
+    time_ = leader.time_;
   }
 
   /// Whether a time lies within the last step.
@@ -130,6 +144,16 @@ class TaylorSteps {
   /// The length of the last step.
   [[nodiscard]] double length() const { return std::abs(t() - before_.time.value); }
 
+  /// Whether the last step was short for a part of the motion, or for rounding, that is far smaller than
+  /// the accuracy but whose terms grow: half the series would do for all else.
+  [[nodiscard]] bool is_short_for_little() const {
+    const double part = length() / scale_;
+    const int half = order_ / 2;
+    const Vector middle = std::pow(part, half) * coefficient_.col(half);
+    return effort_.steps > 0 &&
+           sizes_.relative(middle, part * coefficient_.col(1)) < accuracy_.relative / 10;
+  }
+
   /// As ExplicitSteps::noise().
   [[nodiscard]] double noise() const { return 0.5 * sizes_.wander(squares_); }
 
@@ -137,7 +161,7 @@ class TaylorSteps {
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
     bookmark(time_, state_, before_.time, before_.state, scale_, reach_, next_scale_, sizes_,
-             squares_, coefficient_, effort_);
+             squares_, rounding_, coefficient_, effort_);
   }
 
  private:
@@ -148,6 +172,12 @@ class TaylorSteps {
   struct Begin {
     detail::Compensated<double> time;
     detail::Compensated<Vector> state;
+  };
+
+  /// A try at this step whose end does not solve the equation.
+  struct Doubted {
+    double length = std::numeric_limits<double>::infinity();
+    double apart = std::numeric_limits<double>::infinity();
   };
 
   /// Somewhat above the  1 - ln(accuracy)/2  of Jorba and Zou, who count coefficients alone: a step
@@ -204,9 +234,10 @@ class TaylorSteps {
 
   /// A step of at most `reach` towards `goal`, which is `left` away; says whether it stood.
   [[nodiscard]] bool attempt(double reach, double left, double goal) {
-    const bool last = !(reach < std::abs(left));
+    const bool last = detail::is_last(reach, left);
     const double h = last ? left : std::copysign(reach, left);
     if (!last && std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t())) {
+      failure_.tell(t());
       require_finite_field();
       detail::stop_integration<SeriesFailed>(t(), "the step has become too short to move time on");
     }
@@ -216,27 +247,43 @@ class TaylorSteps {
       effort_.rejected += 1;
       return false;
     }
-    detail::shake(increment, accuracy_.shaken, effort_.steps, h);
-    state_.add(increment);
+    take(h, std::move(increment));
     time_.add(h);
     if (last) time_ = {goal, 0};
     return true;
   }
 
+  /// The state at the end of a step that stands.
+  void take(double h, Vector increment) {
+    detail::shake(increment, accuracy_.shaken, effort_.steps, h);
+    state_.add(increment);
+    sizes_.note(y());
+    effort_.steps += 1;
+  }
+
   /// Whether the series has the rate of the field at the end of a step. The difference times the
   /// step is some `order` times the error of the step; rounding may make it 1e-11 of the state, and
-  /// what rounding makes of the field.
+  /// what rounding makes of the field. What falls no faster than the step does is rounding too, which
+  /// no shorter step makes good; a jump in the field leaves more.
   [[nodiscard]] bool solves_equation(double h, double end_of_step, const Vector& increment) {
     probe_.col(0) = before_.state.value + (increment + before_.state.rest);
-    series_(end_of_step, scale_, 1, probe_);
     effort_.evaluations += 1;
+    if (!failure_.is_spared(t(), [&] { series_(end_of_step, scale_, 1, probe_); })) return false;
     const double s = h / scale_;
     Vector rate = double(order_) * coefficient_.col(order_);
     for (int k = order_ - 1; k > 0; --k) rate = s * rate + double(k) * coefficient_.col(k);
     const Vector off = s * (rate - probe_.col(1));
     constexpr double rounding = 1e-11;
+    constexpr double most_rounding = 1e-7;
+    const double length = std::abs(h);
     const double allowed = std::max(100 * order_ * accuracy_.relative, rounding);
-    return sizes_.relative(off, increment, 8 * std::abs(h)) <= allowed;
+    const double apart = sizes_.relative(off, increment, 8 * length);
+    if (apart <= std::max(allowed, std::min(4 * rounding_ * length, most_rounding))) return true;
+    const double shortened = length / doubted_.length;
+    const bool rounds = apart < most_rounding && apart > doubted_.apart * std::pow(shortened, 4);
+    if (rounds) rounding_ = apart / length;
+    doubted_ = {length, apart};
+    return rounds;
   }
 
   /// How far the series carries, in units of its time.
@@ -310,8 +357,11 @@ class TaylorSteps {
   double scale_ = 1;
   double reach_ = 1;  ///< of the series, in units of scale_
   double next_scale_ = 0;
-  double squares_ = 0;  ///< of steps, summed since noise was looked at
+  double squares_ = 0;   ///< of steps, summed since noise was looked at
+  double rounding_ = 0;  ///< in the difference of two rates, per second
+  Doubted doubted_;
   Effort effort_;
+  detail::TrialFailure<double> failure_;
 };
 
 }  // namespace kreisel

@@ -249,6 +249,27 @@ BOOST_AUTO_TEST_CASE(take_back_a_step_that_leaves_the_field) {
   BOOST_TEST(near(steps.y()[0], 0.01, 1.0, 1e6));
 }
 
+// The same of a field that throws there; where it does so at every step, however short, that is told.
+BOOST_AUTO_TEST_CASE(take_back_a_step_that_the_field_refuses) {
+  const auto field = [](double, const State<1>& y) {
+    if (y[0] < 0) throw ComputationFailed("no root below 0");
+    return State<1>(-std::sqrt(y[0]));
+  };
+  ExplicitSteps steps(field, 0.0, State<1>(1.0), {.relative = 1e-10});
+  steps.advance_to(1.8);
+  BOOST_TEST(near(steps.y()[0], 0.01, 1.0, 1e6));
+
+  const auto ends = [](double t, const State<1>& y) {
+    if (t > 1) throw ComputationFailed("the road ends");
+    return State<1>(y);
+  };
+  ExplicitSteps last(ends, 0.0, State<1>(1.0));
+  BOOST_CHECK_EXCEPTION(last.advance_to(2), ComputationFailed, [](const ComputationFailed& e) {
+    return std::string(e.what()) == "the road ends";
+  });
+  BOOST_TEST(std::abs(last.t() - 1) < 1e-12);
+}
+
 BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
   const auto field = [](double t, const State<1>& y) {
     return t > 1 ? State<1>(std::numeric_limits<double>::quiet_NaN()) : State<1>(y);

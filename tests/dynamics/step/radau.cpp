@@ -261,6 +261,11 @@ BOOST_AUTO_TEST_CASE(say_what_stops_them) {
   };
   says(only_here, with(0), {}, "the step has become too short to move time on");
   says(only_here, with(0), {.most_evaluations = 100}, "100 evaluations are spent");
+  const auto throws_elsewhere = [](double, const State<1>& y) {
+    if (y[0] != 1) throw ComputationFailed("there is no rate but here");
+    return State<1>(1);
+  };
+  says(throws_elsewhere, with(0), {}, "there is no rate but here");
 }
 
 BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
