@@ -11,6 +11,7 @@
 /// Runs as solve() sets them, AdaptiveRuns and FixedRuns (fixed_runs.hpp): each kind has one setting,
 /// an accuracy or a step, which can be made finer by ten or thirty times in the error, and
 ///   method()
+///   round_less()           goes over to a method that rounds less, if there is one
 ///   first()                the setting to begin with
 ///   finer(x)               of the run beside
 ///   between(x, part)       of more runs, where rounding is all that is left: other steps than of both
@@ -40,6 +41,14 @@ class AdaptiveRuns {
       : task_(task), method_(method) {}
 
   [[nodiscard]] Method method() const { return method_; }
+
+  /// Goes over from taylor to verner98, if the method is free; says whether it did. What rounding in
+  /// the field makes many stages average, where the terms of a series may make much of it.
+  [[nodiscard]] bool round_less() {
+    if (method_ != Method::taylor || task_.method != Method::automatic) return false;
+    method_ = Method::verner98;
+    return true;
+  }
 
   static constexpr double rounding_of_radau = 24;
 
@@ -101,7 +110,7 @@ class AdaptiveRuns {
   [[nodiscard]] bool shakes() const { return method_ != Method::radau13 && digits_off(task_) > 0; }
   [[nodiscard]] double pair_digits() const { return std::min(100.0, task_.tolerance / 1e-11); }
 
-  /// Whether two more runs can tell what rounding grows to, of which one is shaken. They err by some
+  /// Whether three more runs can tell what rounding grows to, of which two are shaken. They err by some
   /// 1e-2, so that they cost little and take about the same way. Who asks for less than 1e-7 would pay
   /// most, and is hardly ever led astray.
   [[nodiscard]] bool can_look_for_rounding(double accuracy, bool missed) const {

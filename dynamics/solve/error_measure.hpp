@@ -87,6 +87,8 @@ class ErrorMeasure {
     return distance_({a.data(), std::size_t(a.size())}, {b.data(), std::size_t(b.size())});
   }
 
+  void note_sizes(std::span<const double> sizes) { distance_.note_sizes(sizes); }
+
  private:
   template <class Blocks>
   ErrorMeasure(const Blocks& blocks, double smallest)

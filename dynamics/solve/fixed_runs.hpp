@@ -16,6 +16,7 @@ class FixedRuns {
       : method_(method), root_(1.0 / order), first_{first}, shortest_(shortest) {}
 
   [[nodiscard]] Method method() const { return method_; }
+  [[nodiscard]] static bool round_less() { return false; }
   [[nodiscard]] static double rounding() { return 2.5; }
   [[nodiscard]] bool begins_near_rounding() const { return method_ == Method::gauss16; }
 

@@ -38,6 +38,7 @@ struct RunReport {
   double all_evaluations = 0;  ///< with those for the estimate and for attempts that fell short
   double run_time = 0;         ///< s, all included
   std::vector<InvariantDrift> invariants;
+  std::vector<double> sizes = {};  ///< of the parts, that the estimate is relative to
 };
 
 /// States at the output times, up to where the run came, and the report.

@@ -83,6 +83,21 @@ class SteppedRun : public Run {
   /// Writes the state at a time within the last step.
   virtual void read(double t, double* y) = 0;
 
+  /// A first step of length h, or to `end` if that is nearer; false, and no step, where it does not
+  /// stand.
+  [[nodiscard]] virtual bool try_first_step(double /*h*/, double /*end*/, double /*output*/) {
+    return false;
+  }
+
+  /// As TaylorSteps::is_short_for_little().
+  [[nodiscard]] virtual bool is_short_for_little() const { return false; }
+
+  /// Makes the step that another run of the same kind has made last, whatever this one errs by in it.
+  virtual void follow(const SteppedRun& leader) = 0;
+
+  /// Takes over the sizes that blocks have had before it began, which errors are measured by.
+  virtual void know_sizes(std::span<const double> sizes) = 0;
+
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
   void pass(Bookmark& bookmark) override { bookmark(sizes_); }

@@ -37,6 +37,28 @@ class RunOfSteps final : public SteppedRun {
     steps_.step_towards(end);
   }
 
+  [[nodiscard]] bool try_first_step(double h, double end, double /*output*/) override {
+    if constexpr (requires { steps_.try_first_step(h, end); }) {
+      from_ = steps_.t();
+      return steps_.try_first_step(h, end);
+    } else {
+      return false;
+    }
+  }
+
+  [[nodiscard]] bool is_short_for_little() const override {
+    if constexpr (requires { steps_.is_short_for_little(); }) {
+      return steps_.is_short_for_little();
+    } else {
+      return false;
+    }
+  }
+
+  void follow(const SteppedRun& leader) override {
+    from_ = steps_.t();
+    steps_.follow(static_cast<const RunOfSteps&>(leader).steps_);
+  }
+
   [[nodiscard]] double t() const override { return steps_.t(); }
   [[nodiscard]] std::span<const double> state() const override {
     return {steps_.y().data(), static_cast<std::size_t>(steps_.y().size())};
@@ -44,6 +66,7 @@ class RunOfSteps final : public SteppedRun {
   [[nodiscard]] double length() const override { return std::abs(steps_.t() - from_); }
   [[nodiscard]] bool covers(double t) const override { return steps_.covers(t); }
   void read(double t, double* y) override { write(y, steps_.at(t)); }
+  void know_sizes(std::span<const double> sizes) override { steps_.know_sizes(sizes); }
   [[nodiscard]] Effort effort() const override { return steps_.effort(); }
   [[nodiscard]] double noise() const override { return steps_.noise(); }
 

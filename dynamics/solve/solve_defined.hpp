@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <complex>
@@ -66,10 +67,9 @@ KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(double once) {
   return {Method::gauss16, 16, 2 * once, once / 2};
 }
 
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const AdaptiveRuns& runs, double setting,
-                                                        const SteppedScene& scene, const Task& task,
-                                                        const Eigen::VectorXd& start, bool moved,
-                                                        double shaken = 0) {
+KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run(
+    const AdaptiveRuns& runs, double setting, const SteppedScene& scene, const Task& task,
+    const Eigen::VectorXd& start, bool moved, double shaken = 0) {
   const bool other = moved && scene.has_other();
   const Accuracy accuracy{setting, task.smallest, task.most_evaluations, shaken};
   if (runs.method() == Method::radau13) {
@@ -217,6 +217,15 @@ class RunSoFar {
   /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
+  /// Takes the place of this one, which has cost no less than it would if it had been kept.
+  void replace_by(RunSoFar other) {
+    other.spent_before_ = spent();
+    *this = std::move(other);
+  }
+
+  /// Evaluations.
+  [[nodiscard]] double spent() const { return std::max(spent_before_, effort().evaluations); }
+
   [[nodiscard]] Effort effort() const { return run_->effort(); }
   [[nodiscard]] double noise() const { return run_->noise(); }
   [[nodiscard]] std::span<const double> sizes() const { return run_->sizes(); }
@@ -227,6 +236,7 @@ class RunSoFar {
   void pass(std::size_t done, Bookmark& bookmark) {
     if (known_ == 0) first_ = done;
     run_->pass(bookmark);
+    bookmark(spent_before_);
     std::size_t ahead = first_ + known_ - done;
     bookmark(ahead);
     for (std::size_t i = done; i < done + ahead; ++i) {
@@ -249,35 +259,49 @@ class RunSoFar {
   std::size_t first_ = 0;       ///< output it knows
   std::size_t known_ = 0;       ///< from that one on
   std::vector<double> states_;  ///< one after another
+  double spent_before_ = 0;     ///< at least
 };
 
-/// What rounding grows to, told by two runs in steps that are coarse and cheap, of which one is
-/// shaken. Beside a separatrix it may be far more than what steps err by, which cancels there.
+/// What rounding grows to, told by runs in the same steps, coarse and cheap, of which two are shaken,
+/// each otherwise, lest one chance decide: in steps of their own they would go another way for these.
+/// Beside a separatrix it may be far more than what steps err by, which cancels there.
 class GrownRounding {
  public:
   GrownRounding(const AdaptiveRuns& runs, double accuracy, const SteppedScene& scene,
                 const Task& task, const Eigen::VectorXd& start)
       : runs_(runs),
         calm_(run(runs, accuracy, scene, task, start, false)),
-        shaken_(run(runs, accuracy, scene, task, start, false, AdaptiveRuns::shaken_digits)),
         calm_state_(start),
         shaken_state_(start),
-        distance_(scene.blocks(), task.smallest) {}
+        distance_(scene.blocks(), task.smallest) {
+    double digits = AdaptiveRuns::shaken_digits;
+    for (auto& shaken : shaken_) {
+      shaken = run(runs, accuracy, scene, task, start, false, digits);
+      digits += 1;  // other digits, another way
+    }
+  }
 
   /// At t, by the measure of RunReport::error_estimate; times are asked for in turn. 0 where steps so
   /// coarse come to an end.
   [[nodiscard]] double at(double t, double end) {
     if (gave_up_) return 0;
     try {
-      calm_->on_the_way(t, end, calm_state_.data());
-      shaken_->on_the_way(t, end, shaken_state_.data());
+      while (!calm_->covers(t)) {
+        calm_->step_towards(end, t);
+        for (const auto& shaken : shaken_) shaken->follow(*calm_);
+      }
+      calm_->read(t, calm_state_.data());
+      double off = 0;
+      for (const auto& shaken : shaken_) {
+        shaken->read(t, shaken_state_.data());
+        off = worse(off, distance_(components_of(calm_state_), components_of(shaken_state_)));
+      }
+      gave_up_ = !std::isfinite(off);
+      return gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
     } catch (...) {  // what a load or a guide throws there is no fault of the answer
       gave_up_ = true;
       return 0;
     }
-    const double off = distance_(components_of(calm_state_), components_of(shaken_state_));
-    gave_up_ = !std::isfinite(off);
-    return gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
   }
 
   [[nodiscard]] bool may_be_too_much(double grown_to) const {
@@ -285,19 +309,21 @@ class GrownRounding {
   }
 
   [[nodiscard]] double evaluations() const {
-    return calm_->effort().evaluations + shaken_->effort().evaluations;
+    double sum = calm_->effort().evaluations;
+    for (const auto& shaken : shaken_) sum += shaken->effort().evaluations;
+    return sum;
   }
 
   void pass(Bookmark& bookmark) {
     bookmark(distance_, gave_up_);
     calm_->pass(bookmark);
-    shaken_->pass(bookmark);
+    for (const auto& shaken : shaken_) shaken->pass(bookmark);
   }
 
  private:
   const AdaptiveRuns& runs_;
-  std::unique_ptr<Run> calm_;
-  std::unique_ptr<Run> shaken_;
+  std::unique_ptr<SteppedRun> calm_;
+  std::array<std::unique_ptr<SteppedRun>, 2> shaken_;
   Eigen::VectorXd calm_state_;
   Eigen::VectorXd shaken_state_;
   BlockDistance distance_;
@@ -352,11 +378,9 @@ KREISEL_DECLARED [[nodiscard]] double forecast(const Task& task, double t, doubl
   return error * (ahead < 10 ? ahead : 10);
 }
 
-/// What runs of one task after another have cost, and what of the last one's error is rounding in the
-/// field.
+/// What runs of one task after another have cost.
 struct Account {
   double spent = 0;  ///< evaluations
-  double noise = 0;
 };
 
 /// Two integrations run side by side, the steps of one held many times more exact than the other's;
@@ -377,7 +401,7 @@ struct Account {
 ///
 /// Throws : InvalidInput for a bookmark that is none of these runs; an empty one is of their begin
 template <class Runs>
-[[nodiscard]] Trajectory<double> solve_in_pairs(const SteppedScene& scene, const Runs& runs,
+[[nodiscard]] Trajectory<double> solve_in_pairs(const SteppedScene& scene, Runs runs,
                                                 const Eigen::VectorXd& start, const Task& task,
                                                 const std::vector<double>& bookmark,
                                                 Account& account) {
@@ -417,12 +441,12 @@ template <class Runs>
   };
   bool coarse_starts_off = false;
   const bool has_bookmarks = runs.method() != Method::splitting;
-  const auto kind = static_cast<double>(runs.method());
   const auto pass_setting = [&](Bookmark& numbers) {
-    double own = kind;
+    auto own = static_cast<double>(runs.method());
     numbers(own, setting, missed, digits, account.spent, coarse_starts_off, pair_is_shaken,
             looks_for_rounding, cheap);
-    if (own != kind) refuse_task("the bookmark is of another method");
+    if (own == static_cast<double>(Method::verner98)) (void)runs.round_less();
+    if (own != static_cast<double>(runs.method())) refuse_task("the bookmark is of another method");
   };
   if (from) pass_setting(*from);
   std::optional<RunSoFar> coarse;
@@ -465,7 +489,7 @@ template <class Runs>
     watch.note(task.begin, components_of(start));
     std::size_t done = 0;
     const auto spend_on_others = [&] {
-      for (const RunSoFar& other : others) account.spent += other.effort().evaluations;
+      for (const RunSoFar& other : others) account.spent += other.spent();
       if (rounding) account.spent += rounding->evaluations();
     };
     const auto pass_run = [&](Bookmark& numbers) {
@@ -514,6 +538,9 @@ template <class Runs>
         }
         const double error = error_of_pair(off, runs.finer_by(setting), rounding_of(*coarse),
                                            coarse->effort().steps, noise);
+        if (last_try && !std::isfinite(error)) {
+          stop_integration(t, "the state has grown beyond the range of numbers");
+        }
         report.error_estimate = worse(report.error_estimate, error);
         missed.note(done, report.error_estimate);
         expected = forecast(task, t, report.error_estimate);
@@ -556,23 +583,28 @@ template <class Runs>
       if (shaken_too_much) {
         pair_is_shaken = false;
         std::optional<RunSoFar>& shaken = coarse_starts_off ? coarse : fine;
-        account.spent += shaken->effort().evaluations;
+        account.spent += shaken->spent();
         shaken.reset();
       }
-      if (coarse && !coarse->knows_all()) coarse.reset();
-      if (fine && !fine->knows_all()) fine.reset();
+      const auto begin_again = [&](std::optional<RunSoFar>& from_output, auto at, double moved) {
+        if (from_output && !from_output->knows_all()) from_output->replace_by(run_with(at, moved));
+      };
+      begin_again(coarse, setting, coarse_starts_off ? digits : 0);
+      begin_again(fine, runs.finer(setting), coarse_starts_off ? 0 : digits);
       continue;
     }
-    account.spent += coarse->effort().evaluations;
+    account.spent += coarse->spent();
     // Rounding on a long way does more than to move the start by a digit.
     const bool rounding_is_known = rounding && !last_try;
     const double lost = rounding_is_known ? 0 : runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
     if (too_close) digits = lost;
-    const bool by_chance =
-        !rounding && !too_coarse && !last_try && complete && missed.falls_by_chance(runs, setting);
+    const bool is_fine = runs.is_fine(setting);
+    const bool by_chance = !rounding && !too_coarse && !last_try && complete && is_fine &&
+                           missed.falls_by_chance(runs, setting);
+    // Of implicit steps the error falls slower than of explicit ones.
     const bool only_rounds =
-        rounds_too_much || (runs.is_fine(setting) && missed.stays(runs, setting));
+        rounds_too_much || (!implicit && is_fine && missed.stays(runs, setting));
     const bool stays = by_chance || (too_coarse && only_rounds);
     if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
     const bool finer_will_do = !stays && expected < runs.finer_by(setting) * task.tolerance &&
@@ -582,14 +614,26 @@ template <class Runs>
       coarse_starts_off = !coarse_starts_off;
       known = 0;
       if (!fine->knows_all()) {
-        fine.emplace(run_with(setting, coarse_starts_off ? digits : 0));
+        fine->replace_by(run_with(setting, coarse_starts_off ? digits : 0));
         for (std::size_t i = 0; i <= done; ++i) better_at_output(*fine, i);
       }
       coarse.emplace(std::move(*fine));
       fine.reset();
       continue;
     }
-    account.spent += fine->effort().evaluations;
+    account.spent += fine->spent();
+    if (stays && runs.round_less()) {
+      setting = runs.first();
+      missed = {setting};
+      digits = digits_off(task);
+      grown_to = 0;
+      cheap = {};
+      known = 0;
+      coarse_starts_off = false;
+      coarse.reset();
+      fine.reset();
+      continue;
+    }
     // What the digits grow to may hide what the steps err by.
     if (too_coarse || by_chance || (too_close && complete)) {
       known = too_coarse || by_chance ? 0 : report.error_estimate;
@@ -609,8 +653,8 @@ template <class Runs>
     }
     report.method = name(coarse->changed_to().value_or(runs.method()));
     report.changes = coarse->changes();
+    report.sizes = distance.sizes();
     report.effort = coarse->effort();
-    account.noise = coarse->noise();
     report.all_evaluations = account.spent;
     report.tolerance_kept =
         report.status != RunStatus::failed && report.error_estimate <= task.tolerance;
@@ -709,8 +753,7 @@ KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
     if (evaluations < 10 * account.spent) {
       or_by(scene.knows_series() ? Method::taylor : Method::verner98, by_steps);
     }
-  } else if (missed() && scene.knows_series() &&
-             account.noise > std::max(1e-13, task.tolerance / 30)) {
+  } else if (missed() && result.report.method == name(Method::taylor)) {
     // What rounding in the field makes of it many stages average.
     or_by(Method::verner98, by_steps);
   }

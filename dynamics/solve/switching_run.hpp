@@ -57,10 +57,16 @@ class RadauRun final : public SteppedRun {
     steps_.step_towards(*field_, end, output);
   }
 
+  /// Implicit steps forget what they err by: they need not be the same.
+  void follow(const SteppedRun& leader) override {
+    while (t() != leader.t()) step_towards(leader.t(), leader.t());
+  }
+
   /// As RadauIntegrator::try_first_step.
-  [[nodiscard]] bool try_first_step(double h, double end, double output) {
+  [[nodiscard]] bool try_first_step(double h, double end, double output) override {
     return steps_.try_first_step(*field_, h, end, output);
   }
+  [[nodiscard]] double allowed() const { return steps_.allowed(); }
   [[nodiscard]] double fastest_times_step() const { return steps_.fastest_times_step(); }
 
   [[nodiscard]] double t() const override { return steps_.t(); }
@@ -73,6 +79,7 @@ class RadauRun final : public SteppedRun {
     const Eigen::VectorXd there = steps_.at(*field_, t);
     std::copy_n(there.data(), there.size(), y);
   }
+  void know_sizes(std::span<const double> sizes) override { steps_.know_sizes(sizes); }
 
   [[nodiscard]] Effort effort() const override { return steps_.effort(); }
   [[nodiscard]] double noise() const override { return steps_.noise(); }
@@ -89,7 +96,8 @@ class RadauRun final : public SteppedRun {
 };
 
 /// A run of verner98 or taylor that goes on by radau13 from the state it has reached, where that takes
-/// fewer evaluations, and back; and by verner98 where the series of taylor cannot go on.
+/// fewer evaluations, and back; and by verner98 where the series of taylor cannot go on, or only in
+/// short steps.
 ///
 /// A field is stiff where stability keeps explicit steps short for a motion that is damped away. That
 /// is decided by trial: one step of radau13, ten times as long, has to stand, and it does not while an
@@ -103,6 +111,7 @@ class SwitchingRun final : public SteppedRun {
         other_(other),
         accuracy_(accuracy),
         first_(first),
+        explicit_(first),
         method_(first),
         // Beyond 200 components factorisations would outweigh everything.
         looks_((first == Method::verner98 || scene.may_be_stiff()) && start.size() <= 200) {
@@ -113,7 +122,8 @@ class SwitchingRun final : public SteppedRun {
   }
 
   void step_towards(double end, double output) override {
-    if (looks_) choose_method(end, output);
+    choose_method(end, output);
+    if (run_->covers(output)) return;  // by the step of the trial
     try {
       run_->step_towards(end, output);
     } catch (const SeriesFailed&) {
@@ -122,11 +132,18 @@ class SwitchingRun final : public SteppedRun {
     }
   }
 
+  void follow(const SteppedRun& other) override {
+    const auto& leader = static_cast<const SwitchingRun&>(other);
+    if (leader.method_ != method_) change_to(leader.method_);
+    run_->follow(*leader.run_);
+  }
+
   [[nodiscard]] double t() const override { return run_->t(); }
   [[nodiscard]] std::span<const double> state() const override { return run_->state(); }
   [[nodiscard]] double length() const override { return run_->length(); }
   [[nodiscard]] bool covers(double t) const override { return run_->covers(t); }
   void read(double t, double* y) override { run_->read(t, y); }
+  void know_sizes(std::span<const double> sizes) override { run_->know_sizes(sizes); }
 
   [[nodiscard]] Effort effort() const override { return sum(finished_, run_->effort()); }
   /// Of the last method: what is stiff and damped forgets the noise of explicit steps.
@@ -162,6 +179,7 @@ class SwitchingRun final : public SteppedRun {
                          to == static_cast<double>(first_);
       if (!known) refuse_task("the bookmark is not of this run");
       change.to = static_cast<Method>(static_cast<int>(to));
+      if (change.to != Method::radau13) explicit_ = change.to;
     }
     const Method now = changes_.empty() ? first_ : changes_.back().to;
     if (now != method_) run_ = run_by(now, vector_of<Eigen::VectorXd>(run_->state()));
@@ -208,13 +226,16 @@ class SwitchingRun final : public SteppedRun {
 
   void change_to(Method method) {
     const Eigen::VectorXd y = present();
-    adopt(method, run_by(method, y), run_->t());
+    auto run = run_by(method, y);
+    run->know_sizes(sizes());
+    adopt(method, std::move(run), run_->t());
   }
 
   void adopt(Method method, std::unique_ptr<SteppedRun> run, double t) {
     finished_ = sum(finished_, run_->effort());
     changes_.push_back({t, method});
     method_ = method;
+    if (method != Method::radau13) explicit_ = method;
     run_ = std::move(run);
     needless_ = 0;
     next_look_ = first_look;
@@ -223,13 +244,30 @@ class SwitchingRun final : public SteppedRun {
   void choose_method(double end, double output) {
     if (method_ != Method::radau13) {
       if (run_->effort().steps < next_look_) return;
-      next_look_ *= try_radau(end, output) ? 1.25 : 2;
+      if (run_->is_short_for_little() && try_verner98(end, output)) return;
+      next_look_ *= looks_ && try_radau(end, output) ? 1.25 : 2;
       return;
     }
     // Where its steps are so short explicit ones are as long.
     const auto& radau = static_cast<const RadauRun&>(*run_);
     needless_ = radau.fastest_times_step() < 1 ? needless_ + 1 : 0;
-    if (needless_ >= 50) change_to(first_);
+    if (needless_ >= 50) change_to(explicit_);
+  }
+
+  /// Goes over from taylor to verner98 where steps more than twice as long stand: terms make much of a
+  /// fast rotation of what is round but for rounding, stages do not.
+  [[nodiscard]] bool try_verner98(double end, double output) {
+    const Eigen::VectorXd y = present();
+    auto trial = run_by(Method::verner98, y);
+    trial->know_sizes(sizes());
+    const double from = run_->t();
+    const bool pays = trial->try_first_step(3 * run_->length(), end, output);
+    if (pays) {
+      adopt(Method::verner98, std::move(trial), from);
+    } else {
+      finished_ = sum(finished_, trial->effort());
+    }
+    return pays;
   }
 
   /// Goes over to radau13 where that pays; else says whether it may later on.
@@ -244,16 +282,24 @@ class SwitchingRun final : public SteppedRun {
       change_to(Method::radau13);
       return true;
     }
-    // A series of order 20 follows what oscillates in steps of 2 radians.
-    if (speed * run_->length() < 1.5) return false;
+    // A series of order 20 follows what oscillates in steps of 2 radians. What is forced through a mode
+    // that is well damped explicit steps follow in shorter ones; and what dies before anybody looks
+    // implicit ones may damp, which costs no more from twice the length on.
+    const double angle = speed * run_->length();
+    if (angle < 0.2) return false;
     auto trial = radau_run(y, accuracy_);
+    const double remains = std::exp(fastest.real() * std::abs(output - run_->t()));
+    const bool dies = remains * trial->allowed() < accuracy_.relative;
+    const bool well_damped = fastest.real() < -0.2 * speed;
+    if (angle < 1.5 && !well_damped && !dies) return false;
+    trial->know_sizes(sizes());
     const double from = run_->t();
-    if (trial->try_first_step(10 * run_->length(), end, output)) {
+    if (trial->try_first_step((dies ? 2 : 10) * run_->length(), end, output)) {
       adopt(Method::radau13, std::move(trial), from);
     } else {
       finished_ = sum(finished_, trial->effort());
     }
-    return fastest.real() < 0;
+    return fastest.real() < 0 && angle >= 1.5;
   }
 
   static constexpr double first_look = 16;  // steps
@@ -262,6 +308,7 @@ class SwitchingRun final : public SteppedRun {
   bool other_;
   Accuracy accuracy_;
   Method first_;
+  Method explicit_;  ///< the last one before radau13
   Method method_;
   bool looks_;
   Task here_;  ///< begins at the state from which the last method began

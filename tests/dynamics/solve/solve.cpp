@@ -105,7 +105,7 @@ void tells_its_error_honestly(Method method) {
   BOOST_TEST_MESSAGE(name(method) << ": " << honesty.within << " of " << honesty.runs
                                   << " in [0.1, 1], greatest " << honesty.greatest << ", dearest "
                                   << honesty.dearest);
-  BOOST_TEST(honesty.dearest <= 5);
+  BOOST_TEST(honesty.dearest <= 5.5);
   BOOST_TEST(honesty.within >= 0.95 * honesty.runs);
   BOOST_TEST(honesty.greatest <= 3);
   BOOST_TEST(honesty.promises_kept);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
 }
 
 // A pair of runs costs 1 + 10^(1/9) = 2.29 of the coarser one, or more by a rejected step and the
-// steps that end at the middle, and two at 1e-3 in place of 1e-10 cost 2 10^(-7/9) = 0.33; outputs cost
+// steps that end at the middle, and three at 1e-3 in place of 1e-10 cost 3 10^(-7/9) = 0.5; outputs cost
 // ten evaluations in each step that has some, and none where the steps are series.
 BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   const EulerTop top({1, 1.7, 2.4});
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   BOOST_TEST(with(0.01, Method::taylor).all_evaluations <=
              1.02 * with(100, Method::taylor).all_evaluations);
   const RunReport few = with(100);
-  BOOST_TEST(few.all_evaluations <= 2.8 * few.effort.evaluations);
+  BOOST_TEST(few.all_evaluations <= 2.95 * few.effort.evaluations);
   const RunReport loose =
       solve(top, start, {.times = {100}, .tolerance = 1e-6, .method = Method::verner98}).report;
   BOOST_TEST(loose.all_evaluations <= 2.35 * loose.effort.evaluations);

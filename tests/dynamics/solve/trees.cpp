@@ -305,7 +305,8 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
   long_times.push_back(30);
   const Case cases[] = {
       {{swinging, free}, {.times = times}, "taylor", false},
-      {{swinging, free}, {.times = long_times}, "taylor", true},
+      {{swinging, free}, {.times = long_times}, "verner98", true},  // where taylor rounds too much
+      {{swinging, free}, {.times = long_times, .method = Method::taylor}, "taylor", true},
       {{swinging, free}, {.times = times, .method = Method::verner98}, "verner98", false},
       {{swinging, free}, {.times = long_times, .method = Method::verner98}, "verner98", true},
       {{swinging, free}, {.times = times, .method = Method::gauss16}, "gauss16", false},
