@@ -224,6 +224,7 @@ void platform_motions(const Recorder& out) {
       continue;
     }
     kreisel::detail::ErrorMeasure<System> distance(free, 1e-3);
+    distance.note_sizes(a.report.sizes);
     expect_below(out, what, "verner98",
                  distance(System::to_vector(a.states[0]), System::to_vector(b.states[0])),
                  a.report.error_estimate + b.report.error_estimate, "against gauss16");

@@ -64,6 +64,7 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
   row.drift = drift(report);
   row.error = 0;
   kreisel::detail::ErrorMeasure<Scene> distance(trial.scene, trial.task.smallest);
+  distance.note_sizes(report.sizes);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     const auto y = trial.scene.to_vector(found.states[i]);
     const double off = (y - y).isZero(0)
