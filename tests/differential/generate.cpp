@@ -117,6 +117,19 @@ Link earth(Random& r) {
   return link;
 }
 
+/// Another way to write a log down than the plainest.
+Spelling spelling(Random& r) {
+  Spelling result;
+  result.separator = r.pick({',', ';', '\t', ' '});
+  result.decimal_comma = result.separator != ',' && r.chance(0.5);
+  result.time_unit = r.pick<std::string>({"s", "ms", "us"});
+  result.lines_before = r.pick({0, 0, 1, 3});
+  result.header_is_comment = r.chance(0.3);
+  result.scalar_comes_last = r.chance(0.5);
+  result.ends_with_cr = r.chance(0.3);
+  return result;
+}
+
 Link table(Random& r) {
   Link link{.kind = LinkKind::table};
   link.log.axis = unit(r);
@@ -125,6 +138,7 @@ Link table(Random& r) {
   link.log.phase = phase(r).radian();
   if (r.chance(0.5)) link.log.shift = vector(r, 0.1, 2);
   link.log.step = 0.01 / link.log.frequency;
+  if (r.chance(0.5)) link.log.spelling = spelling(r);
   return link;
 }
 

@@ -79,12 +79,15 @@ Answer run_by(const Model& model, const Scene& scene, const kreisel::SceneFile& 
   return answer;
 }
 
-/// The same scene at 300 times between its outputs.
+/// The same scene at 300 times between its outputs, and at more and more before the first of them.
 kreisel::SceneFile with_many_outputs(kreisel::SceneFile file) {
   constexpr int many = 300;
   file.tolerance = std::max(file.tolerance, 1e-6);
-  file.output_times.clear();
-  for (int i = 0; i <= many; ++i) file.output_times.push_back(i * (file.t_end / many));
+  file.output_times = {0};
+  for (double part = 1e-8; part < 1; part *= 1.5) {
+    file.output_times.push_back(part * (file.t_end / many));
+  }
+  for (int i = 1; i <= many; ++i) file.output_times.push_back(i * (file.t_end / many));
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -73,6 +74,16 @@ std::string series(const Series& s) {
 }
 
 /// The keys of a guide frame, each with its value.
+std::vector<std::pair<std::string, std::string>> table_keys(const Spelling& spelling,
+                                                            std::size_t index) {
+  std::vector<std::pair<std::string, std::string>> result{{"kind", "\"table\""},
+                                                          {"file", "\"" + log_name(index) + "\""}};
+  if (spelling.time_unit != "s") result.emplace_back("time_unit", "\"" + spelling.time_unit + "\"");
+  if (spelling.decimal_comma) result.emplace_back("decimal", "\",\"");
+  if (spelling.lines_before > 0) result.emplace_back("skip", std::to_string(spelling.lines_before));
+  return result;
+}
+
 std::vector<std::pair<std::string, std::string>> keys(const Link& link, std::size_t index) {
   switch (link.kind) {
     case LinkKind::inertial: return {{"kind", "\"inertial\""}};
@@ -84,7 +95,7 @@ std::vector<std::pair<std::string, std::string>> keys(const Link& link, std::siz
       return {{"kind", "\"harmonic\""},
               {"angular_velocity", series(link.turning)},
               {"origin_acceleration", series(link.pushing)}};
-    case LinkKind::table: return {{"kind", "\"table\""}, {"file", "\"" + log_name(index) + "\""}};
+    case LinkKind::table: return table_keys(link.log.spelling, index);
     case LinkKind::earth: break;
   }
   std::vector<std::pair<std::string, std::string>> result{{"kind", "\"earth\""},
@@ -212,7 +223,27 @@ std::string body(const Scene& scene, int index) {
 double Angle::radian() const { return degrees ? value * degree : value; }
 
 std::string Log::csv(double t_end) const {
-  std::string result = "t,qw,qx,qy,qz,x,y,z\n";
+  const std::string end = spelling.ends_with_cr ? "\r\n" : "\n";
+  const double unit = spelling.time_unit == "us" ? 1e6 : spelling.time_unit == "ms" ? 1e3 : 1;
+  const auto line = [&](const std::vector<std::string>& fields) {
+    std::string all;
+    for (const std::string& field : fields) {
+      if (!all.empty()) all += spelling.separator;
+      all += field;
+    }
+    return all + end;
+  };
+  const auto number = [&](double x) {
+    std::string digits = text(x);
+    if (spelling.decimal_comma) std::replace(digits.begin(), digits.end(), '.', ',');
+    return digits;
+  };
+  std::string result;
+  for (int i = 0; i < spelling.lines_before; ++i) result += "a line before the header" + end;
+  if (spelling.header_is_comment) result += "# ";
+  result += line(spelling.scalar_comes_last
+                     ? std::vector<std::string>{"t", "x", "y", "z", "qx", "qy", "qz", "qw"}
+                     : std::vector<std::string>{"t", "qw", "qx", "qy", "qz", "x", "y", "z"});
   const long before = 16;  // rows on either side, so that no end of the spline lies in the run
   const long rows = static_cast<long>(std::ceil(t_end / step)) + 2 * before;
   for (long i = 0; i <= rows; ++i) {
@@ -220,8 +251,13 @@ std::string Log::csv(double t_end) const {
     const double s = std::sin(frequency * t + phase);
     const Eigen::Quaterniond q(Eigen::AngleAxisd(amplitude * s, axis.normalized()));
     const Vector x = s * shift;
-    result += fmt::format("{},{},{},{},{},{},{},{}\n", t, q.w(), q.x(), q.y(), q.z(), x.x(), x.y(),
-                          x.z());
+    std::vector<double> values{q.w(), q.x(), q.y(), q.z(), x.x(), x.y(), x.z()};
+    if (spelling.scalar_comes_last) {
+      values = {x.x(), x.y(), x.z(), q.x(), q.y(), q.z(), q.w()};
+    }
+    std::vector<std::string> fields{number(t * unit)};
+    for (const double value : values) fields.push_back(number(value));
+    result += line(fields);
   }
   return result;
 }

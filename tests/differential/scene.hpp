@@ -37,6 +37,17 @@ struct Series {
 
 enum class LinkKind { inertial, rotating, harmonic, earth, table };
 
+/// How a log is written down.
+struct Spelling {
+  char separator = ',';
+  bool decimal_comma = false;
+  std::string time_unit = "s";  ///< or ms, us
+  int lines_before = 0;         ///< the header
+  bool header_is_comment = false;
+  bool scalar_comes_last = false;  ///< of quaternions; and the origin before them
+  bool ends_with_cr = false;       ///< lines
+};
+
 /// A motion that is logged: a turn about a fixed axis by amplitude sin(frequency t + phase), and a
 /// shift of the origin by the same sine.
 struct Log {
@@ -46,6 +57,7 @@ struct Log {
   double frequency = 1;
   double phase = 0;
   double step = 0.02;  ///< s
+  Spelling spelling = {};
 
   [[nodiscard]] std::string csv(double t_end) const;
 };

@@ -86,6 +86,7 @@ void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
     changes.emplace_back([i](Scene& s) { s.guide[i].turning = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].pushing = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].rate.reset(); });
+    changes.emplace_back([i](Scene& s) { s.guide[i].log.spelling = {}; });
     for (std::size_t k = 0; k < scene.guide[i].turning.terms.size(); ++k) {
       changes.emplace_back([i, k](Scene& s) {
         auto& terms = s.guide[i].turning.terms;
