@@ -55,6 +55,10 @@ struct Symmetric3 {
   friend Symmetric3 operator+(const Symmetric3& a, const Symmetric3& b) {
     return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
   }
+  friend Symmetric3 operator*(const S& factor, const Symmetric3& a) {
+    return {factor * a.xx, factor * a.yy, factor * a.zz,
+            factor * a.xy, factor * a.xz, factor * a.yz};
+  }
   friend Symmetric3 operator-(const Symmetric3& a, const Symmetric3& b) {
     return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.xy - b.xy, a.xz - b.xz, a.yz - b.yz};
   }
@@ -329,15 +333,17 @@ template <class S>
 [[nodiscard]] inline Symmetric3<double> nearest_legal(const Symmetric3<double>& t,
                                                       const std::array<double, 3>& moments) {
   const auto& [a, b, c] = moments;
-  const Matrix3<double> T = t.matrix();
-  const Matrix3<double> one = Matrix3<double>::Identity();
-  if (2 * a + c - b >= 0) {
-    const double e = c - a - b;
-    const Matrix3<double> along = (T - a * one) * (T - b * one) / ((c - a) * (c - b));
-    return Symmetric3<double>::from(T + e / 3 * (one - 2 * along));
-  }
-  const Matrix3<double> along = (T - b * one) * (T - c * one) / ((a - b) * (a - c));
-  return Symmetric3<double>::from((b + c) / 2 * (one - along));
+  const Symmetric3<double> one{1, 1, 1, 0, 0, 0};
+  const Symmetric3<double> square{
+      t.xx * t.xx + t.xy * t.xy + t.xz * t.xz, t.xy * t.xy + t.yy * t.yy + t.yz * t.yz,
+      t.xz * t.xz + t.yz * t.yz + t.zz * t.zz, t.xx * t.xy + t.xy * t.yy + t.xz * t.yz,
+      t.xx * t.xz + t.xy * t.yz + t.xz * t.zz, t.xy * t.xz + t.yy * t.yz + t.yz * t.zz};
+  // v v^t of the moment x beside p and q: (T - p)(T - q) over what that is along v
+  const auto along = [&](double x, double p, double q) {
+    return 1 / ((x - p) * (x - q)) * (square - (p + q) * t + p * q * one);
+  };
+  if (2 * a + c - b >= 0) return t + (c - a - b) / 3 * (one - 2.0 * along(c, a, b));
+  return (b + c) / 2 * (one - along(a, b, c));
 }
 
 /// Refuses principal moments; where they are off by 1e-3 at most, as rounded numbers are, the
