@@ -254,7 +254,7 @@ class SwitchingRun final : public SteppedRun {
     if (needless_ >= 50) change_to(explicit_);
   }
 
-  /// Goes over from taylor to verner98 where steps more than twice as long stand: terms make much of a
+  /// Goes over from taylor to verner98 where steps three times as long stand: terms make much of a
   /// fast rotation of what is round but for rounding, stages do not.
   [[nodiscard]] bool try_verner98(double end, double output) {
     const Eigen::VectorXd y = present();

@@ -129,10 +129,9 @@ class ExplicitSteps {
     const Scalar h = leader.before_.length;
     last_stage_time_ = leader.last_stage_time_;
     begin_step(last_stage_time_);
-    fill_stages(h, std::make_index_sequence<Tableau::stages - 1>());
-    typename Memory::Passing change = stage_.change();
-    Memory::put(change, [&](const auto& part) { return h * mean_rate(part); });
-    take(h, change);
+    if (!attempt(h, true)) {
+      detail::stop_integration(t(), "a step that another run has made leads out of the field");
+    }
     time_ = leader.time_;
   }
 
@@ -378,7 +377,9 @@ class ExplicitSteps {
   }
 
   /// One step of length h; says whether it stood. Sets the length of the next.
-  bool attempt(const Scalar& h) {
+  ///
+  /// follows : another run: then it stands, whatever its error
+  bool attempt(const Scalar& h, bool follows = false) {
     using std::abs;
     using std::exp;
     using std::isfinite;
@@ -405,7 +406,7 @@ class ExplicitSteps {
     // In units of what is allowed.
     const Scalar worst = sizes_.relative(error, change, Scalar(4) * abs(h)) / allowed_;
     const bool finite = isfinite(static_cast<double>(worst)) && detail::finite(change);
-    if (!finite || worst > Scalar(1)) {
+    if (!finite || (worst > Scalar(1) && !follows)) {
       const Scalar aim =
           finite ? Scalar(0.9) * pow(worst, Scalar(-1) / Tableau::order) : Scalar(0.125);
       step_ = abs(h) * max(aim, Scalar(0.125));

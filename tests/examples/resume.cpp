@@ -93,7 +93,11 @@ struct Case {
 
   /// What a run says when it goes on; it is not waited for.
   [[nodiscard]] std::string first_words(const std::string& options = "") const {
+    const std::string begun = folder.read("part.csv");
+    const std::string checkpoint = folder.read("part.csv.resume");
     for (double seconds = 0.1; seconds < 100; seconds *= 2) {
+      folder.write("part.csv", begun);
+      folder.write("part.csv.resume", checkpoint);
       const Outcome outcome =
           run("--resume " + options, "timeout --foreground -s KILL " + std::to_string(seconds));
       if (!outcome.err.empty()) return outcome.err;

@@ -482,7 +482,7 @@ BOOST_AUTO_TEST_CASE(begins_its_rows_with_the_start_itself) {
       std::string(KREISEL_SIMULATE) + " " + scene("double_pendulum") + " --t-end 20 --csv ";
   const std::string part = (folder.path() / "part.csv").string();
   const Outcome limited =
-      test::run("bash -c \"trap '' XFSZ; ulimit -f 31; " + command + part + "\"");
+      test::run("bash -c \"trap '' XFSZ; ulimit -f 150; " + command + part + "\"");
   BOOST_TEST(limited.status == 3, limited.err);
   BOOST_TEST(lines(folder.read("part.csv")).at(1) == "0,2,0,0.5,0");
   BOOST_TEST(test::run(command + part + " --resume").status == 4);  // chaos
