@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/felt_motion.hpp>
 #include <dynamics/scene/load.hpp>
 #include <dynamics/scene/read_out.hpp>
