@@ -315,9 +315,11 @@ class TaylorSteps {
   /// -log of the reach: where the last two terms are smaller than the three before them let expect,
   /// these count, by a ratio of terms that stays, not by one that falls as that of 1/k!.
   [[nodiscard]] double looked_back(double steepest, const Vector& change) const {
-    for (int k = order_ - 4; k < order_ - 1; ++k) {
+    int k = order_ - 4;
+    for (const double fall : falls_) {
       const double from_this = log_size(k, change) - std::log(accuracy_.relative) / (order_ - 1);
-      if (from_this - falls_[std::size_t(k - order_ + 4)] > steepest) steepest = from_this;
+      if (from_this - fall > steepest) steepest = from_this;
+      k += 1;
     }
     return steepest;
   }
