@@ -170,7 +170,7 @@ template <class Log>
   LogNoise::Components before = LogNoise::Components::Constant(-1);
   noise.white.setConstant(std::numeric_limits<double>::infinity());
   noise.resolved.setConstant(false);
-  for (const std::size_t order : {4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24}) {
+  for (const std::size_t order : {4U, 6U, 8U, 10U, 12U, 14U, 16U, 18U, 20U, 22U, 24U}) {
     const auto size = detail::difference_size(times, values, order, step);
     if (!size) break;
     for (int c = 0; c < 7; ++c) {
