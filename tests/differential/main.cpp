@@ -7,7 +7,7 @@
 // judge.cpp     what counts as a fault
 // examine.cpp   a process for each scene, against crashes and hangs
 // shrink.cpp    the least scene that still fails
-// known.txt     kinds of faults that are told and do not count
+// known.txt     kinds of faults that are told and do not count, up to a number of scenes
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -38,6 +38,12 @@ using Clock = std::chrono::steady_clock;
 volatile std::sig_atomic_t interrupted = 0;
 extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
+/// A kind of faults that is not mended yet.
+struct Known {
+  double most;        ///< scenes of 400 that may have it
+  std::string begin;  ///< of its name
+};
+
 struct Request {
   std::uint64_t count = 400;
   std::vector<std::uint64_t> seeds = {};
@@ -48,21 +54,23 @@ struct Request {
   bool print = false;
   std::filesystem::path out = "differential";
   std::string known_file = {};
-  std::vector<std::string> known = {};  ///< how the names of faults begin that are not mended yet
+  std::vector<Known> known = {};
   Examination how = {};
 
   [[nodiscard]] bool is_known(const std::string& kind) const {
     return std::any_of(known.begin(), known.end(),
-                       [&kind](const std::string& begin) { return kind.starts_with(begin); });
+                       [&kind](const Known& one) { return kind.starts_with(one.begin); });
   }
 };
 
 /// The lines of a file but for blank ones and those that begin with #.
-std::vector<std::string> lines_of(const std::string& file) {
-  std::vector<std::string> result;
+std::vector<Known> known_in(const std::string& file) {
+  std::vector<Known> result;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
-    if (!line.empty() && line.front() != '#') result.push_back(line);
+    if (line.empty() || line.front() == '#') continue;
+    const std::size_t blank = line.find(' ');
+    result.push_back({std::stod(line.substr(0, blank)), line.substr(blank + 1)});
   }
   return result;
 }
@@ -186,8 +194,8 @@ void watch(const Request& request, Shared& shared, std::size_t workers) {
   }
 }
 
-/// How often each kind of fault has come.
-void summarise(const Request& request, const Shared& shared) {
+/// Tells how often each kind of fault has come; whether a known one came more often than it may.
+[[nodiscard]] bool summarise(const Request& request, const Shared& shared) {
   std::map<std::string, int> kinds;
   std::ifstream file(request.out / "faults.txt");
   for (std::string line; std::getline(file, line);) kinds[line.substr(0, line.find('\t'))] += 1;
@@ -200,6 +208,16 @@ void summarise(const Request& request, const Shared& shared) {
     std::ifstream least(request.out / (slug(kind) + "-1") / "least.toml");
     for (std::string line; std::getline(least, line);) fmt::print("      | {}\n", line);
   }
+  bool too_often = false;
+  for (const Known& known : request.known) {
+    int count = 0;
+    for (const auto& [kind, times] : kinds) count += kind.starts_with(known.begin) ? times : 0;
+    const double most = known.most * std::max(1.0, static_cast<double>(shared.done) / 400);
+    if (count <= most) continue;
+    fmt::print("too often: {} times, {} at most: {}\n", count, most, known.begin);
+    too_often = true;
+  }
+  return too_often;
 }
 
 int run_all(const Request& request) {
@@ -214,9 +232,9 @@ int run_all(const Request& request) {
     if (fork() == 0) work(request, shared);
   }
   watch(request, shared, workers);
-  summarise(request, shared);
+  const bool too_often = summarise(request, shared);
   if (interrupted != 0) return 130;
-  return shared.faulty > 0 ? 1 : 0;
+  return too_often || shared.faulty > 0 ? 1 : 0;
 }
 
 int run_one(const Request& request) {
@@ -255,7 +273,7 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   app.add_flag("--print", request.print, "with --only: print it, do not run it");
   CLI11_PARSE(app, argc, argv);
-  request.known = lines_of(request.known_file);
+  request.known = known_in(request.known_file);
   if (request.only >= 0) return run_one(request);
   fmt::print("seeds");
   for (const std::uint64_t seed : request.seeds) fmt::print(" {}", seed);
