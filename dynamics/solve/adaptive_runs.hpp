@@ -42,8 +42,8 @@ class AdaptiveRuns {
 
   [[nodiscard]] Method method() const { return method_; }
 
-  /// Goes over from taylor to verner98, if the method is free; says whether it did. What rounding in
-  /// the field makes many stages average, where the terms of a series may make much of it.
+  /// Goes over from taylor to verner98, if the method is free; says whether it did. Many
+  /// stages average the rounding of the field, and the terms of a series may enlarge it.
   [[nodiscard]] bool round_less() {
     if (method_ != Method::taylor || task_.method != Method::automatic) return false;
     method_ = Method::verner98;
@@ -110,7 +110,7 @@ class AdaptiveRuns {
   [[nodiscard]] bool shakes() const { return method_ != Method::radau13 && digits_off(task_) > 0; }
   [[nodiscard]] double pair_digits() const { return std::min(100.0, task_.tolerance / 1e-11); }
 
-  /// Whether three more runs can tell what rounding grows to, of which two are shaken. They err by some
+  /// True if three more runs, two of them shaken, can tell how far rounding grows. They err by some
   /// 1e-2, so that they cost little and take about the same way. Who asks for less than 1e-7 would pay
   /// most, and is hardly ever led astray.
   [[nodiscard]] bool can_look_for_rounding(double accuracy, bool missed) const {

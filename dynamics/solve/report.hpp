@@ -38,7 +38,9 @@ struct RunReport {
   double all_evaluations = 0;  ///< with those for the estimate and for attempts that fell short
   double run_time = 0;         ///< s, all included
   std::vector<InvariantDrift> invariants;
-  std::vector<double> sizes = {};  ///< of the parts, that the estimate is relative to
+  /// The greatest size of each part of the state at the start and at every step, in its own unit and in
+  /// the order of the scene's blocks: error_estimate is relative to it. Empty for closed forms.
+  std::vector<double> sizes = {};
 };
 
 /// States at the output times, up to where the run came, and the report.

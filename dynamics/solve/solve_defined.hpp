@@ -217,7 +217,7 @@ class RunSoFar {
   /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
-  /// Takes the place of this one, which has cost no less than it would if it had been kept.
+  /// Puts another run in the place of this one; the cost counts as if this one had been kept.
   void replace_by(RunSoFar other) {
     other.spent_before_ = spent();
     *this = std::move(other);
@@ -262,8 +262,9 @@ class RunSoFar {
   double spent_before_ = 0;     ///< at least
 };
 
-/// What rounding grows to, told by runs in the same steps, coarse and cheap, of which two are shaken,
-/// each otherwise, lest one chance decide: in steps of their own they would go another way for these.
+/// Tells how far rounding grows, by three runs in the same steps, coarse and cheap. Two of them are
+/// shaken, in different ways, because one alone may miss the direction that grows. In steps of their
+/// own they would differ by what these err by.
 /// Beside a separatrix it may be far more than what steps err by, which cancels there.
 class GrownRounding {
  public:
@@ -378,7 +379,7 @@ KREISEL_DECLARED [[nodiscard]] double forecast(const Task& task, double t, doubl
   return error * (ahead < 10 ? ahead : 10);
 }
 
-/// What runs of one task after another have cost.
+/// The cost of all runs of one task.
 struct Account {
   double spent = 0;  ///< evaluations
 };
@@ -602,7 +603,7 @@ template <class Runs>
     const bool is_fine = runs.is_fine(setting);
     const bool by_chance = !rounding && !too_coarse && !last_try && complete && is_fine &&
                            missed.falls_by_chance(runs, setting);
-    // Of implicit steps the error falls slower than of explicit ones.
+    // The error of implicit steps falls slower than that of explicit ones.
     const bool only_rounds =
         rounds_too_much || (!implicit && is_fine && missed.stays(runs, setting));
     const bool stays = by_chance || (too_coarse && only_rounds);

@@ -146,7 +146,7 @@ class SwitchingRun final : public SteppedRun {
   void know_sizes(std::span<const double> sizes) override { run_->know_sizes(sizes); }
 
   [[nodiscard]] Effort effort() const override { return sum(finished_, run_->effort()); }
-  /// Of the last method: what is stiff and damped forgets the noise of explicit steps.
+  /// That of the last method: a stiff, damped motion forgets the noise of explicit steps.
   [[nodiscard]] double noise() const override { return run_->noise(); }
   [[nodiscard]] std::optional<Method> changed_to() const override {
     if (changes_.empty()) return std::nullopt;

@@ -125,6 +125,8 @@ class ExplicitSteps {
   }
 
   /// The step that another run of the same field has made last, whatever this one errs by in it.
+  ///
+  /// Throws : ComputationFailed if the field has no rate at a point of that step
   void follow(const ExplicitSteps& leader) {
     const Scalar h = leader.before_.length;
     last_stage_time_ = leader.last_stage_time_;

@@ -130,7 +130,8 @@ class RadauIntegrator {
   KREISEL_DECLARED [[nodiscard]] bool try_first_step(StiffField& field, double h, double end,
                                                      double output);
 
-  /// What the estimate of a step is held against, relative to sizes: it is of lower order than the step.
+  /// The limit of a step's estimate, relative to sizes. It is above the accuracy, for the estimate is of
+  /// lower order than the step.
   [[nodiscard]] double allowed() const { return allowed_; }
 
   /// The greatest rate of the field times the length of the last step.

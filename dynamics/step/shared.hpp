@@ -36,8 +36,8 @@ template <class Failure = ComputationFailed, class S, class... Words>
   throw Failure(text.str());
 }
 
-/// What a field throws at points that steps only try: a shorter step may not come there. Where none is
-/// short enough, that is why.
+/// Keeps the exception that a field throws at a point that a step only tries. A shorter step may avoid
+/// that point; if no step does, the exception is the reason to stop.
 template <class S>
 class TrialFailure {
  public:
@@ -89,8 +89,7 @@ template <class S>
   return next;
 }
 
-/// Whether a step of length h is the last before what is `left`: where less than a rounding would be
-/// left behind it, it takes that too.
+/// True if a step of length h is the last one of the way that is `left`, up to 256 roundings of h.
 template <class S>
 [[nodiscard]] bool is_last(const S& h, const S& left) {
   using std::abs;

@@ -138,9 +138,8 @@ class Search {
         base_(start) {
     const int q = system.tree().coordinates();
     for (int i = 0; i < directions_.rates; ++i) {
-      if (!directions_
-               .held[static_cast<std::size_t>(directions_.rates) + static_cast<std::size_t>(i)])
-        base_[q + i] = 0;
+      const int rate = directions_.rates + i;
+      if (!directions_.held[static_cast<std::size_t>(rate)]) base_[q + i] = 0;
     }
     const Places cyclic = directions_.cyclic(linearized(system, 0, base_).A,
                                              linearized(system, 0, off(system, base_)).A);

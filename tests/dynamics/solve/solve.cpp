@@ -105,6 +105,7 @@ void tells_its_error_honestly(Method method) {
   BOOST_TEST_MESSAGE(name(method) << ": " << honesty.within << " of " << honesty.runs
                                   << " in [0.1, 1], greatest " << honesty.greatest << ", dearest "
                                   << honesty.dearest);
+  // Where the first pair misses, a second one in finer steps beside three cheap runs: 5.32 measured.
   BOOST_TEST(honesty.dearest <= 5.5);
   BOOST_TEST(honesty.within >= 0.95 * honesty.runs);
   BOOST_TEST(honesty.greatest <= 3);
