@@ -1,10 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <dynamics/file/printable.hpp>
+#include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -27,24 +28,22 @@ class CsvTable {
  public:
   /// Reads the whole table and checks that every row is complete.
   ///
-  /// Throws : InvalidInput naming file and line: unreadable, a column of `required` missing or
+  /// Throws : InvalidInput naming file and line: unreadable, longer than 64 MB, a column of `required` missing or
   ///          twice, a row too long or too short, an open quote, no rows
   [[nodiscard]] static CsvTable read(const std::filesystem::path& path,
                                      std::initializer_list<std::string_view> required) {
     CsvTable table(path.string());
-    std::ifstream file(path);
-    if (!file || std::filesystem::is_directory(path)) {
-      throw InvalidInput(table.path_ + ": cannot be read");
-    }
-    std::string text;
-    for (std::size_t line = 1; std::getline(file, text); ++line) {
-      std::string_view rest = text;
+    const std::string text = read_text(path, std::size_t(64) << 20U);
+    std::size_t begin = 0;
+    for (std::size_t line = 1; begin < text.size(); ++line) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      std::string_view rest = std::string_view(text).substr(begin, end - begin);
+      begin = end + 1;
       if (line == 1 && rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
       rest = trimmed(rest);
       if (rest.empty() || rest.front() == '#') continue;
       table.take(line, rest, required);
     }
-    if (file.bad()) throw InvalidInput(table.path_ + ": reading failed");
     if (table.columns_.empty()) throw InvalidInput(table.path_ + ": no row that names the columns");
     if (table.rows_.empty()) throw InvalidInput(table.path_ + ": no rows");
     return table;

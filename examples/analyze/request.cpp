@@ -27,6 +27,7 @@ std::vector<double> speeds(const std::string& text) {
   }
   if (from == to) throw refuse("FROM and TO are the same");
   const int last = static_cast<int>(count) - 1;
+  if (!std::isfinite((to - from) * last)) throw refuse("FROM and TO lie too far apart");
   std::vector<double> result;
   for (int i = 0; i <= last; ++i) result.push_back(from + (to - from) * i / last);
   return result;

@@ -49,7 +49,7 @@ std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<
   const Real step = number("--sweep step", text.substr(second + 1));
   const Real steps = std::floor((to - from) / step + 1e-9L);
   if (!(steps >= 0) || step == 0) throw refuse("the step does not lead from FROM to TO");
-  if (steps >= 10'000'000) throw refuse("more than ten million steps");
+  if (steps > 1'000'000) throw refuse("more than a million steps; make the step longer");
 
   std::vector<Site> sites;
   const long last = std::lround(steps);

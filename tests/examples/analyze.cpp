@@ -656,6 +656,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_failed_sweeps_with_3) {
       {gyro + " --campbell rotor --speeds 1:2", "wanted FROM:TO:N"},
       {gyro + " --campbell rotor --speeds 1:2:1", "no whole number from 2"},
       {gyro + " --campbell rotor --speeds 1:1:5", "the same"},
+      {gyro + " --campbell rotor --speeds=-1e308:1e308:5", "too far apart"},
       {gyro + " --campbell wheel --speeds 1:2:3", "body 'wheel' does not exist"},
       {gyro + " --campbell 'outer ring' --speeds 1:2:3", "neither a free or regulated rotor"},
       {scene("cardan_gyro_shaken") + " --period 1", "after 1 s the equations are not the same"},

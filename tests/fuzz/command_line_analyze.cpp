@@ -1,0 +1,19 @@
+// The command line of analyze. Speeds of a sweep are finite numbers.
+
+#include <cmath>
+#include <cstdlib>
+#include <examples/analyze/request.hpp>
+#include <optional>
+
+#include "command_line.hpp"
+
+void examine(int argc, char** argv) {
+  const std::optional<Request> request = read_request(argc, argv);
+  if (!request) return;
+  if (request->period && !(*request->period > 0)) std::abort();
+  if (!request->campbell) return;
+  if (request->campbell->body.empty() || request->campbell->speeds.size() < 2) std::abort();
+  for (const double speed : request->campbell->speeds) {
+    if (!std::isfinite(speed)) std::abort();
+  }
+}

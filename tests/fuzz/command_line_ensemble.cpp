@@ -1,0 +1,19 @@
+// The command line of ensemble. Where it varies a number, what is drawn and applied is no accident
+// of the reader's memory.
+
+#include <cstdlib>
+#include <examples/ensemble/request.hpp>
+#include <optional>
+
+#include "command_line.hpp"
+
+void examine(int argc, char** argv) {
+  const std::optional<Request> request = read_request(argc, argv);
+  if (!request) return;
+  kreisel::MemberRandom random(request->seed, 0);
+  for (const Variation& variation : request->variations) {
+    if (variation.keys.empty()) std::abort();
+    const double drawn = variation.drawn(0.5, random);
+    (void)variation.applied(1, drawn);
+  }
+}
