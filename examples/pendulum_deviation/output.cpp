@@ -7,6 +7,7 @@
 
 #include <dynamics/file/atomic_file.hpp>
 #include <dynamics/file/csv.hpp>
+#include <dynamics/file/printable.hpp>
 
 #include "request.hpp"
 
@@ -181,8 +182,8 @@ void print_table(const Request& request, const std::vector<Row>& rows, double ru
     fmt::print(
         "{:{}}{:>9.4f} {:>8.1f} {:>7.5g} {:>12.9f} {:>+20.12e} {:>+20.12e} {:>18} {:>20} "
         "{:>8.1e}\n",
-        row.site.name, names, latitude, height, azimuth, row.gravity, equilibrium.value,
-        equilibrium.value * arcsec,
+        kreisel::printable(row.site.name), names, latitude, height, azimuth, row.gravity,
+        equilibrium.value, equilibrium.value * arcsec,
         period.exact_small ? fmt::format("{:.15f}", period.exact_small->value) : "none",
         optional_number(period.relative_change_exact), equilibrium.error);
   }

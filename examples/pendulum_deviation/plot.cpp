@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string>
 
+#include <dynamics/file/printable.hpp>
+
 #include "../shared/gnuplot.hpp"
 #include "request.hpp"
 
@@ -68,7 +70,8 @@ std::string script(const Request& request, const std::vector<Row>& rows, bool sv
     const auto& relative = row.answer.period.relative_change_exact;
     deviation.take(phi);
     if (relative) change.take(relative->value);
-    std::string name = row.site.name;  // gnuplot has no quote inside a quoted field
+    // Neither a quote nor a control character has a place inside a quoted field of gnuplot's.
+    std::string name = kreisel::printable(row.site.name);
     std::replace(name.begin(), name.end(), '"', '\'');
     fmt::print(s, "{:.17g} {:.17g} {} \"{}\"\n",
                named ? -static_cast<double>(i) : abscissa(request, row), phi,

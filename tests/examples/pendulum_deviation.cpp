@@ -5,18 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <sys/wait.h>
 #include <utility>
 
 #include <dynamics/file/csv.hpp>
 
+#include <support/hostile.hpp>
 #include <support/json.hpp>
 #include <support/program.hpp>
 #include <support/scratch.hpp>
 
+using kreisel::test::hostile_names;
+using kreisel::test::lines;
 using kreisel::test::Outcome;
 using kreisel::test::Scratch;
+using kreisel::test::word;
 using nlohmann::json;
 
 namespace {
@@ -24,6 +29,22 @@ namespace {
 /// Runs the program; the arguments are a shell's words.
 Outcome run(const std::string& arguments) {
   return kreisel::test::run(std::string(KREISEL_PENDULUM_DEVIATION) + " " + arguments);
+}
+
+/// Runs it where relative names are those of the folder.
+Outcome run_in(const Scratch& folder, const std::string& arguments) {
+  return kreisel::test::run("cd '" + folder.path().string() + "' && HOME=. " +
+                            KREISEL_PENDULUM_DEVIATION + " " + arguments);
+}
+
+std::string list_of(const std::string& name) {
+  return "name,latitude,height,azimuth\n" + kreisel::csv_field(name) + ",10,0,90\nB,20,0,90\n";
+}
+
+bool has_control_characters(const std::string& text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\n'; }) ||
+         text.find("\u009b") != std::string::npos;
 }
 
 json answer(const std::string& arguments) {
@@ -166,6 +187,61 @@ BOOST_AUTO_TEST_CASE(a_plot_is_a_picture) {
   BOOST_TEST(folder.size() == 2u);
 }
 
+// No field of a list runs over the end of its line.
+BOOST_AUTO_TEST_CASE(hostile_names_of_sites_are_only_shown) {
+  for (const std::string& name : hostile_names()) {
+    const Scratch folder;
+    folder.write("s.csv", list_of(name));
+    const Outcome table = run_in(folder, "--sites s.csv --plot p.svg --csv out.csv");
+    BOOST_TEST(!std::filesystem::exists(folder.path() / "hit"), name);
+    BOOST_TEST(!has_control_characters(table.out + table.err), name);
+    if (name.find('\n') != std::string::npos) {
+      BOOST_TEST(table.status == 2, name);
+      BOOST_TEST(lines(table.err) == 1, table.err);
+      continue;
+    }
+    BOOST_TEST(table.status == 0, name << ": " << table.err);
+    BOOST_TEST(lines(table.out) == 4, name);
+    BOOST_TEST(kreisel::CsvTable::read(folder.path() / "out.csv", {}).text(0, "name") == name);
+    const std::string picture = folder.read("p.svg");
+    BOOST_TEST(picture.find("</svg>") != std::string::npos, name);
+    BOOST_TEST(picture.find("</script>") == std::string::npos, name);
+    BOOST_TEST(picture.find('\x1b') == std::string::npos, name);
+    const Outcome found = run_in(folder, "--sites s.csv --json");
+    BOOST_TEST(kreisel::test::parsed(found.out).at("sites")[0].at("name") == name);
+    BOOST_TEST(folder.size() == 3u, name);
+  }
+}
+
+// A name with a slash is another folder's; all others are names of files here.
+BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
+  for (const std::string& name : hostile_names()) {
+    if (name.find('/') != std::string::npos || name.size() > 200) continue;
+    const Scratch folder;
+    folder.write("s" + name, list_of("A"));
+    const Outcome outcome = run_in(folder, "--sites=" + word("s" + name) + " --csv=" + word(name) +
+                                               " --plot=" + word(name + ".svg"));
+    BOOST_TEST(outcome.status == 0, name << ": " << outcome.err);
+    BOOST_TEST(lines(folder.read(name)) == 3, name);
+    BOOST_TEST(folder.read(name + ".svg").find("</svg>") != std::string::npos, name);
+    for (const std::string& wrong :
+         {"--sites=" + word("no " + name), "--sweep=" + word(name + "=0:1:1"),
+          "--latitude=" + word(name), "--latitude 1 --plot=" + word(name)}) {
+      const Outcome refused = run_in(folder, wrong);
+      BOOST_TEST(refused.status == 2, wrong);
+      BOOST_TEST(lines(refused.err) == 1, wrong << ": " << refused.err);
+      BOOST_TEST(!has_control_characters(refused.err), wrong);
+    }
+    BOOST_TEST(folder.size() == 3u, name);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_endless_list_is_refused) {
+  const Outcome outcome = run("--sites /dev/zero");
+  BOOST_TEST(outcome.status == 2, outcome.err);
+  BOOST_TEST(outcome.err.find("is larger than 64 MB") != std::string::npos, outcome.err);
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_one_line_and_no_file) {
   const Scratch folder;
   const auto half = folder.write("half.csv", "name,latitude,height,azimuth\nA,10,0,90\nB,20,0\n");
@@ -202,6 +278,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_one_line_and_no_file) {
       {"--sweep latitude=0:10:-1", "does not lead"},
       {"--sweep latitude=0:10:0", "does not lead"},
       {"--sweep longitude=0:10:1", "none of"},
+      {"--sweep latitude=0:1:9e-7", "more than a million steps"},
       {"--sweep latitude=0:10", "wanted QUANTITY"},
       {"--sweep azimuth=0:10:1", "--latitude is missing"},
       {"--sweep latitude=0:10:1 --plot x.pdf", "neither .svg nor .png"},
