@@ -2,19 +2,21 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <sys/stat.h>
-#include <vector>
 
+#include <support/hostile.hpp>
 #include <support/json.hpp>
 #include <support/program.hpp>
 
 using namespace kreisel;
 using nlohmann::json;
+using test::hostile_names;
+using test::lines;
 using test::Outcome;
 using test::Scratch;
+using test::word;
 
 namespace {
 
@@ -29,45 +31,8 @@ std::string rod(const std::string& head, const std::string& name, const std::str
          t_end + "\noutput_step = 0.01\nmethod = \"verner98\"\n";
 }
 
-/// The text as one word of the shell.
-std::string word(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
 /// The text as a basic string of TOML.
 std::string toml(const std::string& text) { return json(text).dump(); }
-
-long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
-
-/// Names that are something else to a shell, to gnuplot, to a terminal or to a reader of lines.
-std::vector<std::string> hostile_names() {
-  return {"'",
-          "'quoted'",
-          "it''s",
-          "\"double\"",
-          "`touch hit`",
-          "$(touch hit)",
-          "|touch hit; #",
-          "; touch hit",
-          "> hit",
-          "~",
-          "-rf",
-          "--help",
-          "@macro",
-          "a\nb: is no key",
-          "tab\there",
-          "\x1b]0;title\x07",
-          "back\\slash",
-          "%s%n {} {0}",
-          "#comment",
-          "END",
-          "\u00e4\u00f6\u00fc \u2713 \U0001f600",
-          "</script><!--",
-          "=1+1",
-          std::string(5000, 'x')};
-}
 
 }  // namespace
 
