@@ -20,6 +20,12 @@ const char* const verdicts[] = {"stable", "marginal", "unstable"};
 
 const char* name(Verdict verdict) { return verdicts[static_cast<int>(verdict)]; }
 
+/// The root as people see it: parts that are no larger than its error are 0.
+std::complex<double> shown(const kreisel::Mode& mode) {
+  const auto part = [&mode](double x) { return std::abs(x) > mode.error ? x : 0; };
+  return {part(mode.root.real()), part(mode.root.imag())};
+}
+
 double damping_ratio(const std::complex<double>& root) {
   return root.real() != 0 ? -root.real() / std::abs(root) : 0;
 }
@@ -39,21 +45,29 @@ JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
   return {state.head(tree.coordinates()), state.tail(tree.rates())};
 }
 
+/// Sizes by a state and by what the joints carry there.
+Scale scale_of(const Result& result, const Eigen::VectorXd& state) {
+  Scale scale = ::scale_of(result.scene, result.system.tree(), {joints_of(result, state)});
+  scale.hold(result.system.reactions(0, state));
+  return scale;
+}
+
 ordered_json joints_json(const Result& result, const Eigen::VectorXd& state,
-                         const kreisel::JointReactions& reactions) {
+                         const kreisel::JointReactions& reactions, const Scale& scale) {
   const JointState joints = joints_of(result, state);
   const kreisel::BodyTree& tree = result.system.tree();
   ordered_json table = ordered_json::object();
   for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
-    table[tree.body(i).name] = joint_tables::joint(tree, i, joints, reactions);
+    table[tree.body(i).name] = joint_tables::joint(tree, i, joints, reactions, scale);
   }
   return table;
 }
 
-ordered_json reactions_json(const Result& result, const kreisel::JointReactions& reactions) {
+ordered_json reactions_json(const Result& result, const kreisel::JointReactions& reactions,
+                            const Scale& scale) {
   ordered_json table = ordered_json::object();
   for (std::size_t i = 0; i < reactions.on_body.size(); ++i) {
-    table[result.system.tree().bodies()[i].name] = json(reactions.on_body[i].value);
+    table[result.system.tree().bodies()[i].name] = json(reactions.on_body[i].value, scale);
   }
   return table;
 }
@@ -72,15 +86,15 @@ ordered_json json(const GyroscopicMode& mode, bool has_rotors) {
   return result;
 }
 
-ordered_json json(const Steady& steady, const Result& result) {
+ordered_json json(const Steady& steady, const Result& result, const Scale& scale = {}) {
   if (!steady.exists()) return {{"found", "none"}, {"reason", steady.reason}};
   const kreisel::JointReactions reactions = result.system.reactions(0, steady.state);
   return {{"found", steady.kind == Steady::Kind::start ? "start" : "from the start"},
           {"motion", steady.turns ? "steady motion" : "equilibrium"},
           {"distance", steady.distance},
           {"residual", steady.residual},
-          {"joints", joints_json(result, steady.state, reactions)},
-          {"reactions", reactions_json(result, reactions)}};
+          {"joints", joints_json(result, steady.state, reactions, scale)},
+          {"reactions", reactions_json(result, reactions, scale)}};
 }
 
 ordered_json roots_json(const Linear& linear) {
@@ -99,13 +113,13 @@ ordered_json json(const Linear& linear) {
           {"left_out", linear.left_out}};
 }
 
-ordered_json json(const Rest& rest, const Result& result) {
+ordered_json json(const Rest& rest, const Result& result, const Scale& scale = {}) {
   const Eigen::VectorXd& state = rest.equilibrium.state;
   return {{"stability", name(rest.stability)},
           {"distance", rest.distance},
           {"residual", rest.equilibrium.residual},
           {"neutral", rest.equilibrium.neutral},
-          {"joints", joints_json(result, state, result.system.reactions(0, state))},
+          {"joints", joints_json(result, state, result.system.reactions(0, state), scale)},
           {"frame", rest.linear.frame},
           {"roots", roots_json(rest.linear)}};
 }
@@ -122,7 +136,7 @@ ordered_json json(const Campbell& campbell) {
   return {{"body", campbell.body}, {"speeds", campbell.speeds}, {"curves", curves}};
 }
 
-ordered_json json(const Floquet& floquet, const Result& result) {
+ordered_json json(const Floquet& floquet, const Result& result, const Scale& scale = {}) {
   if (!floquet.reason.empty()) return {{"period", floquet.period}, {"reason", floquet.reason}};
   ordered_json multipliers = ordered_json::array();
   for (const kreisel::Mode& m : floquet.multipliers) {
@@ -136,7 +150,7 @@ ordered_json json(const Floquet& floquet, const Result& result) {
           {"verdict", name(floquet.verdict)},
           {"multipliers", multipliers},
           {"residual", floquet.residual},
-          {"start", joints_json(result, floquet.start, reactions)}};
+          {"start", joints_json(result, floquet.start, reactions, scale)}};
 }
 
 ordered_json json(const PrecessionCheck& check) {
@@ -187,9 +201,9 @@ std::string roots_text(const Linear& linear) {
   std::string text;
   for (const GyroscopicMode& mode : linear.modes) {
     text += text.empty() ? "" : ", ";
-    const double growth = std::abs(mode.root.real()) > mode.error ? mode.root.real() : 0;
-    text += fmt::format("{:.8g}", growth);
-    if (mode.root.imag() > 0) text += fmt::format(" +- {:.8g}i", mode.root.imag());
+    const std::complex<double> root = shown(mode);
+    text += fmt::format("{:.8g}", root.real());
+    if (root.imag() > 0) text += fmt::format(" +- {:.8g}i", root.imag());
   }
   return text.empty() ? "none" : text;
 }
@@ -200,7 +214,8 @@ void print_equilibria(const Result& result) {
   fmt::print("equilibria: {} found from {} start{}\n", a.equilibria.size(), a.starts,
              a.starts == 1 ? "" : "s");
   for (const Rest& rest : a.equilibria) {
-    const std::string where = coordinates_text(json(rest, result)["joints"]);
+    const std::string where =
+        coordinates_text(json(rest, result, scale_of(result, rest.equilibrium.state))["joints"]);
     const int neutral = rest.equilibrium.neutral;
     const std::string family = neutral == 0 ? ""
                                             : fmt::format(", one of a family in {} direction{}",
@@ -223,7 +238,7 @@ void print(const Steady& steady, const Result& result) {
     fmt::print("{}: not the start of the file but the one next to it, up to {:.3g} away\n", what,
                steady.distance);
   }
-  const ordered_json table = json(steady, result);
+  const ordered_json table = json(steady, result, scale_of(result, steady.state));
   joint_tables::print("joints there", table["joints"]);
   joint_tables::print("reactions there, N and N m, on the body, its axes", table["reactions"]);
 }
@@ -236,9 +251,10 @@ void print(const Linear& linear) {
                "damping", "kind", "mostly");
   }
   for (const GyroscopicMode& mode : linear.modes) {
-    fmt::print("  {:16.8g} {:18.10g} {:14.6g} {:12.4g}  {:12} {}\n", mode.root.real(),
-               mode.root.imag(), mode.root.imag() / (2 * std::numbers::pi),
-               damping_ratio(mode.root), kind(mode, linear.has_rotors), mostly(mode, linear.names));
+    const std::complex<double> root = shown(mode);
+    fmt::print("  {:16.8g} {:18.10g} {:14.6g} {:12.4g}  {:12} {}\n", root.real(), root.imag(),
+               root.imag() / (2 * std::numbers::pi), damping_ratio(root),
+               kind(mode, linear.has_rotors), mostly(mode, linear.names));
   }
   if (linear.left_out.empty()) return;
   std::string all;
@@ -255,7 +271,7 @@ void print(const Campbell& campbell) {
     fmt::print("  {:12.6g}", campbell.speeds[i]);
     for (const Curve& curve : campbell.curves) {
       const bool grows = curve[i] && curve[i]->root.real() > curve[i]->error;
-      fmt::print(" {:>14}{}", curve[i] ? fmt::format("{:.8g}", curve[i]->root.imag()) : "-",
+      fmt::print(" {:>14}{}", curve[i] ? fmt::format("{:.8g}", shown(*curve[i]).imag()) : "-",
                  grows ? '*' : ' ');
     }
     fmt::print("\n");
@@ -271,10 +287,12 @@ void print(const Floquet& floquet, const Result& result) {
   fmt::print("{}\n  {:>20} {:>20} {:>14} {:>10}\n", name(floquet.verdict), "multiplier", "", "size",
              "error");
   for (const kreisel::Mode& m : floquet.multipliers) {
-    fmt::print("  {:20.12g} {:+20.12g} {:14.9g} {:10.1e}\n", m.root.real(), m.root.imag(),
+    const std::complex<double> root = shown(m);
+    fmt::print("  {:20.12g} {:+20.12g} {:14.9g} {:10.1e}\n", root.real(), root.imag(),
                std::abs(m.root), m.error);
   }
-  joint_tables::print("the motion that repeats itself, at t = 0", json(floquet, result)["start"]);
+  joint_tables::print("the motion that repeats itself, at t = 0",
+                      json(floquet, result, scale_of(result, floquet.start))["start"]);
 }
 
 void print(const PrecessionCheck& check, double t_end) {
@@ -291,8 +309,10 @@ void print(const PrecessionCheck& check, double t_end) {
                check.rank, check.velocities, check.test.greatest_shift);
     for (const auto& [technical, exact] : check.test.slow) {
       if (technical.imag() < 0) continue;
-      fmt::print("  slow root {:.8g} {:+.8g}i, exact {:.8g} {:+.8g}i\n", technical.real(),
-                 technical.imag(), exact.real(), exact.imag());
+      const double size = std::abs(exact);
+      fmt::print("  slow root {:.8g} {:+.8g}i, exact {:.8g} {:+.8g}i\n",
+                 ::shown(technical.real(), size), ::shown(technical.imag(), size),
+                 ::shown(exact.real(), size), ::shown(exact.imag(), size));
     }
   }
   if (!check.no_motion.empty()) {

@@ -25,33 +25,40 @@ ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json json(double x) { return std::isfinite(x) ? ordered_json(x) : ordered_json(); }
 
-ordered_json json(const kreisel::Motor<>& force) {
-  return {{"force", json(force.resultant)}, {"torque", json(force.moment)}};
+ordered_json json(const kreisel::Motor<>& force, const Scale& scale) {
+  return {{"force", json(shown(force.resultant, scale.force))},
+          {"torque", json(shown(force.moment, scale.torque))}};
 }
 
 ordered_json joint(const kreisel::BodyTree& tree, int body, const JointState& state,
-                   const kreisel::JointReactions& reactions) {
+                   const kreisel::JointReactions& reactions, const Scale& scale) {
   const auto [q, q_count, v, v_count] = tree.place(body);
-  const auto pair = [](const Eigen::VectorXd& x, int begin) {
-    return ordered_json{x[begin], x[begin + 1]};
+  const auto pair = [](const Eigen::VectorXd& x, int begin, double size) {
+    return ordered_json{shown(x[begin], size), shown(x[begin + 1], size)};
   };
-  switch (tree.body(body).joint.kind) {
+  const JointKind kind = tree.body(body).joint.kind;
+  const bool slides = kind == JointKind::prismatic;
+  switch (kind) {
     case JointKind::fixed: return ordered_json::object();
     case JointKind::universal:
-      return {{"coordinate", pair(state.coordinates, q)}, {"rate", pair(state.rates, v)}};
+      return {{"coordinate", pair(state.coordinates, q, scale.angle)},
+              {"rate", pair(state.rates, v, scale.turning)}};
     case JointKind::spherical:
     case JointKind::free: break;
     default:
-      return {{"coordinate", state.coordinates[q]},
-              {"rate", state.rates[v]},
-              {"drive_torque", drive_torque(tree, body, reactions)}};
+      return {{"coordinate", shown(state.coordinates[q], slides ? scale.length : scale.angle)},
+              {"rate", shown(state.rates[v], slides ? scale.speed : scale.turning)},
+              {"drive_torque", shown(drive_torque(tree, body, reactions), scale.torque)}};
   }
   const Eigen::Quaterniond a = attitude(tree, body, state);
-  ordered_json values{{"attitude", {a.w(), a.x(), a.y(), a.z()}},
-                      {"angular_velocity", json(state.rates.segment<3>(v))}};
+  ordered_json values{
+      {"attitude",
+       {shown(a.w(), scale.angle), shown(a.x(), scale.angle), shown(a.y(), scale.angle),
+        shown(a.z(), scale.angle)}},
+      {"angular_velocity", json(shown(Eigen::Vector3d(state.rates.segment<3>(v)), scale.turning))}};
   if (q_count == 7) {
-    values["position"] = json(place(tree, body, state));
-    values["velocity"] = json(state.rates.segment<3>(v + 3));
+    values["position"] = json(shown(place(tree, body, state), scale.length));
+    values["velocity"] = json(shown(Eigen::Vector3d(state.rates.segment<3>(v + 3)), scale.speed));
   }
   return values;
 }

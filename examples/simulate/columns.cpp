@@ -1,5 +1,7 @@
 #include "columns.hpp"
 
+#include <array>
+
 using kreisel::BodyTree;
 using kreisel::JointKind;
 
@@ -15,6 +17,19 @@ std::vector<const char*> quantities(JointKind kind) {
     case JointKind::spherical: return {"qw", "qx", "qy", "qz", "wx", "wy", "wz"};
     case JointKind::free:
       return {"qw", "qx", "qy", "qz", "x", "y", "z", "wx", "wy", "wz", "vx", "vy", "vz"};
+  }
+  return {};
+}
+
+std::vector<const char*> units(JointKind kind) {
+  switch (kind) {
+    case JointKind::fixed: return {};
+    case JointKind::revolute: return {"rad", "rad/s"};
+    case JointKind::prismatic: return {"m", "m/s"};
+    case JointKind::universal: return {"rad", "rad", "rad/s", "rad/s"};
+    case JointKind::spherical: return {"1", "1", "1", "1", "rad/s", "rad/s", "rad/s"};
+    case JointKind::free:
+      return {"1", "1", "1", "1", "m", "m", "m", "rad/s", "rad/s", "rad/s", "m/s", "m/s", "m/s"};
   }
   return {};
 }
@@ -66,6 +81,22 @@ std::vector<double> row(const Model& model, double t, const JointState& state, b
     append(force);
     append(torque);
     values.push_back(drive_torque(tree, i, carried));
+  }
+  return values;
+}
+
+std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
+                              const Scale& scale) {
+  std::size_t at = 1;
+  const auto show = [&](const auto& list) {
+    for (const char* const unit : list) {
+      values[at] = shown(values[at], scale.of(unit));
+      ++at;
+    }
+  };
+  for (const auto& body : tree.bodies()) show(units(body.joint.kind));
+  while (at < values.size()) {
+    show(std::array<const char*, 7>{"N", "N", "N", "N m", "N m", "N m", "N m"});
   }
   return values;
 }

@@ -88,7 +88,7 @@ ordered_json log_errors(const Result& result) {
   return table;
 }
 
-ordered_json final_state(const Result& result) {
+ordered_json final_state(const Result& result, const Scale& scale = {}) {
   const double t = result.run.times.back();
   const JointState& state = result.run.states.back();
   const kreisel::JointReactions reactions = result.model.reactions(t, state);
@@ -97,13 +97,13 @@ ordered_json final_state(const Result& result) {
   ordered_json parts = ordered_json::object();
   for (int i = 0; i < bodies(result); ++i) {
     const std::string& name = result.scene.bodies[at(i)].name;
-    joints[name] = joint(result.model.tree(), i, state, reactions);
-    carried[name] = json(reactions.on_body[at(i)].value);
+    joints[name] = joint(result.model.tree(), i, state, reactions, scale);
+    carried[name] = json(reactions.on_body[at(i)].value, scale);
     if (!result.terms) continue;
     const auto terms = result.model.terms(t, state, i);
-    parts[name] = {{"relative", json(terms.relative.value)},
-                   {"guide", json(terms.guide.value)},
-                   {"coriolis", json(terms.coriolis.value)}};
+    parts[name] = {{"relative", json(terms.relative.value, scale)},
+                   {"guide", json(terms.guide.value, scale)},
+                   {"coriolis", json(terms.coriolis.value, scale)}};
   }
   ordered_json final{{"t", t}, {"joints", joints}};
   if (result.reactions) final["reactions"] = carried;
@@ -118,6 +118,14 @@ void print_terms(const char* title, const std::vector<Term>& terms) {
 }
 
 }  // namespace
+
+Scale scale_of(const Result& result) {
+  Scale scale = scale_of(result.scene, result.model.tree(), result.run.states);
+  for (const std::size_t i : {std::size_t(0), result.run.states.size() - 1}) {
+    scale.hold(result.model.reactions(result.run.times[i], result.run.states[i]));
+  }
+  return scale;
+}
 
 std::vector<Term> terms_kept(const Result& result) {
   std::vector<Term> terms = equation_terms(result, true);
@@ -238,7 +246,7 @@ void print_summary(const Result& result) {
   for (const auto& [name, start, largest] : r.invariants) {
     fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", name, start, largest);
   }
-  const ordered_json final = final_state(result);
+  const ordered_json final = final_state(result, scale_of(result));
   joint_tables::print(fmt::format("joints at t = {:.15g} s", final["t"].get<double>()).c_str(),
                       final["joints"]);
   if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "../shared/scale.hpp"
 #include "log_error.hpp"
 #include "model.hpp"
 
@@ -16,6 +17,9 @@ struct Result {
   bool terms;
   LogError log_error = {};
 };
+
+/// Sizes by all states of a run, and by what the joints carry in the first and the last.
+Scale scale_of(const Result& result);
 
 /// A thing that the equations hold, or leave out, and why.
 struct Term {

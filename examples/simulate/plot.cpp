@@ -334,8 +334,9 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   write_view(result, folder / "view.html");
   const Samples samples(result, most_points);
   const Series times = samples.all([](double t, const JointState&) { return t; });
-  const auto rows = samples.all([&result](double t, const JointState& state) {
-    return row(result.model, t, state, result.reactions);
+  const Scale scale = scale_of(result);
+  const auto rows = samples.all([&](double t, const JointState& state) {
+    return shown_row(result.model.tree(), row(result.model, t, state, result.reactions), scale);
   });
   const std::string& title = result.scene.title;
   const auto over = [&](const char* name, const char* what, const std::vector<Panel>& panels) {

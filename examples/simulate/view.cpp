@@ -101,13 +101,14 @@ ordered_json bodies(const kreisel::BodyTree& tree) {
 }
 
 /// Relative, guide and Coriolis part of each body, force and torque.
-std::vector<double> terms_row(const Result& result, double t, const JointState& state) {
+std::vector<double> terms_row(const Result& result, double t, const JointState& state,
+                              const Scale& scale) {
   std::vector<double> values;
   for (int i = 0; i < static_cast<int>(result.scene.bodies.size()); ++i) {
     const auto parts = result.model.terms(t, state, i);
     for (const auto& part : {parts.relative.value, parts.guide.value, parts.coriolis.value}) {
-      values.insert(values.end(), part.resultant.begin(), part.resultant.end());
-      values.insert(values.end(), part.moment.begin(), part.moment.end());
+      for (const double x : part.resultant) values.push_back(shown(x, scale.force));
+      for (const double x : part.moment) values.push_back(shown(x, scale.torque));
     }
   }
   return values;
@@ -125,16 +126,19 @@ std::string text(const ordered_json& values) {
 
 void write_view(const Result& result, const std::filesystem::path& place) {
   const Samples samples(result, most_frames);
+  const Scale scale = scale_of(result);
+  const kreisel::BodyTree& tree = result.model.tree();
   ordered_json run{{"title", result.scene.title},
                    {"up", numbers(up(result.scene))},
-                   {"bodies", bodies(result.model.tree())},
-                   {"columns", columns(result.model.tree(), false)},
-                   {"rows", samples.all([&result](double t, const JointState& state) {
-                      return rounded(row(result.model, t, state, false), row_digits);
+                   {"bodies", bodies(tree)},
+                   {"columns", columns(tree, false)},
+                   {"rows", samples.all([&](double t, const JointState& state) {
+                      return rounded(shown_row(tree, row(result.model, t, state, false), scale),
+                                     row_digits);
                     })}};
   if (result.terms) {
-    run["terms"] = samples.all([&result](double t, const JointState& state) {
-      return rounded(terms_row(result, t, state), arrow_digits);
+    run["terms"] = samples.all([&](double t, const JointState& state) {
+      return rounded(terms_row(result, t, state, scale), arrow_digits);
     });
   }
   constexpr std::string_view mark = "RUN_AS_JSON";

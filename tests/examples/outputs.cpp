@@ -2,7 +2,11 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <regex>
+#include <sstream>
 #include <string>
 #include <sys/stat.h>
 
@@ -29,6 +33,29 @@ std::string rod(const std::string& head, const std::string& name, const std::str
          "\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1\ncentre = [0, 0, -1]\n"
          "inertia = [0.1, 0.1, 0.1]\ninitial = { angle = 0.5 }\n[solve]\nt_end = " +
          t_end + "\noutput_step = 0.01\nmethod = \"verner98\"\n";
+}
+
+/// A body that tumbles in nothing: what its joint carries is rounding.
+const std::string tumbling =
+    "[[body]]\nname = \"body\"\njoint = { kind = \"free\" }\nmass = 1\ninertia = [1, 2, 3]\n"
+    "initial = { angular_velocity = [0.001, 2, 0.001] }\n[solve]\nt_end = 20\n";
+
+/// True if a line shows a number below 1e-13; what tells errors may.
+bool shows_rounding(const std::string& text) {
+  static const std::regex rounding("[0-9]e-(1[3-9]|[2-9][0-9]|[1-9][0-9][0-9])");
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) {
+    const bool of_errors = line.starts_with("error") || line.starts_with("constant");
+    if (!of_errors && std::regex_search(line, rounding)) return true;
+  }
+  return false;
+}
+
+/// The run that a page of --plot holds.
+json run_in(const std::string& page) {
+  const std::string open = "id=\"run\">";
+  const std::size_t begin = page.find(open) + open.size();
+  return test::parsed(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
 /// The text as a basic string of TOML.
@@ -110,6 +137,44 @@ BOOST_AUTO_TEST_CASE(hostile_texts_make_one_line_of_a_mistake) {
       BOOST_TEST(outcome.err.find('\x1b') == std::string::npos);
     }
   }
+}
+
+// All digits are in JSON and CSV; people see 0, and pictures a line at 0.
+BOOST_AUTO_TEST_CASE(rounding_is_not_shown_as_physics) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", tumbling).string();
+  const std::string options = " --reactions --terms --csv " + (folder.path() / "out.csv").string();
+  const Outcome full = test::run(simulate + " " + file + options + " --json");
+  BOOST_TEST_REQUIRE(full.status == 0, full.err);
+  const json final = test::parsed(full.out).at("final");
+  for (const json& torque : {final.at("reactions").at("body").at("torque"),
+                             final.at("terms").at("body").at("relative").at("torque")}) {
+    double most = 0;
+    for (const json& x : torque) most = std::max(most, std::abs(x.get<double>()));
+    BOOST_TEST(most > 0);
+    BOOST_TEST(most < 1e-13);
+  }
+  BOOST_TEST(shows_rounding(folder.read("out.csv")));
+  const Outcome text =
+      test::run(simulate + " " + file + options + " --plot " + folder.path().string());
+  BOOST_TEST_REQUIRE(text.status == 0, text.err);
+  BOOST_TEST(!shows_rounding(text.out), text.out);
+  BOOST_TEST(text.out.find("(0, 0, 0)") != std::string::npos, text.out);
+  BOOST_TEST(!shows_rounding(folder.read("reactions.svg")));
+  const json run = run_in(folder.read("view.html"));
+  for (const json& row : run.at("terms")) {
+    for (const json& x : row) BOOST_TEST(x.get<double>() == 0);
+  }
+}
+
+// The top hangs where components of its attitude are 7e-17 and less.
+BOOST_AUTO_TEST_CASE(rounding_of_studies_is_not_shown) {
+  const std::string command = analyze + " " + KREISEL_SCENES + "/heavy_top.toml";
+  const Outcome text = test::run(command);
+  BOOST_TEST_REQUIRE(text.status == 0, text.err);
+  BOOST_TEST(!shows_rounding(text.out), text.out);
+  BOOST_TEST(text.out.find("attitude (0, 1, 0, 0)") != std::string::npos, text.out);
+  BOOST_TEST(shows_rounding(test::run(command + " --json").out));
 }
 
 BOOST_AUTO_TEST_CASE(a_pipe_gets_all_rows) {

@@ -1,0 +1,106 @@
+#include "scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <variant>
+
+using kreisel::BodyDescription;
+using kreisel::BodyTree;
+using kreisel::JointKind;
+
+namespace {
+
+double gravity_of(const kreisel::SceneFile& scene) {
+  return std::visit(
+      [](const auto& field) {
+        using Field = std::decay_t<decltype(field)>;
+        if constexpr (requires { field.g; }) {
+          return double(field.g.norm());
+        } else if constexpr (requires { field.magnitude; }) {
+          return double(field.magnitude);
+        } else {
+          return std::is_same_v<Field, kreisel::scene_gravity::Ellipsoid> ? 9.8 : 0.0;
+        }
+      },
+      scene.gravity);
+}
+
+/// How far a body's mass and its joint reach.
+double length_of(const BodyDescription& body) {
+  const auto& [mass, first_moment, tensor] = body.inertia.value;
+  const double joint = body.joint.position.norm();
+  if (!(mass > 0)) return joint;
+  const double centre = first_moment.norm() / mass;
+  return std::max({joint, centre, std::sqrt(tensor.matrix().trace() / mass)});
+}
+
+/// Greatest rate, speed and way of one body's joint.
+struct Motion {
+  double turning = 0;
+  double speed = 0;
+  double way = 0;
+};
+
+Motion motion_of(const BodyTree& tree, int body, const std::vector<JointState>& states) {
+  const auto [q, q_count, v, v_count] = tree.place(body);
+  const bool slides = tree.body(body).joint.kind == JointKind::prismatic;
+  const Eigen::Index turns = slides ? 0 : std::min<Eigen::Index>(v_count, 3);
+  Motion most;
+  for (const JointState& state : states) {
+    most.turning = std::max(most.turning, state.rates.segment(v, turns).norm());
+    most.speed = std::max(most.speed, state.rates.segment(v + turns, v_count - turns).norm());
+    if (slides) most.way = std::max(most.way, std::abs(state.coordinates[q]));
+    if (q_count == 7) most.way = std::max(most.way, state.coordinates.segment<3>(q + 4).norm());
+  }
+  return most;
+}
+
+}  // namespace
+
+double Scale::of(const std::string& unit) const {
+  if (unit == "rad" || unit == "1") return angle;
+  if (unit == "m") return length;
+  if (unit == "rad/s") return turning;
+  if (unit == "m/s") return speed;
+  if (unit == "N") return force;
+  if (unit == "N m") return torque;
+  return 0;
+}
+
+void Scale::hold(const kreisel::JointReactions& reactions) {
+  for (const auto& on_body : reactions.on_body) {
+    force = std::max(force, on_body.value.resultant.norm());
+    torque = std::max(torque, on_body.value.moment.norm());
+  }
+  torque = std::max(torque, force * length);
+}
+
+double shown(double x, double size) { return std::abs(x) < 1e-12 * size ? 0 : x; }
+
+Eigen::Vector3d shown(const Eigen::Vector3d& v, double size) {
+  return v.unaryExpr([size](double x) { return shown(x, size); });
+}
+
+Scale scale_of(const kreisel::SceneFile& scene, const BodyTree& tree,
+               const std::vector<JointState>& states) {
+  Scale scale;
+  scale.angle = 1;
+  scale.turning = scene.t_end > 0 ? 1 / scene.t_end : 0;
+  double mass = 0;
+  double momentum = 0;  // the greatest of a body's turning
+  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
+    const BodyDescription& body = tree.body(i);
+    const Motion motion = motion_of(tree, i, states);
+    scale.length = std::max({scale.length, length_of(body), motion.way});
+    scale.speed = std::max(scale.speed, motion.speed);
+    // A rotor's own turning moves no mass to and fro.
+    if (!body.rotor) scale.turning = std::max(scale.turning, motion.turning);
+    mass = std::max(mass, body.inertia.value.mass);
+    momentum = std::max(momentum, body.inertia.value.tensor.matrix().trace() * motion.turning);
+  }
+  scale.speed = std::max(scale.speed, scale.length * scale.turning);
+  scale.force = mass * (gravity_of(scene) + scale.speed * scale.turning);
+  scale.torque = std::max(scale.force * scale.length, momentum * scale.turning);
+  return scale;
+}
