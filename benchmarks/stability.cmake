@@ -10,7 +10,7 @@ function(kreisel_stability)
   add_executable(stability
     ${folder}/stability.cpp ${cases} ${folder}/work_precision/references.cpp)
   target_link_libraries(stability PRIVATE
-    kreisel::exact kreisel::compiled Boost::headers fmt::fmt nlohmann_json::nlohmann_json
+    kreisel::gsl Boost::headers fmt::fmt nlohmann_json::nlohmann_json
     kreisel_strict)
   if(TARGET kreisel_top_truth)
     target_link_libraries(stability PRIVATE kreisel_top_truth)

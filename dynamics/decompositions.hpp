@@ -5,7 +5,7 @@
 #include <complex>
 #include <optional>
 
-#include <dynamics/compiled.hpp>
+#include <motor/api.hpp>
 #include <motor/error.hpp>
 
 /// Decompositions of matrices whose size is known at run time, by Eigen. They are the slowest of
@@ -20,10 +20,10 @@ struct Eigenpairs {
 };
 
 /// Throws : ComputationFailed if the QR iteration does not converge; as all below for eigenvalues
-KREISEL_DECLARED [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
+KREISEL_API [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
 
 /// As eigenpairs(), without vectors.
-KREISEL_DECLARED [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+KREISEL_API [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// Of a symmetric or Hermitian matrix, whose values are real and whose vectors are orthonormal.
 template <class Matrix>
@@ -33,9 +33,9 @@ struct RealEigenpairs {
 };
 
 /// Only the lower triangle is read.
-KREISEL_DECLARED [[nodiscard]] RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(
+KREISEL_API [[nodiscard]] RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(
     const Eigen::MatrixXd& A);
-KREISEL_DECLARED [[nodiscard]] RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(
+KREISEL_API [[nodiscard]] RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(
     const Eigen::MatrixXcd& A);
 
 /// A = U diag(values) V^*, with square U and V.
@@ -46,17 +46,16 @@ struct SingularValues {
   Matrix V;
 };
 
-KREISEL_DECLARED [[nodiscard]] SingularValues<Eigen::MatrixXd> singular_values(
-    const Eigen::MatrixXd& A);
-KREISEL_DECLARED [[nodiscard]] SingularValues<Eigen::MatrixXcd> singular_values(
+KREISEL_API [[nodiscard]] SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A);
+KREISEL_API [[nodiscard]] SingularValues<Eigen::MatrixXcd> singular_values(
     const Eigen::MatrixXcd& A);
 
 /// By full pivoting; nothing where A has not its full rank, to rounding.
-KREISEL_DECLARED [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A);
+KREISEL_API [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A);
 
 /// A^-1 b, by full pivoting.
-KREISEL_DECLARED [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
-                                                         const Eigen::VectorXcd& b);
+KREISEL_API [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
+                                                    const Eigen::VectorXcd& b);
 
 /// The shortest of all x that come nearest to  A x = b.
 struct ShortestSolution {
@@ -67,12 +66,8 @@ struct ShortestSolution {
 /// By a complete orthogonal decomposition.
 ///
 /// threshold : a pivot is 0 below so much of the greatest
-KREISEL_DECLARED [[nodiscard]] ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
-                                                                  const Eigen::VectorXd& b,
-                                                                  double threshold);
+KREISEL_API [[nodiscard]] ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
+                                                             const Eigen::VectorXd& b,
+                                                             double threshold);
 
 }  // namespace kreisel::detail
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/decompositions_defined.hpp>
-#endif

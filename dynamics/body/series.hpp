@@ -8,16 +8,16 @@
 #include <vector>
 
 #include <dynamics/body/workspace.hpp>
-#include <dynamics/compiled.hpp>
 #include <dynamics/guide/series.hpp>
 #include <dynamics/scene/diagonals.hpp>
 #include <dynamics/scene/tensor_of_four.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel::detail {
 
 /// Whether all that acts in a tree has a series that is known: no loads, no rates that rotors are
 /// asked for, and nothing that floats against another body.
-KREISEL_DECLARED [[nodiscard]] bool knows_series(const BodyTree& tree);
+KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree);
 
 /// The Taylor series of the motion of a tree, for TaylorSteps.
 ///
@@ -36,7 +36,7 @@ KREISEL_DECLARED [[nodiscard]] bool knows_series(const BodyTree& tree);
 /// Cost   : linear in the number of bodies; an order takes half an evaluation of the field for one
 ///          link, up to 1.2 in a long chain (benchmarks/body_system.cpp)
 /// Throws : as the field
-class TreeSeries {
+class KREISEL_API TreeSeries {
  public:
   static constexpr int most_order = most_series_order;
 
@@ -50,11 +50,11 @@ class TreeSeries {
   using Felt = std::function<GuideSeries(double t, double h, int order)>;
 
   /// The tree has to outlive this.
-  KREISEL_DECLARED TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt);
+  TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt);
 
   /// Fills the columns 1 to `order` of c with the coefficients of the state in powers of
   /// (time - t)/h, for the motion that has column 0 at t.
-  KREISEL_DECLARED void operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c);
+  void operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c);
 
  private:
   template <class T>
@@ -166,27 +166,27 @@ class TreeSeries {
 
   using Columns = Eigen::Ref<Eigen::MatrixXd>;
 
-  KREISEL_DECLARED void begin(const Columns& c);
+  void begin(const Columns& c);
 
   /// Sums of what is known of order k, and the coordinates' coefficients of the next.
-  KREISEL_DECLARED void prepare(int k, double h, const GuideSeries& felt, Columns& c);
-  KREISEL_DECLARED void prepare_guide(std::size_t k, double per_time, const GuideSeries& felt);
-  KREISEL_DECLARED void prepare_turning(Branch& b, int k, double weight, Columns& c);
-  KREISEL_DECLARED void prepare_sliding(Branch& b, int k, double weight, Columns& c);
-  KREISEL_DECLARED void prepare_ball(Branch& b, int k, double weight, Columns& c);
-  KREISEL_DECLARED void prepare_floating(Branch& b, int k, double weight, Columns& c);
-  KREISEL_DECLARED void prepare_spins(int k, double weight, Columns& c);
+  void prepare(int k, double h, const GuideSeries& felt, Columns& c);
+  void prepare_guide(std::size_t k, double per_time, const GuideSeries& felt);
+  void prepare_turning(Branch& b, int k, double weight, Columns& c);
+  void prepare_sliding(Branch& b, int k, double weight, Columns& c);
+  void prepare_ball(Branch& b, int k, double weight, Columns& c);
+  void prepare_floating(Branch& b, int k, double weight, Columns& c);
+  void prepare_spins(int k, double weight, Columns& c);
 
   /// The motion of order k with the accelerations dv, and what it takes as forces.
-  KREISEL_DECLARED void go_outwards(std::size_t k, double weight, const double* dv);
-  KREISEL_DECLARED void go_inwards(std::size_t k);
+  void go_outwards(std::size_t k, double weight, const double* dv);
+  void go_inwards(std::size_t k);
 
   /// The joint forces of order k less what the motion takes of them.
-  KREISEL_DECLARED void set_left(int k, const Columns& c);
+  void set_left(int k, const Columns& c);
 
   /// The accelerations that bring it about.
-  KREISEL_DECLARED void prepare_response();
-  KREISEL_DECLARED const double* response();
+  void prepare_response();
+  const double* response();
 
   const BodyTree& tree_;
   bool guide_rests_;
@@ -208,7 +208,3 @@ class TreeSeries {
 };
 
 }  // namespace kreisel::detail
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/body/series_defined.hpp>
-#endif

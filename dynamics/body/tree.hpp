@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <dynamics/body/link.hpp>
-#include <dynamics/compiled.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -24,9 +24,9 @@ struct JointPlace {
 ///          later in the list or closing a loop; inertia that no mass can have; axis 0, parallel
 ///          axes of a universal joint; forces that do not fit the joint; a number that is not
 ///          finite; a rotor that is none
-class BodyTree {
+class KREISEL_API BodyTree {
  public:
-  KREISEL_DECLARED explicit BodyTree(std::vector<BodyDescription> bodies);
+  explicit BodyTree(std::vector<BodyDescription> bodies);
 
   [[nodiscard]] const std::vector<BodyDescription>& bodies() const { return bodies_; }
   [[nodiscard]] const std::vector<detail::Link>& links() const { return links_; }
@@ -39,7 +39,7 @@ class BodyTree {
   [[nodiscard]] int balls() const { return balls_; }  ///< spherical and free links
 
   /// Throws : InvalidInput where no body has that name
-  KREISEL_DECLARED [[nodiscard]] int index(const std::string& name) const;
+  [[nodiscard]] int index(const std::string& name) const;
 
   [[nodiscard]] const BodyDescription& body(int i) const {
     return bodies_[static_cast<std::size_t>(i)];
@@ -57,22 +57,22 @@ class BodyTree {
     return last_link_[static_cast<std::size_t>(body)];
   }
 
-  KREISEL_DECLARED [[nodiscard]] JointPlace place(int body) const;
+  [[nodiscard]] JointPlace place(int body) const;
 
   /// Components of the coordinates, then of the rates, that share unit and size.
-  KREISEL_DECLARED [[nodiscard]] std::vector<int> blocks() const;
+  [[nodiscard]] std::vector<int> blocks() const;
 
  private:
-  KREISEL_DECLARED void check_parent(int body) const;
-  KREISEL_DECLARED void append(int body);
+  void check_parent(int body) const;
+  void append(int body);
 
   /// The inertia of a rotor goes to its carrier: whole, if its relative rate is given, else without
   /// that about its axis, about which it does not turn along.
-  KREISEL_DECLARED void weld(detail::Link& link);
-  KREISEL_DECLARED void push(detail::Link& link);
+  void weld(detail::Link& link);
+  void push(detail::Link& link);
 
   /// Gives a link its coordinates and rates.
-  KREISEL_DECLARED void number(detail::Link& link);
+  void number(detail::Link& link);
 
   std::vector<BodyDescription> bodies_;
   std::unordered_map<std::string, int> index_;
@@ -90,7 +90,3 @@ class BodyTree {
 };
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/body/tree_defined.hpp>
-#endif

@@ -57,8 +57,8 @@ struct MotionSpace {
 /// made.
 ///
 /// Cost : 1 kB for each body
-struct BodyWorkspace : detail::MotionSpace<> {
-  KREISEL_DECLARED explicit BodyWorkspace(const BodyTree& tree);
+struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
+  explicit BodyWorkspace(const BodyTree& tree);
 
   std::vector<detail::ArticulatedInertia> articulated;
   std::vector<detail::SingleElimination> single;

@@ -7,13 +7,13 @@
 #include <type_traits>
 #include <utility>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/guide/series.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/shared.hpp>
+#include <motor/api.hpp>
 
 /// Scenes that know only at run time how many components they have: trees of bodies, and what users
 /// write. Their evaluations do not feel a call by pointer, so that one integrator serves them all.
@@ -50,23 +50,21 @@ class AnySeries {
 };
 
 /// As the functions of the same names in runs_of_steps.hpp.
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(
+KREISEL_API [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(
     const SteppedScene& scene, const AnyField& field, const Task& task,
     const Eigen::VectorXd& start, const Accuracy& accuracy);
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
-                                                                    const AnyField& field,
-                                                                    const Task& task,
-                                                                    const Eigen::VectorXd& start,
-                                                                    const EqualLength& length);
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run_taylor_steps(
-    const SteppedScene& scene, const AnySeries& series, const Task& task,
-    const Eigen::VectorXd& start, const Accuracy& accuracy);
+KREISEL_API [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
+                                                               const AnyField& field,
+                                                               const Task& task,
+                                                               const Eigen::VectorXd& start,
+                                                               const EqualLength& length);
+KREISEL_API [[nodiscard]] std::unique_ptr<SteppedRun> run_taylor_steps(const SteppedScene& scene,
+                                                                       const AnySeries& series,
+                                                                       const Task& task,
+                                                                       const Eigen::VectorXd& start,
+                                                                       const Accuracy& accuracy);
 
 /// With a Jacobian by differences.
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);
+KREISEL_API [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);
 
 }  // namespace kreisel::detail
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/solve/any_field_defined.hpp>
-#endif

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/scene/closed_form.hpp>
 #include <dynamics/scene/euler_top.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -21,13 +21,13 @@ class BodySystem;
 /// Error  : the estimate is the rounding of two quaternions, the answer and what it is compared with,
 ///          2^-63 of each radian turned through, and 2^-60 of those that Lagrange's top takes off
 ///                               (tests/dynamics/solve/solve, tests/dynamics/exact/lagrange_top)
-KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<EulerTop::State>> closed_form(
+KREISEL_API [[nodiscard]] std::optional<ClosedForm<EulerTop::State>> closed_form(
     const EulerTop& top, double begin, const EulerTop::State& start);
 
 namespace detail {
 
 /// Of a tree on a guide at rest under a uniform gravity, on guide axes; y = (coordinates; rates).
-KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> closed_form(
+KREISEL_API [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> closed_form(
     const BodyTree& tree, const Vector3<double>& gravity, double begin, const Eigen::VectorXd& y);
 
 }  // namespace detail
@@ -57,8 +57,3 @@ requires detail::is_resting<M>
 }
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/solve/closed_form_defined.hpp>
-#include <dynamics/solve/closed_form_of_bodies_defined.hpp>
-#endif

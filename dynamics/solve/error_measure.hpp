@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/step/advance.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel::detail {
 
@@ -56,7 +56,7 @@ class BlockDistance {
     bookmark(size_);
   }
 
-  KREISEL_DECLARED double operator()(std::span<const double> a, std::span<const double> b);
+  KREISEL_API double operator()(std::span<const double> a, std::span<const double> b);
 
   /// Takes the sizes that blocks have had between the states it is given.
   void note_sizes(std::span<const double> sizes) {
@@ -98,7 +98,3 @@ class ErrorMeasure {
 };
 
 }  // namespace kreisel::detail
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/solve/error_measure_defined.hpp>
-#endif

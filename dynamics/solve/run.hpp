@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/scene/closed_form.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/solve/report.hpp>
@@ -20,6 +19,7 @@
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/bookmark.hpp>
 #include <dynamics/step/radau.hpp>
+#include <motor/api.hpp>
 
 /// Scenes and their integrators as solve() sees them: by the components of states, so that what runs
 /// them and holds one against the other is the same for all, and compiled once. It asks at outputs,
@@ -183,19 +183,18 @@ class SteppedScene {
 };
 
 /// Throws what is wrong with a task for this scene and this start.
-KREISEL_DECLARED void check(const SteppedScene& scene, const Eigen::VectorXd& start,
-                            const Task& task);
+KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start, const Task& task);
 
 /// The motion of a scene by steps; its states are their components, one after another.
-KREISEL_DECLARED [[nodiscard]] Trajectory<double> solve_by_steps(const SteppedScene& scene,
-                                                                 const Eigen::VectorXd& start,
-                                                                 const Task& task);
+KREISEL_API [[nodiscard]] Trajectory<double> solve_by_steps(const SteppedScene& scene,
+                                                            const Eigen::VectorXd& start,
+                                                            const Task& task);
 
 /// The same by the closed form.
-KREISEL_DECLARED [[nodiscard]] Trajectory<double> solve_closed(
+KREISEL_API [[nodiscard]] Trajectory<double> solve_closed(
     const SteppedScene& scene, const Eigen::VectorXd& start, const Task& task,
     const ClosedForm<Eigen::VectorXd>& motion);
 
-KREISEL_DECLARED [[noreturn]] void refuse_closed_form();
+KREISEL_API [[noreturn]] void refuse_closed_form();
 
 }  // namespace kreisel::detail

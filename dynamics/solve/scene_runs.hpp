@@ -168,7 +168,3 @@ class SceneRuns final : public SteppedScene {
 };
 
 }  // namespace kreisel::detail
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/solve/solve_defined.hpp>
-#endif

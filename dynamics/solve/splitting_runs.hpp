@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/solve/fixed_runs.hpp>
 #include <dynamics/solve/run.hpp>
@@ -16,7 +15,7 @@
 namespace kreisel::detail {
 
 /// Whether splitting applies to a scene: a symmetric top under weight.
-KREISEL_DECLARED [[nodiscard]] bool splits(const EulerTop& top) {
+[[nodiscard]] inline bool splits(const EulerTop& top) {
   return top.moments().x() == top.moments().y() && !top.weight_moment().isZero(0) &&
          top.rotor_momentum().isZero(0);
 }
@@ -24,7 +23,7 @@ KREISEL_DECLARED [[nodiscard]] bool splits(const EulerTop& top) {
 /// Whether it pays: the spin commands the weight.
 ///
 /// The weight's part of the nutation is  A k / L^2.
-KREISEL_DECLARED [[nodiscard]] bool is_fast(const EulerTop& top, const EulerTop::State& start) {
+[[nodiscard]] inline bool is_fast(const EulerTop& top, const EulerTop::State& start) {
   const double L = top.moments().cwiseProduct(start.angular_velocity).norm();
   return L * L > 1000 * top.moments().x() * top.weight_moment().norm();
 }
@@ -62,8 +61,8 @@ class SplittingRun final : public Run {
   SplittingSteps<SymmetricFreeFlow, Weight> steps_;
 };
 
-KREISEL_DECLARED [[nodiscard]] FixedRuns splitting_runs(const EulerTop& top, const Task& task,
-                                                        const EulerTop::State& start) {
+[[nodiscard]] inline FixedRuns splitting_runs(const EulerTop& top, const Task& task,
+                                              const EulerTop::State& start) {
   // What the torque turns with on body axes.
   const Vector3<double>& I = top.moments();
   const bool axial = top.weight_moment().x() == 0 && top.weight_moment().y() == 0;

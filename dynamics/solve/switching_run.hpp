@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/decompositions.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/task.hpp>
@@ -27,9 +26,8 @@ namespace kreisel::detail {
 
 /// The eigenvalue of the greatest modulus of the Jacobian; 0 where that is not finite, because a failed
 /// look for stiffness must not end the run.
-KREISEL_DECLARED [[nodiscard]] std::complex<double> fastest_rate(const SteppedScene& scene,
-                                                                 bool other, double t,
-                                                                 const Eigen::VectorXd& y) {
+[[nodiscard]] inline std::complex<double> fastest_rate(const SteppedScene& scene, bool other,
+                                                       double t, const Eigen::VectorXd& y) {
   Eigen::MatrixXd J(y.size(), y.size());
   scene.stiff_field(other)->jacobian(t, y, J);
   std::complex<double> fastest = 0;

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
+#include <motor/api.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -79,12 +79,8 @@ template <class... Words>
 /// result takes those of the start for exact.
 [[nodiscard]] inline double digits_off(const Task& task) { return task.tolerance > 1e-11 ? 1 : 0; }
 
-KREISEL_DECLARED void check(const Task& task);
+KREISEL_API void check(const Task& task);
 
 }  // namespace detail
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/solve/task_defined.hpp>
-#endif

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/compensated.hpp>
 #include <dynamics/step/factors.hpp>
 #include <dynamics/step/jacobian.hpp>
 #include <dynamics/step/radau_coefficients.hpp>
 #include <dynamics/step/shared.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -69,29 +69,29 @@ class StiffFieldOf final : public StiffField {
 class RadauStages {
  public:
   /// The coefficients have to outlive it.
-  KREISEL_DECLARED RadauStages(const RadauCoefficients& coefficients, int components);
+  RadauStages(const RadauCoefficients& coefficients, int components);
 
   Eigen::MatrixXd value;  ///< Z, a column each
 
   /// For the Jacobian of the field and a step of length h.
-  KREISEL_DECLARED void factorise(const Eigen::MatrixXd& J, double h);
+  void factorise(const Eigen::MatrixXd& J, double h);
 
   /// The first guess for a step from the collocation polynomial of the one before: in the latter's
   /// own time, 0 to 1, the new step begins at 1 + begin and is `length` long.
-  KREISEL_DECLARED void guess(double begin, double length);
+  void guess(double begin, double length);
 
   /// One iteration for  Z = h (A (x) 1) f,  f the field's rates at the stages; returns its change.
-  KREISEL_DECLARED const Eigen::MatrixXd& correct(const Eigen::MatrixXd& f, double h);
+  const Eigen::MatrixXd& correct(const Eigen::MatrixXd& f, double h);
 
   /// sum_i weight_i Z_i
-  KREISEL_DECLARED [[nodiscard]] Eigen::VectorXd sum(const Eigen::VectorXd& weight) const;
+  [[nodiscard]] Eigen::VectorXd sum(const Eigen::VectorXd& weight) const;
 
   /// By the real factor, in place: what the error estimate takes.
-  KREISEL_DECLARED void solve(Eigen::VectorXd& rate) const;
+  void solve(Eigen::VectorXd& rate) const;
 
  private:
   /// residual = f - Z A^-t / h
-  KREISEL_DECLARED void set_residual(const Eigen::MatrixXd& f, double h);
+  void set_residual(const Eigen::MatrixXd& f, double h);
 
   const RadauCoefficients* coefficients_;
   Eigen::MatrixXd residual_;
@@ -104,12 +104,11 @@ class RadauStages {
 
 /// The steps of RadauSteps. They know sizes only at run time and of the field what they are given at
 /// each call, so that a program compiles them once for all its scenes.
-class RadauIntegrator {
+class KREISEL_API RadauIntegrator {
  public:
   /// The coefficients have to outlive it.
-  KREISEL_DECLARED RadauIntegrator(const RadauCoefficients& coefficients, double t,
-                                   const Eigen::VectorXd& y, const Accuracy& accuracy,
-                                   std::span<const int> blocks);
+  RadauIntegrator(const RadauCoefficients& coefficients, double t, const Eigen::VectorXd& y,
+                  const Accuracy& accuracy, std::span<const int> blocks);
 
   [[nodiscard]] const double& t() const { return time_.value; }
   [[nodiscard]] const Eigen::VectorXd& y() const { return state_.value; }
@@ -124,11 +123,10 @@ class RadauIntegrator {
   ///
   /// output : the next time at which the state is wanted: what has died out by then need not be
   ///          resolved
-  KREISEL_DECLARED void step_towards(StiffField& field, double end, double output);
+  void step_towards(StiffField& field, double end, double output);
 
   /// The same, if a first step of length h stands; else nothing changes and false is returned.
-  KREISEL_DECLARED [[nodiscard]] bool try_first_step(StiffField& field, double h, double end,
-                                                     double output);
+  [[nodiscard]] bool try_first_step(StiffField& field, double h, double end, double output);
 
   /// The limit of a step's estimate, relative to sizes. It is above the accuracy, for the estimate is of
   /// lower order than the step.
@@ -137,10 +135,10 @@ class RadauIntegrator {
   /// The greatest rate of the field times the length of the last step.
   [[nodiscard]] double fastest_times_step() const { return fastest_ * std::abs(h_before_); }
 
-  KREISEL_DECLARED [[nodiscard]] bool covers(double time) const;
-  KREISEL_DECLARED [[nodiscard]] Eigen::VectorXd at(StiffField& field, double time);
-  KREISEL_DECLARED void back_to(StiffField& field, double time);
-  KREISEL_DECLARED [[nodiscard]] double noise() const;
+  [[nodiscard]] bool covers(double time) const;
+  [[nodiscard]] Eigen::VectorXd at(StiffField& field, double time);
+  void back_to(StiffField& field, double time);
+  [[nodiscard]] double noise() const;
 
   template <class Bookmark>
   void pass(Bookmark& bookmark) {
@@ -180,11 +178,11 @@ class RadauIntegrator {
   [[nodiscard]] int stages() const { return static_cast<int>(coefficients_->node.size()); }
 
   /// Begins a step: the field, its Jacobian and, now and then, its spectrum.
-  KREISEL_DECLARED void begin_step(StiffField& field, double goal);
-  KREISEL_DECLARED void note_spectrum();
+  void begin_step(StiffField& field, double goal);
+  void note_spectrum();
 
   /// The step length, kept so short that growing motions are resolved.
-  KREISEL_DECLARED [[nodiscard]] double limited(double step) const;
+  [[nodiscard]] double limited(double step) const;
 
   /// Motions that a step does not resolve: the greatest of their rates, and what part of the slowest
   /// to die is left at the next output. 0 if there are none.
@@ -194,50 +192,47 @@ class RadauIntegrator {
   };
 
   /// Of a step of length h, an output `left` ahead; those that have died out by then do not count.
-  KREISEL_DECLARED [[nodiscard]] Unresolved unresolved(double h, double left) const;
+  [[nodiscard]] Unresolved unresolved(double h, double left) const;
 
   /// The estimated error of a step of length h whose stages are known, in units of allowed_.
-  KREISEL_DECLARED [[nodiscard]] double estimate(double h);
+  [[nodiscard]] double estimate(double h);
 
   /// The same without what a stiff field makes of a start off its slow motion, which is not the
   /// step's error where it dies out.
-  KREISEL_DECLARED [[nodiscard]] double filtered_estimate(StiffField& field);
+  [[nodiscard]] double filtered_estimate(StiffField& field);
 
   /// The same estimate without what rounding makes of it, which would never fall to the accuracy.
-  KREISEL_DECLARED [[nodiscard]] double estimate_beyond_rounding();
+  [[nodiscard]] double estimate_beyond_rounding();
 
   /// Sets the length of the next step after one of length h that erred by so much, by the controller
   /// of Gustafsson.
-  KREISEL_DECLARED void set_next_step(double h, double worst, bool again);
+  void set_next_step(double h, double worst, bool again);
 
   /// Shortens the next step after one of length h that erred by so much.
-  KREISEL_DECLARED void reject(double h, double worst, double most, double fastest);
+  void reject(double h, double worst, double most, double fastest);
 
-  KREISEL_DECLARED void evaluate(StiffField& field, double t, const Eigen::VectorXd& y,
-                                 double* result);
+  void evaluate(StiffField& field, double t, const Eigen::VectorXd& y, double* result);
   /// The rate of the point that a step tries; whether there is one.
-  KREISEL_DECLARED [[nodiscard]] bool try_rate(StiffField& field, double at, double* result);
-  KREISEL_DECLARED void note_jacobian(StiffField& field);
+  [[nodiscard]] bool try_rate(StiffField& field, double at, double* result);
+  void note_jacobian(StiffField& field);
 
   /// Newton's method for  Z = h (A (x) 1) field(y + Z).
-  KREISEL_DECLARED [[nodiscard]] bool solve_stages(StiffField& field,
-                                                   const Compensated<double>& time,
-                                                   const Compensated<Eigen::VectorXd>& state,
-                                                   double h);
+  [[nodiscard]] bool solve_stages(StiffField& field, const Compensated<double>& time,
+                                  const Compensated<Eigen::VectorXd>& state, double h);
 
   /// Whether the error of a step, where a longer one was rejected before, has fallen with the length
   /// no faster than a jump of the field lets it: then the estimate is the error, not far above it.
-  KREISEL_DECLARED [[nodiscard]] bool jumps_within(double h, double worst) const;
+  [[nodiscard]] bool jumps_within(double h, double worst) const;
 
   /// What is allowed where the estimate is the error, in units of allowed_.
-  KREISEL_DECLARED [[nodiscard]] double least_allowed() const;
+  [[nodiscard]] double least_allowed() const;
 
   /// One step of length h; says whether it stood. Sets the length of the next.
-  KREISEL_DECLARED bool attempt(StiffField& field, double h, double output, bool again);
+  bool attempt(StiffField& field, double h, double output, bool again);
 
   /// A random walk: each stage is off by half a last digit, of which the mean over the stages stays.
   /// What is damped within a step forgets what was.
-  KREISEL_DECLARED void note_noise();
+  void note_noise();
 
   const RadauCoefficients* coefficients_;
   Accuracy accuracy_;
@@ -367,7 +362,3 @@ class RadauSteps {
 };
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/step/radau_defined.hpp>
-#endif

@@ -5,7 +5,7 @@
 #include <complex>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -27,8 +27,8 @@ namespace kreisel {
 ///          same, Stiff differential equations solved by Radau methods, J. Comput. Appl. Math. 111
 ///          (1999) 93
 /// Error  : <= 2e-14 of the greatest                      (tests/dynamics/step/radau.cpp)
-struct RadauCoefficients {
-  KREISEL_DECLARED explicit RadauCoefficients(int stages);
+struct KREISEL_API RadauCoefficients {
+  explicit RadauCoefficients(int stages);
 
   /// An eigenvalue of A^-1 with its column of V and its row of V^-1.
   template <class Number>
@@ -49,7 +49,3 @@ struct RadauCoefficients {
 };
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/step/radau_coefficients_defined.hpp>
-#endif

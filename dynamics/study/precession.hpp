@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/step/accuracy.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -126,12 +126,10 @@ class TechnicalModel {
 ///          kernel turns away from the directions kept, which are those at the start
 /// Throws : ComputationFailed where G + D (across N) is singular at the start; and as ExplicitSteps
 ///          does
-KREISEL_DECLARED [[nodiscard]] TechnicalMotion technical_motion(
-    const TechnicalModel& model, double t_begin, const Eigen::VectorXd& place,
-    const Eigen::VectorXd& u, double t_end, const TechnicalOptions& options = {});
+KREISEL_API [[nodiscard]] TechnicalMotion technical_motion(const TechnicalModel& model,
+                                                           double t_begin,
+                                                           const Eigen::VectorXd& place,
+                                                           const Eigen::VectorXd& u, double t_end,
+                                                           const TechnicalOptions& options = {});
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/study/precession_defined.hpp>
-#endif

@@ -5,8 +5,8 @@
 #include <complex>
 #include <vector>
 
-#include <dynamics/compiled.hpp>
 #include <dynamics/study/precession.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -62,17 +62,13 @@ struct AdmissibilityOptions {
 /// Error     : of the roots as spectrum(); "multiple" are roots that are closer than 1e-6 of their
 ///             size
 /// Throws    : as spectrum(); InvalidInput if A is not positive definite
-KREISEL_DECLARED [[nodiscard]] Admissibility admissibility(
-    const GyroForces& f, const Eigen::MatrixXd& K, const AdmissibilityOptions& options = {});
+KREISEL_API [[nodiscard]] Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
+                                                      const AdmissibilityOptions& options = {});
 
 /// K = -dQ/d(displacement) of a model at rest in a place, by differences.
 ///
 /// Error  : of fourth order in steps of 1e-3
-KREISEL_DECLARED [[nodiscard]] Eigen::MatrixXd stiffness(const TechnicalModel& model, double t,
-                                                         const Eigen::VectorXd& place);
+KREISEL_API [[nodiscard]] Eigen::MatrixXd stiffness(const TechnicalModel& model, double t,
+                                                    const Eigen::VectorXd& place);
 
 }  // namespace kreisel
-
-#ifndef KREISEL_COMPILED
-#include <dynamics/study/precession_admissibility_defined.hpp>
-#endif

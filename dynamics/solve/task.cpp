@@ -1,12 +1,10 @@
-#pragma once
-
 #include <cmath>
 
 #include <dynamics/solve/task.hpp>
 
 namespace kreisel::detail {
 
-KREISEL_DEFINED void check(const Task& task) {
+void check(const Task& task) {
   if (!(task.tolerance >= 1e-15 && task.tolerance <= 1e-2)) {
     refuse_task("tolerance = ", task.tolerance,
                 " lies outside [1e-15, 1e-2], what double precision can promise");

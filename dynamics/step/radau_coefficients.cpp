@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Core>
 
 #include <array>
@@ -92,7 +90,7 @@ using Reals = std::vector<Real>;
 
 }  // namespace detail::radau
 
-KREISEL_DEFINED RadauCoefficients::RadauCoefficients(int stages)
+RadauCoefficients::RadauCoefficients(int stages)
     : node(stages), inverse(stages, stages), error(stages) {
   using namespace detail::radau;
   const auto s = static_cast<std::size_t>(stages);

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -13,8 +11,7 @@
 
 namespace kreisel::detail {
 
-KREISEL_DEFINED double BlockDistance::operator()(std::span<const double> a,
-                                                 std::span<const double> b) {
+double BlockDistance::operator()(std::span<const double> a, std::span<const double> b) {
   using Components = Eigen::Map<const Eigen::VectorXd>;
   const auto count = static_cast<Eigen::Index>(a.size());
   const Components y(b.data(), count);

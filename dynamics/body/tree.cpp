@@ -1,5 +1,3 @@
-#pragma once
-
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -36,8 +34,7 @@ inline void turn_about(Link& link, const Vector3<double>& axis) {
 
 }  // namespace detail
 
-KREISEL_DEFINED BodyTree::BodyTree(std::vector<BodyDescription> bodies)
-    : bodies_(std::move(bodies)) {
+BodyTree::BodyTree(std::vector<BodyDescription> bodies) : bodies_(std::move(bodies)) {
   links_.emplace_back();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const std::string& name = bodies_[i].name;
@@ -59,13 +56,13 @@ KREISEL_DEFINED BodyTree::BodyTree(std::vector<BodyDescription> bodies)
   }
 }
 
-KREISEL_DEFINED int BodyTree::index(const std::string& name) const {
+int BodyTree::index(const std::string& name) const {
   const auto found = index_.find(name);
   if (found == index_.end()) throw InvalidInput("body '" + name + "' does not exist");
   return found->second;
 }
 
-KREISEL_DEFINED JointPlace BodyTree::place(int body) const {
+JointPlace BodyTree::place(int body) const {
   const std::size_t slot = link(body);
   const detail::Link& last =
       slot < links_.size() ? links_[slot] : rotors_[slot - links_.size()].link;
@@ -74,13 +71,13 @@ KREISEL_DEFINED JointPlace BodyTree::place(int body) const {
   return {last.q, detail::coordinate_count(last.kind), last.v, detail::rate_count(last.kind)};
 }
 
-KREISEL_DEFINED std::vector<int> BodyTree::blocks() const {
+std::vector<int> BodyTree::blocks() const {
   std::vector<int> blocks = coordinate_blocks_;
   blocks.insert(blocks.end(), rate_blocks_.begin(), rate_blocks_.end());
   return blocks;
 }
 
-KREISEL_DEFINED void BodyTree::check_parent(int body) const {
+void BodyTree::check_parent(int body) const {
   const std::string& name = this->body(body).name;
   const std::string& parent = this->body(body).parent;
   if (parent == "guide") return;
@@ -105,7 +102,7 @@ KREISEL_DEFINED void BodyTree::check_parent(int body) const {
   detail::refuse_body(name, "its parent '" + parent + "' comes later; parents come first");
 }
 
-KREISEL_DEFINED void BodyTree::append(int body) {
+void BodyTree::append(int body) {
   using detail::LinkKind;
   const BodyDescription& b = this->body(body);
   detail::Link link;
@@ -151,7 +148,7 @@ KREISEL_DEFINED void BodyTree::append(int body) {
   if (b.rotor) forces_.back().constant += b.rotor->torque;
 }
 
-KREISEL_DEFINED void BodyTree::weld(detail::Link& link) {
+void BodyTree::weld(detail::Link& link) {
   const BodyDescription& b = body(link.body);
   number(link);
   detail::RotorLink rotor;
@@ -169,12 +166,12 @@ KREISEL_DEFINED void BodyTree::weld(detail::Link& link) {
   rotors_.push_back(rotor);
 }
 
-KREISEL_DEFINED void BodyTree::push(detail::Link& link) {
+void BodyTree::push(detail::Link& link) {
   number(link);
   links_.push_back(link);
 }
 
-KREISEL_DEFINED void BodyTree::number(detail::Link& link) {
+void BodyTree::number(detail::Link& link) {
   using detail::LinkKind;
   link.q = coordinates_;
   link.v = rates_;

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,7 +8,7 @@
 
 namespace kreisel::detail {
 
-KREISEL_DEFINED bool knows_series(const BodyTree& tree) {
+bool knows_series(const BodyTree& tree) {
   if (!tree.loaded().empty()) return false;
   for (const RotorLink& rotor : tree.rotors()) {
     if (tree.body(rotor.link.body).rotor->acceleration) return false;
@@ -62,9 +60,9 @@ inline void TreeSeries::Branch::accelerate(double per_time) {
   gamma.lower = next.after() + dw.next;
 }
 
-inline void TreeSeries::Ball::put_attitude(std::size_t k, const Four& a) {
-  q[k] = a;
-  q_cycled[k] = a.next();
+inline void TreeSeries::Ball::put_attitude(std::size_t k, const Four& coefficient) {
+  q[k] = coefficient;
+  q_cycled[k] = coefficient.next();
   Four square(0, 0, 0, 0);
   Four next = square;
   Four by_w = square;
@@ -77,8 +75,7 @@ inline void TreeSeries::Ball::put_attitude(std::size_t k, const Four& a) {
   turn[k] = turn_back[k].transposed();
 }
 
-KREISEL_DEFINED TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field,
-                                       Felt felt)
+TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
     : tree_(tree),
       guide_rests_(guide_rests),
       field_(std::move(field)),
@@ -146,8 +143,7 @@ KREISEL_DEFINED TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, F
   }
 }
 
-KREISEL_DEFINED void TreeSeries::operator()(double t, double h, int order,
-                                            Eigen::Ref<Eigen::MatrixXd> c) {
+void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c) {
   y_ = c.col(0);
   field_(t, y_, rate_, workspace_);
   c.col(1) = h * rate_;
@@ -173,7 +169,7 @@ KREISEL_DEFINED void TreeSeries::operator()(double t, double h, int order,
   }
 }
 
-KREISEL_DEFINED void TreeSeries::begin(const Columns& c) {
+void TreeSeries::begin(const Columns& c) {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     Branch& b = branches_[i];
     const Matrix3<double> to_own = b.own_axes * workspace_.pose[i].R.transpose();
@@ -197,7 +193,7 @@ KREISEL_DEFINED void TreeSeries::begin(const Columns& c) {
   }
 }
 
-KREISEL_DEFINED void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
+void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
   const auto at = static_cast<std::size_t>(k);
   const double weight = h / (k + 1);
   c.col(k + 1).head(tree_.coordinates()).setZero();
@@ -225,8 +221,7 @@ KREISEL_DEFINED void TreeSeries::prepare(int k, double h, const GuideSeries& fel
   prepare_spins(k, weight, c);
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_guide(std::size_t k, double per_time,
-                                               const GuideSeries& felt) {
+void TreeSeries::prepare_guide(std::size_t k, double per_time, const GuideSeries& felt) {
   Branch& guide = branches_[0];
   guide.a = -1.0 * four(felt.g[k]);
   if (guide_rests_) return;
@@ -237,7 +232,7 @@ KREISEL_DEFINED void TreeSeries::prepare_guide(std::size_t k, double per_time,
   guide_gamma_[k] = guide.gamma;
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
   c(b.q, k + 1) = weight * c(b.v, k);
   const auto last = static_cast<std::size_t>(k);
   double by_cos = c(b.v, k) * b.cos[0];
@@ -266,7 +261,7 @@ KREISEL_DEFINED void TreeSeries::prepare_turning(Branch& b, int k, double weight
   b.inner = inner + turned_left(inner_left);
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
   c(b.q, k + 1) = weight * c(b.v, k);
   const auto last = static_cast<std::size_t>(k);
   Slider& slider = sliders_[b.number];
@@ -281,7 +276,7 @@ KREISEL_DEFINED void TreeSeries::prepare_sliding(Branch& b, int k, double weight
   }
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
   Ball& ball = balls_[b.number];
   const auto last = static_cast<std::size_t>(k);
   Four x(0, 0, 0, 0);
@@ -315,7 +310,7 @@ KREISEL_DEFINED void TreeSeries::prepare_ball(Branch& b, int k, double weight, C
   ball.n_sum = n.sum();
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
   c.col(k + 1).segment<3>(b.q + 4) = weight * c.col(k).segment<3>(b.v + 3);
   b.carried = Four(0, 0, 0, 0);
   if (guide_rests_) return;
@@ -335,7 +330,7 @@ KREISEL_DEFINED void TreeSeries::prepare_floating(Branch& b, int k, double weigh
   }
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
+void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
   const auto last = static_cast<std::size_t>(k);
   for (Spin& spin : spins_) {
     const Four& w = branches_[spin.carrier].w[last];
@@ -350,7 +345,7 @@ KREISEL_DEFINED void TreeSeries::prepare_spins(int k, double weight, Columns& c)
   }
 }
 
-KREISEL_DEFINED void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
+void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     Branch& b = branches_[i];
     const Branch& above = branches_[b.parent];
@@ -395,7 +390,7 @@ KREISEL_DEFINED void TreeSeries::go_outwards(std::size_t k, double weight, const
   }
 }
 
-KREISEL_DEFINED void TreeSeries::go_inwards(std::size_t k) {
+void TreeSeries::go_inwards(std::size_t k) {
   for (std::size_t i = branches_.size() - 1; i > 0; --i) {
     Branch& b = branches_[i];
     Four f = b.force;
@@ -427,7 +422,7 @@ KREISEL_DEFINED void TreeSeries::go_inwards(std::size_t k) {
   }
 }
 
-KREISEL_DEFINED void TreeSeries::set_left(int k, const Columns& c) {
+void TreeSeries::set_left(int k, const Columns& c) {
   for (int i = 0; i < tree_.rates(); ++i) {
     const auto number = static_cast<std::size_t>(i);
     const JointForce& f = tree_.forces()[number];
@@ -455,7 +450,7 @@ KREISEL_DEFINED void TreeSeries::set_left(int k, const Columns& c) {
   }
 }
 
-KREISEL_DEFINED void TreeSeries::prepare_response() {
+void TreeSeries::prepare_response() {
   if (fours_ == 0) return;
   left_.setZero();
   for (int j = 0; j < tree_.rates(); ++j) {
@@ -470,7 +465,7 @@ KREISEL_DEFINED void TreeSeries::prepare_response() {
   }
 }
 
-KREISEL_DEFINED const double* TreeSeries::response() {
+const double* TreeSeries::response() {
   if (fours_ == 0) {
     respond(tree_, left_, workspace_);
     return workspace_.acceleration.data();

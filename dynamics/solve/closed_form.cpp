@@ -1,5 +1,3 @@
-#pragma once
-
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,8 +9,8 @@
 
 namespace kreisel {
 
-KREISEL_DEFINED std::optional<ClosedForm<EulerTop::State>> closed_form(
-    const EulerTop& top, double begin, const EulerTop::State& start) {
+std::optional<ClosedForm<EulerTop::State>> closed_form(const EulerTop& top, double begin,
+                                                       const EulerTop::State& start) {
   const Vector3<double>& I = top.moments();
   const Vector3<double>& k = top.weight_moment();
   const Vector3<double>& h = top.rotor_momentum();

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -19,6 +17,7 @@
 #include <dynamics/decompositions.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession.hpp>
+#include <dynamics/study/precession_point.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -40,72 +39,6 @@ inline constexpr std::array<std::array<double, 5>, 5> five_point_slopes{{{-25, 4
                                                                          {1, -8, 0, 8, -1},
                                                                          {-1, 6, -18, 10, 3},
                                                                          {3, -16, 36, -48, 25}}};
-
-// Products are taken two by two, of matrices and not of expressions, each of which the compiler would
-// have to make anew.
-[[nodiscard]] inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
-  return A * B;
-}
-
-/// The orthonormal directions N of kept accelerations and P of the others.
-struct Directions {
-  Eigen::MatrixXd N;
-  Eigen::MatrixXd P;
-  Eigen::MatrixXd N_t = N.transpose();
-  Eigen::MatrixXd P_t = P.transpose();
-
-  [[nodiscard]] static Directions of(const Eigen::MatrixXd& G, const TechnicalOptions& options) {
-    const Eigen::Index n = G.rows();
-    if (options.kept == KeptAccelerations::none) {
-      return {Eigen::MatrixXd(n, 0), Eigen::MatrixXd::Identity(n, n)};
-    }
-    const auto [s, U, V] = singular_values(G);
-    const Eigen::Index rank = (s.array() > options.rank_tolerance * s[0]).count();
-    return {V.rightCols(n - rank), V.leftCols(rank)};
-  }
-};
-
-/// What belongs to one place: u from the technical equations, and how they answer to more force.
-struct TechnicalPoint {
-  GyroForces f;
-  Eigen::MatrixXd W;  ///< G + D
-  Eigen::VectorXd u;
-  Eigen::VectorXd dv;   ///< of v = N' u
-  Eigen::MatrixXd way;  ///< P, and how the kept directions go along: way' A N = 0
-  Eigen::FullPivLU<Eigen::MatrixXd> across;  ///< way' W P
-  bool determined = true;                    ///< whether it is regular
-  Eigen::LDLT<Eigen::MatrixXd> along;        ///< N' A N
-
-  TechnicalPoint(const Directions& d, GyroForces forces, const Eigen::VectorXd& v)
-      : f(std::move(forces)), W(f.G + f.D), way(d.P) {
-    if (d.N.cols() > 0) {
-      const Eigen::MatrixXd N_A = product(d.N_t, f.A);
-      along.compute(product(N_A, d.N));
-      way -= product(d.N, along.solve(product(N_A, d.P)));
-    }
-    if (d.P.cols() > 0) {
-      across.compute(product(product(way.transpose(), W), d.P));
-      across.setThreshold(1e-12);
-      determined = across.isInvertible();
-    }
-    u = velocity(d, f.Q, v);
-    dv = acceleration(d, f.Q - W * u);
-  }
-
-  [[nodiscard]] Eigen::VectorXd velocity(const Directions& d, const Eigen::VectorXd& Q,
-                                         const Eigen::VectorXd& v) const {
-    Eigen::VectorXd whole = d.N * v;
-    if (d.P.cols() == 0) return whole;
-    const Eigen::VectorXd left = Q - W * whole;
-    const Eigen::VectorXd w = across.solve(Eigen::VectorXd(way.transpose() * left));
-    return whole + d.P * w;
-  }
-  [[nodiscard]] Eigen::VectorXd acceleration(const Directions& d,
-                                             const Eigen::VectorXd& force) const {
-    if (d.N.cols() == 0) return Eigen::VectorXd(0);
-    return along.solve(Eigen::VectorXd(d.N_t * force));
-  }
-};
 
 /// The nutations that a motion starts with because its velocity is another than the technical one:
 /// A_f w' + way' W P w = 0 with A_f = P' A way: across, the kept directions giving way.
@@ -158,10 +91,9 @@ struct Nutations {
 
 }  // namespace detail
 
-KREISEL_DEFINED TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
-                                                 const Eigen::VectorXd& place,
-                                                 const Eigen::VectorXd& u, double t_end,
-                                                 const TechnicalOptions& options) {
+TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
+                                 const Eigen::VectorXd& place, const Eigen::VectorXd& u,
+                                 double t_end, const TechnicalOptions& options) {
   using Eigen::VectorXd;
   using Point = detail::TechnicalPoint;
   const auto clock = std::chrono::steady_clock::now();

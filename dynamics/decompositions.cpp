@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -17,7 +15,7 @@ inline void check_convergence(Eigen::ComputationInfo info) {
   throw ComputationFailed("the QR iteration for eigenvalues does not converge");
 }
 
-KREISEL_DEFINED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
+Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
   if (A.size() == 0) return {};
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
   check_convergence(solver.info());
@@ -26,7 +24,7 @@ KREISEL_DEFINED Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
 
 // As Eigen::EigenSolver has it, which takes the compiler twice as long: it also compiles what makes
 // vectors.
-KREISEL_DEFINED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   if (A.size() == 0) return {};
   if (!A.allFinite()) check_convergence(Eigen::NoConvergence);
   const Eigen::Index n = A.rows();
@@ -53,21 +51,21 @@ KREISEL_DEFINED Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   return values;
 }
 
-KREISEL_DEFINED RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {
+RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {
   if (A.size() == 0) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-KREISEL_DEFINED RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(const Eigen::MatrixXcd& A) {
+RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(const Eigen::MatrixXcd& A) {
   if (A.size() == 0) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(A);
   check_convergence(solver.info());
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-KREISEL_DEFINED SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A) {
+SingularValues<Eigen::MatrixXd> singular_values(const Eigen::MatrixXd& A) {
   if (A.size() == 0) {
     return {{},
             Eigen::MatrixXd::Identity(A.rows(), A.rows()),
@@ -77,7 +75,7 @@ KREISEL_DEFINED SingularValues<Eigen::MatrixXd> singular_values(const Eigen::Mat
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
-KREISEL_DEFINED SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::MatrixXcd& A) {
+SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::MatrixXcd& A) {
   if (A.size() == 0) {
     return {{},
             Eigen::MatrixXcd::Identity(A.rows(), A.rows()),
@@ -87,20 +85,20 @@ KREISEL_DEFINED SingularValues<Eigen::MatrixXcd> singular_values(const Eigen::Ma
   return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
-KREISEL_DEFINED std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A) {
+std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A) {
   if (A.size() == 0) return A;
   const Eigen::FullPivLU<Eigen::MatrixXcd> factors(A);
   if (!factors.isInvertible()) return std::nullopt;
   return Eigen::MatrixXcd(factors.inverse());
 }
 
-KREISEL_DEFINED Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
+Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
   if (A.size() == 0) return Eigen::VectorXcd::Zero(A.cols());
   return A.fullPivLu().solve(b);
 }
 
-KREISEL_DEFINED ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
-                                                   const Eigen::VectorXd& b, double threshold) {
+ShortestSolution shortest_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                   double threshold) {
   if (A.size() == 0) return {Eigen::VectorXd::Zero(A.cols()), 0};
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
   factors.setThreshold(threshold);

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -11,7 +9,6 @@
 
 #include <dynamics/decompositions.hpp>
 #include <dynamics/step/radau.hpp>
-#include <dynamics/step/radau_coefficients_defined.hpp>
 
 namespace kreisel::detail {
 
@@ -36,7 +33,7 @@ void combine(const Eigen::MatrixXd& columns, const Vector& weight, Vector& resul
   }
 }
 
-KREISEL_DEFINED RadauStages::RadauStages(const RadauCoefficients& coefficients, int components)
+RadauStages::RadauStages(const RadauCoefficients& coefficients, int components)
     : value(Eigen::MatrixXd::Zero(components, coefficients.node.size())),
       coefficients_(&coefficients),
       residual_(value),
@@ -45,14 +42,14 @@ KREISEL_DEFINED RadauStages::RadauStages(const RadauCoefficients& coefficients, 
       pair_(components),
       complex_(coefficients.pairs.size()) {}
 
-KREISEL_DEFINED void RadauStages::factorise(const Eigen::MatrixXd& J, double h) {
+void RadauStages::factorise(const Eigen::MatrixXd& J, double h) {
   factorise_shifted(J, coefficients_->real.eigenvalue / h, real_);
   for (std::size_t k = 0; k < complex_.size(); ++k) {
     factorise_shifted(J, coefficients_->pairs[k].eigenvalue / h, complex_[k]);
   }
 }
 
-KREISEL_DEFINED void RadauStages::guess(double begin, double length) {
+void RadauStages::guess(double begin, double length) {
   // Newton's divided differences through (0, 0) and the old stages.
   const Eigen::VectorXd& c = coefficients_->node;
   const Eigen::Index stages = c.size();
@@ -82,7 +79,7 @@ KREISEL_DEFINED void RadauStages::guess(double begin, double length) {
   }
 }
 
-KREISEL_DEFINED const Eigen::MatrixXd& RadauStages::correct(const Eigen::MatrixXd& f, double h) {
+const Eigen::MatrixXd& RadauStages::correct(const Eigen::MatrixXd& f, double h) {
   set_residual(f, h);
   const auto& real = coefficients_->real;
   combine(residual_, real.covector, mode_);
@@ -105,15 +102,15 @@ KREISEL_DEFINED const Eigen::MatrixXd& RadauStages::correct(const Eigen::MatrixX
   return change_;
 }
 
-KREISEL_DEFINED Eigen::VectorXd RadauStages::sum(const Eigen::VectorXd& weight) const {
+Eigen::VectorXd RadauStages::sum(const Eigen::VectorXd& weight) const {
   Eigen::VectorXd result(value.rows());
   combine(value, weight, result);
   return result;
 }
 
-KREISEL_DEFINED void RadauStages::solve(Eigen::VectorXd& rate) const { real_.solve(rate); }
+void RadauStages::solve(Eigen::VectorXd& rate) const { real_.solve(rate); }
 
-KREISEL_DEFINED void RadauStages::set_residual(const Eigen::MatrixXd& f, double h) {
+void RadauStages::set_residual(const Eigen::MatrixXd& f, double h) {
   const Eigen::MatrixXd& inverse = coefficients_->inverse;
   const Eigen::Index n = value.rows();
   for (Eigen::Index j = 0; j < value.cols(); ++j) {
@@ -126,9 +123,9 @@ KREISEL_DEFINED void RadauStages::set_residual(const Eigen::MatrixXd& f, double 
   }
 }
 
-KREISEL_DEFINED RadauIntegrator::RadauIntegrator(const RadauCoefficients& coefficients, double t,
-                                                 const Eigen::VectorXd& y, const Accuracy& accuracy,
-                                                 std::span<const int> blocks)
+RadauIntegrator::RadauIntegrator(const RadauCoefficients& coefficients, double t,
+                                 const Eigen::VectorXd& y, const Accuracy& accuracy,
+                                 std::span<const int> blocks)
     : coefficients_(&coefficients),
       accuracy_(accuracy),
       sizes_(blocks, accuracy.smallest, y),
@@ -150,7 +147,7 @@ KREISEL_DEFINED RadauIntegrator::RadauIntegrator(const RadauCoefficients& coeffi
                       accuracy.relative);
 }
 
-KREISEL_DEFINED void RadauIntegrator::begin_step(StiffField& field, double goal) {
+void RadauIntegrator::begin_step(StiffField& field, double goal) {
   start_time_ = on_this_side(t(), goal, jumps_);
   evaluate(field, start_time_, y(), rate_.data());
   if (!finite(rate_)) stop_integration(t(), "the field is not finite");
@@ -164,7 +161,7 @@ KREISEL_DEFINED void RadauIntegrator::begin_step(StiffField& field, double goal)
   if (goal > t() ? t() >= rejected_.end : t() <= rejected_.end) rejected_ = {};
 }
 
-KREISEL_DEFINED void RadauIntegrator::note_spectrum() {
+void RadauIntegrator::note_spectrum() {
   if (tangent_.size() == 0) return;
   constexpr int steps_between = 4;
   const double fastest_before = fastest_;
@@ -186,15 +183,14 @@ KREISEL_DEFINED void RadauIntegrator::note_spectrum() {
   looked_at_ = step_;
 }
 
-KREISEL_DEFINED double RadauIntegrator::limited(double step) const {
+double RadauIntegrator::limited(double step) const {
   // A motion too small for the estimate has to grow as it should: a step of 3 time constants errs by
   // 2e-9 of it.
   const double limit = growth_ > 0 ? 3 / growth_ : step;
   return std::min({step, limit, barrier_.steps > 0 ? barrier_.length : step});
 }
 
-KREISEL_DEFINED RadauIntegrator::Unresolved RadauIntegrator::unresolved(double h,
-                                                                        double left) const {
+RadauIntegrator::Unresolved RadauIntegrator::unresolved(double h, double left) const {
   constexpr double resolved = 2;  // radian, or time constants: these steps of order 13 err by 1e-10
   Unresolved found;
   for (Eigen::Index i = 0; i < rates_of_field_.cols(); ++i) {
@@ -207,7 +203,7 @@ KREISEL_DEFINED RadauIntegrator::Unresolved RadauIntegrator::unresolved(double h
   return found;
 }
 
-KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end, double output) {
+void RadauIntegrator::step_towards(StiffField& field, double end, double output) {
   if (!std::isfinite(end)) refuse_steps("the end time is not finite");
   if (end == t()) return;
   const double goal = next_stop(t(), end, jumps_);
@@ -230,8 +226,7 @@ KREISEL_DEFINED void RadauIntegrator::step_towards(StiffField& field, double end
   }
 }
 
-KREISEL_DEFINED bool RadauIntegrator::try_first_step(StiffField& field, double h, double end,
-                                                     double output) {
+bool RadauIntegrator::try_first_step(StiffField& field, double h, double end, double output) {
   const double goal = next_stop(t(), end, jumps_);
   step_ = h;
   begin_step(field, goal);
@@ -241,11 +236,11 @@ KREISEL_DEFINED bool RadauIntegrator::try_first_step(StiffField& field, double h
   return attempt(field, std::copysign(h, left), output, false);
 }
 
-KREISEL_DEFINED bool RadauIntegrator::covers(double time) const {
+bool RadauIntegrator::covers(double time) const {
   return time >= std::min(before_.time.value, t()) && time <= std::max(before_.time.value, t());
 }
 
-KREISEL_DEFINED Eigen::VectorXd RadauIntegrator::at(StiffField& field, double time) {
+Eigen::VectorXd RadauIntegrator::at(StiffField& field, double time) {
   if (!covers(time)) {
     refuse_steps("t = ", time, " s lies outside the last step, [", before_.time.value, ", ", t(),
                  "] s");
@@ -271,7 +266,7 @@ KREISEL_DEFINED Eigen::VectorXd RadauIntegrator::at(StiffField& field, double ti
   return shorter.y();
 }
 
-KREISEL_DEFINED void RadauIntegrator::back_to(StiffField& field, double time) {
+void RadauIntegrator::back_to(StiffField& field, double time) {
   const Eigen::VectorXd there = at(field, time);
   time_ = {time, 0};
   state_ = {there, Eigen::VectorXd::Zero(there.size())};
@@ -279,31 +274,29 @@ KREISEL_DEFINED void RadauIntegrator::back_to(StiffField& field, double time) {
   h_before_ = 0;
 }
 
-KREISEL_DEFINED double RadauIntegrator::noise() const {
+double RadauIntegrator::noise() const {
   return sizes_.relative(noise_.cwiseSqrt(), Eigen::VectorXd::Zero(noise_.size()));
 }
 
-KREISEL_DEFINED void RadauIntegrator::evaluate(StiffField& field, double t,
-                                               const Eigen::VectorXd& y, double* result) {
+void RadauIntegrator::evaluate(StiffField& field, double t, const Eigen::VectorXd& y,
+                               double* result) {
   effort_.evaluations += 1;
   field.rate(t, y, result);
 }
 
-KREISEL_DEFINED bool RadauIntegrator::try_rate(StiffField& field, double at, double* result) {
+bool RadauIntegrator::try_rate(StiffField& field, double at, double* result) {
   return failure_.is_spared(t(), [&] { evaluate(field, at, point_, result); });
 }
 
-KREISEL_DEFINED void RadauIntegrator::note_jacobian(StiffField& field) {
+void RadauIntegrator::note_jacobian(StiffField& field) {
   effort_.jacobians += 1;
   tangent_.resize(y().size(), y().size());
   field.jacobian(start_time_, y(), tangent_);
   if (!finite(tangent_)) stop_integration(t(), "the Jacobian of the field is not finite");
 }
 
-KREISEL_DEFINED bool RadauIntegrator::solve_stages(StiffField& field,
-                                                   const Compensated<double>& time,
-                                                   const Compensated<Eigen::VectorXd>& state,
-                                                   double h) {
+bool RadauIntegrator::solve_stages(StiffField& field, const Compensated<double>& time,
+                                   const Compensated<Eigen::VectorXd>& state, double h) {
   constexpr int most_iterations = 12;
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
   // What is left errs to the same side in every step: it has to stay below what rounding makes.
@@ -338,18 +331,18 @@ KREISEL_DEFINED bool RadauIntegrator::solve_stages(StiffField& field,
   return change_before <= stalled;
 }
 
-KREISEL_DEFINED bool RadauIntegrator::jumps_within(double h, double worst) const {
+bool RadauIntegrator::jumps_within(double h, double worst) const {
   if (rejected_.step == 0) return false;
   const double shortened = std::abs(h) / rejected_.step;
   return worst > rejected_.worst * shortened * shortened;
 }
 
-KREISEL_DEFINED double RadauIntegrator::least_allowed() const {
+double RadauIntegrator::least_allowed() const {
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   return std::min(1.0, std::max(accuracy_.relative, rounding) / allowed_);
 }
 
-KREISEL_DEFINED double RadauIntegrator::estimate(double h) {
+double RadauIntegrator::estimate(double h) {
   change_ = stages_.value.col(stages() - 1);
   from_stages_ = stages_.sum(coefficients_->error) / h;
   error_ = rate_ + from_stages_;
@@ -357,7 +350,7 @@ KREISEL_DEFINED double RadauIntegrator::estimate(double h) {
   return sizes_.relative(error_, change_) / allowed_;
 }
 
-KREISEL_DEFINED double RadauIntegrator::filtered_estimate(StiffField& field) {
+double RadauIntegrator::filtered_estimate(StiffField& field) {
   point_ = y() + error_;
   if (!try_rate(field, start_time_, error_.data())) return std::numeric_limits<double>::infinity();
   error_ += from_stages_;
@@ -365,7 +358,7 @@ KREISEL_DEFINED double RadauIntegrator::filtered_estimate(StiffField& field) {
   return sizes_.relative(error_, change_) / allowed_;
 }
 
-KREISEL_DEFINED double RadauIntegrator::estimate_beyond_rounding() {
+double RadauIntegrator::estimate_beyond_rounding() {
   if (added_.size() == 0) return sizes_.relative(error_, change_) / allowed_;
   point_ = error_;
   for (Eigen::Index i = 0; i < point_.size(); ++i) {
@@ -374,7 +367,7 @@ KREISEL_DEFINED double RadauIntegrator::estimate_beyond_rounding() {
   return sizes_.relative(point_, change_) / allowed_;
 }
 
-KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most, double fastest) {
+void RadauIntegrator::reject(double h, double worst, double most, double fastest) {
   const double root = 1.0 / (stages() + 1);
   stages_.value = kept_;
   effort_.rejected += 1;
@@ -387,8 +380,7 @@ KREISEL_DEFINED void RadauIntegrator::reject(double h, double worst, double most
   rejected_ = {t() + h, std::abs(h), worst};
 }
 
-KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, double output,
-                                              bool again) {
+bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool again) {
   if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t()) || h == 0) {
     failure_.tell(t());
     stop_integration(t(), "the step has become too short to move time on");
@@ -444,7 +436,7 @@ KREISEL_DEFINED bool RadauIntegrator::attempt(StiffField& field, double h, doubl
   return true;
 }
 
-KREISEL_DEFINED void RadauIntegrator::set_next_step(double h, double worst, bool again) {
+void RadauIntegrator::set_next_step(double h, double worst, bool again) {
   const double root = 1.0 / (stages() + 1);
   double aim = 0.9 * std::pow(worst, -root);
   if (h_before_ != 0) {
@@ -454,7 +446,7 @@ KREISEL_DEFINED void RadauIntegrator::set_next_step(double h, double worst, bool
   worst_before_ = std::max(worst, 1e-2);
 }
 
-KREISEL_DEFINED void RadauIntegrator::note_noise() {
+void RadauIntegrator::note_noise() {
   constexpr double half_digit = std::numeric_limits<double>::epsilon() / 2;
   const double eigenvalue = coefficients_->real.eigenvalue;
   const double part = half_digit * eigenvalue / std::sqrt(double(stages()));

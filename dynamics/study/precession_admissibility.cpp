@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 
 #include <dynamics/decompositions.hpp>
 #include <dynamics/study/precession_admissibility.hpp>
-#include <dynamics/study/precession_defined.hpp>
+#include <dynamics/study/precession_point.hpp>
 #include <dynamics/study/spectrum.hpp>
 
 namespace kreisel {
@@ -57,8 +55,8 @@ namespace detail {
 
 }  // namespace detail
 
-KREISEL_DEFINED Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
-                                            const AdmissibilityOptions& options) {
+Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
+                            const AdmissibilityOptions& options) {
   using Complex = std::complex<double>;
   const Eigen::Index n = K.rows();
   Admissibility result;
@@ -140,8 +138,7 @@ KREISEL_DEFINED Admissibility admissibility(const GyroForces& f, const Eigen::Ma
   return result;
 }
 
-KREISEL_DEFINED Eigen::MatrixXd stiffness(const TechnicalModel& model, double t,
-                                          const Eigen::VectorXd& place) {
+Eigen::MatrixXd stiffness(const TechnicalModel& model, double t, const Eigen::VectorXd& place) {
   const Eigen::Index n = model.forces(t, place).A.rows();
   const double h = 1e-3;
   Eigen::MatrixXd K(n, n);

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -21,13 +19,11 @@
 #include <dynamics/scene/closed_form.hpp>
 #include <dynamics/scene/euler_top.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
-#include <dynamics/solve/error_measure_defined.hpp>
 #include <dynamics/solve/fixed_runs.hpp>
 #include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/splitting_runs.hpp>
 #include <dynamics/solve/switching_run.hpp>
-#include <dynamics/solve/task_defined.hpp>
 #include <dynamics/step/bookmark.hpp>
 #include <motor/error.hpp>
 
@@ -38,8 +34,8 @@ namespace kreisel::detail {
 }
 
 /// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
-KREISEL_DECLARED [[nodiscard]] double pace(const SteppedScene& scene, const Task& task,
-                                           const Eigen::VectorXd& start) {
+[[nodiscard]] double pace(const SteppedScene& scene, const Task& task,
+                          const Eigen::VectorXd& start) {
   const auto steps = scene.explicit_run(task, start, {1e-14, task.smallest}, false);
   const double end = task.times.back();
   double t = task.begin;
@@ -63,13 +59,14 @@ KREISEL_DECLARED [[nodiscard]] double pace(const SteppedScene& scene, const Task
 }
 
 /// once : the length of a step of Verner98 at 1e-14; 16 Gauss points carry about twice as far
-KREISEL_DECLARED [[nodiscard]] FixedRuns gauss_runs(double once) {
+[[nodiscard]] FixedRuns gauss_runs(double once) {
   return {Method::gauss16, 16, 2 * once, once / 2};
 }
 
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run(
-    const AdaptiveRuns& runs, double setting, const SteppedScene& scene, const Task& task,
-    const Eigen::VectorXd& start, bool moved, double shaken = 0) {
+[[nodiscard]] std::unique_ptr<SteppedRun> run(const AdaptiveRuns& runs, double setting,
+                                              const SteppedScene& scene, const Task& task,
+                                              const Eigen::VectorXd& start, bool moved,
+                                              double shaken = 0) {
   const bool other = moved && scene.has_other();
   const Accuracy accuracy{setting, task.smallest, task.most_evaluations, shaken};
   if (runs.method() == Method::radau13) {
@@ -82,11 +79,10 @@ KREISEL_DECLARED [[nodiscard]] std::unique_ptr<SteppedRun> run(
   return scene.explicit_run(task, start, accuracy, other);
 }
 
-KREISEL_DECLARED [[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs,
-                                                        const EqualLength& length,
-                                                        const SteppedScene& scene, const Task& task,
-                                                        const Eigen::VectorXd& start, bool moved,
-                                                        double /*shaken*/ = 0) {
+[[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs, const EqualLength& length,
+                                       const SteppedScene& scene, const Task& task,
+                                       const Eigen::VectorXd& start, bool moved,
+                                       double /*shaken*/ = 0) {
   const bool other = moved && scene.has_other();
   if (runs.method() == Method::gauss16) return scene.gauss_run(task, start, length, other);
   return std::make_unique<SplittingRun>(
@@ -159,14 +155,13 @@ inline double InvariantWatch::least_error(double t, std::span<const double> y,
 
 using Clock = std::chrono::steady_clock;
 
-KREISEL_DECLARED [[nodiscard]] double seconds_since(const Clock::time_point& begin) {
+[[nodiscard]] double seconds_since(const Clock::time_point& begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
 /// Notes a state and its error for the output time t; says whether the run is to go on.
-KREISEL_DECLARED [[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch,
-                                           const Task& task, double t,
-                                           std::span<const double> state, double error) {
+[[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch, const Task& task,
+                          double t, std::span<const double> state, double error) {
   result.times.push_back(t);
   result.states.insert(result.states.end(), state.begin(), state.end());
   result.errors.push_back(error);
@@ -176,9 +171,8 @@ KREISEL_DECLARED [[nodiscard]] bool output(Trajectory<double>& result, Invariant
   return false;
 }
 
-KREISEL_DEFINED Trajectory<double> solve_closed(const SteppedScene& scene,
-                                                const Eigen::VectorXd& start, const Task& task,
-                                                const ClosedForm<Eigen::VectorXd>& motion) {
+Trajectory<double> solve_closed(const SteppedScene& scene, const Eigen::VectorXd& start,
+                                const Task& task, const ClosedForm<Eigen::VectorXd>& motion) {
   const Clock::time_point clock = Clock::now();
   Trajectory<double> result;
   RunReport& report = result.report;
@@ -374,7 +368,7 @@ class ComparisonTimes {
 
 /// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
 /// tenfold.
-KREISEL_DECLARED [[nodiscard]] double forecast(const Task& task, double t, double error) {
+[[nodiscard]] double forecast(const Task& task, double t, double error) {
   const double ahead = (task.times.back() - task.begin) / (t - task.begin);
   return error * (ahead < 10 ? ahead : 10);
 }
@@ -669,9 +663,8 @@ template <class Runs>
 /// it is by size that errors are measured.
 ///
 /// Throws : where the state is so small that products of its components underflow
-KREISEL_DECLARED [[nodiscard]] Eigen::VectorXd start_of_steps(const SteppedScene& scene,
-                                                              const Eigen::VectorXd& start,
-                                                              double smallest) {
+[[nodiscard]] Eigen::VectorXd start_of_steps(const SteppedScene& scene,
+                                             const Eigen::VectorXd& start, double smallest) {
   using Limits = std::numeric_limits<double>;
   const double least = std::sqrt(Limits::min() / Limits::epsilon());
   Eigen::VectorXd y = start;
@@ -691,8 +684,8 @@ KREISEL_DECLARED [[nodiscard]] Eigen::VectorXd start_of_steps(const SteppedScene
   return y;
 }
 
-KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
-                                                  const Eigen::VectorXd& given, const Task& task) {
+Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::VectorXd& given,
+                                  const Task& task) {
   const Clock::time_point clock = Clock::now();
   const Eigen::VectorXd start = start_of_steps(scene, given, task.smallest);
   const bool automatic = task.method == Method::automatic;
@@ -766,7 +759,7 @@ KREISEL_DEFINED Trajectory<double> solve_by_steps(const SteppedScene& scene,
 }
 
 /// Throws where a quaternion of the start turns nothing, which no step would mend or tell.
-KREISEL_DECLARED void check_start(const SteppedScene& scene, const Eigen::VectorXd& start) {
+void check_start(const SteppedScene& scene, const Eigen::VectorXd& start) {
   int begin = 0;
   for (const int components : scene.blocks()) {
     if (components == 4 && norm(start, begin, components) == 0) {
@@ -777,7 +770,7 @@ KREISEL_DECLARED void check_start(const SteppedScene& scene, const Eigen::Vector
 }
 
 /// Throws what is wrong with the method asked for, for this scene.
-KREISEL_DECLARED void check_method(const SteppedScene& scene, const Task& task) {
+void check_method(const SteppedScene& scene, const Task& task) {
   const auto refuse = [&](const char* why) {
     refuse_task("method ", name(task.method), " does not apply: ", why);
   };
@@ -791,14 +784,13 @@ KREISEL_DECLARED void check_method(const SteppedScene& scene, const Task& task) 
   refuse("it is for an EulerTop with two equal moments, under weight and without rotor");
 }
 
-KREISEL_DEFINED void check(const SteppedScene& scene, const Eigen::VectorXd& start,
-                           const Task& task) {
+void check(const SteppedScene& scene, const Eigen::VectorXd& start, const Task& task) {
   check(task);
   check_method(scene, task);
   check_start(scene, start);
 }
 
-KREISEL_DEFINED void refuse_closed_form() {
+void refuse_closed_form() {
   refuse_task("method closed form does not apply: this scene has none that is known");
 }
 

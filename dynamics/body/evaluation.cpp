@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -19,7 +17,7 @@
 
 namespace kreisel {
 
-KREISEL_DEFINED BodyWorkspace::BodyWorkspace(const BodyTree& tree)
+BodyWorkspace::BodyWorkspace(const BodyTree& tree)
     : MotionSpace(tree),
       articulated(tree.links().size()),
       single(tree.links().size()),
@@ -61,13 +59,12 @@ namespace detail {
   return equation_of_motion(s.inertia, s.V_rel, X * s.guide.V, dV_rel, X * s.guide.dV);
 }
 
-KREISEL_DEFINED void check_gravity(const Gravity& gravity) {
+void check_gravity(const Gravity& gravity) {
   if (is_finite(field<double>(gravity, {}))) return;
   throw InvalidInput("system of bodies: gravity is not finite");
 }
 
-KREISEL_DEFINED void refuse_sizes(const BodyTree& tree, Eigen::Index components,
-                                  Eigen::Index per_rate) {
+void refuse_sizes(const BodyTree& tree, Eigen::Index components, Eigen::Index per_rate) {
   if (components != tree.coordinates() + tree.rates()) {
     throw InvalidInput("system of bodies: a state of " + std::to_string(components) +
                        " components, not " + std::to_string(tree.coordinates() + tree.rates()));
@@ -79,7 +76,7 @@ KREISEL_DEFINED void refuse_sizes(const BodyTree& tree, Eigen::Index components,
   throw InvalidInput("system of bodies: the workspace is of another system");
 }
 
-KREISEL_DEFINED void require_dual_loads(const BodyTree& tree) {
+void require_dual_loads(const BodyTree& tree) {
   for (const int body : tree.loaded()) {
     const auto& loads = tree.body(body).loads;
     if (std::all_of(loads.begin(), loads.end(),
@@ -102,9 +99,8 @@ KREISEL_DEFINED void require_dual_loads(const BodyTree& tree) {
   return y.data() + tree.coordinates();
 }
 
-KREISEL_DEFINED void accelerate(const BodyTree& tree, const Surroundings& now,
-                                const Eigen::VectorXd& y, const Eigen::VectorXd& extra,
-                                double* result, BodyWorkspace& w) {
+void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                const Eigen::VectorXd& extra, double* result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses_and_motions(tree, root(now), y.data(), v, nullptr, w);
   take_off_loads(tree, now.t, now.guide, v, w);
@@ -115,15 +111,14 @@ KREISEL_DEFINED void accelerate(const BodyTree& tree, const Surroundings& now,
   eliminate_and_solve(tree, w.joint_force.data(), result, w);
 }
 
-KREISEL_DEFINED void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
-                           Eigen::VectorXd& result, BodyWorkspace& w) {
+void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+           Eigen::VectorXd& result, BodyWorkspace& w) {
   result.resize(y.size());
   set_coordinate_rates(tree, y.data(), rates_of(tree, y), result.data());
   accelerate(tree, now, y, {}, result.data() + tree.coordinates(), w);
 }
 
-KREISEL_DEFINED void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force,
-                             BodyWorkspace& w) {
+void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force, BodyWorkspace& w) {
   std::fill(w.motion.begin(), w.motion.end(), LinkMotion<>{});
   std::fill(w.force.begin(), w.force.end(), Motor<>{});
   ask_no_spin_up(w);
@@ -131,9 +126,8 @@ KREISEL_DEFINED void respond(const BodyTree& tree, const Eigen::VectorXd& joint_
   solve(tree, joint_force.data(), w.acceleration.data(), w);
 }
 
-KREISEL_DEFINED void joint_forces(const BodyTree& tree, const Surroundings& now,
-                                  const Eigen::VectorXd& y, const Eigen::VectorXd& dv,
-                                  Eigen::VectorXd& result, BodyWorkspace& w) {
+void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                  const Eigen::VectorXd& dv, Eigen::VectorXd& result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   result.resize(tree.rates());
   set_poses_and_motions(tree, root(now), y.data(), v, dv.size() ? dv.data() : nullptr, w);
@@ -147,14 +141,14 @@ KREISEL_DEFINED void joint_forces(const BodyTree& tree, const Surroundings& now,
   result -= w.joint_force;
 }
 
-KREISEL_DEFINED void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y,
-                                 Eigen::MatrixXd& result, BodyWorkspace& w) {
+void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::MatrixXd& result,
+                 BodyWorkspace& w) {
   set_poses(tree, y.data(), w);
   mass_matrix(tree, w, result);
 }
 
-KREISEL_DEFINED void reactions(const BodyTree& tree, const Surroundings& now,
-                               const Eigen::VectorXd& y, JointReactions& result, BodyWorkspace& w) {
+void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+               JointReactions& result, BodyWorkspace& w) {
   accelerate(tree, now, y, {}, w.acceleration.data(), w);
   joint_forces(tree, now, y, w.acceleration, result.drive, w);
   for (const Link& link : tree.links()) {
@@ -190,9 +184,8 @@ inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double*
   complete_rotor_forces(tree, v, dv, w);
 }
 
-KREISEL_DEFINED void reaction_parts(const BodyTree& tree, const Surroundings& now,
-                                    const Eigen::VectorXd& y, std::vector<ReactionParts>& result,
-                                    BodyWorkspace& w) {
+void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                    std::vector<ReactionParts>& result, BodyWorkspace& w) {
   const LinkMotion<> moving{now.guide.V.value.resultant, now.guide.dV.value.resultant,
                             now.guide.origin_acceleration()};
   const Vector3<double> zero = Vector3<double>::Zero();
@@ -222,8 +215,8 @@ KREISEL_DEFINED void reaction_parts(const BodyTree& tree, const Surroundings& no
   note(&ReactionParts::forces);
 }
 
-KREISEL_DEFINED Situation<> situation(const BodyTree& tree, const Surroundings& now,
-                                      const Eigen::VectorXd& y, int body, BodyWorkspace& w) {
+Situation<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                      int body, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses(tree, y.data(), w);
   set_places(tree, v, w);
@@ -231,8 +224,8 @@ KREISEL_DEFINED Situation<> situation(const BodyTree& tree, const Surroundings& 
   return situation(tree, now.t, now.guide, body, w);
 }
 
-KREISEL_DEFINED ForceParts<Body> terms(const BodyTree& tree, const Surroundings& now,
-                                       const Eigen::VectorXd& y, int body, BodyWorkspace& w) {
+ForceParts<Body> terms(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                       int body, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   accelerate(tree, now, y, {}, w.acceleration.data(), w);
   set_motions(tree, root(now), v, w.acceleration.data(), w);
@@ -243,12 +236,12 @@ KREISEL_DEFINED ForceParts<Body> terms(const BodyTree& tree, const Surroundings&
                        field(now.gravity, now.guide), w);
 }
 
-KREISEL_DEFINED Terms terms(const BodyTree& tree, bool guide_rests, const Gravity& gravity) {
+Terms terms(const BodyTree& tree, bool guide_rests, const Gravity& gravity) {
   return equation_terms(tree, guide_rests, gravity);
 }
 
-KREISEL_DEFINED BodyBalance balance(const BodyTree& tree, const Surroundings& now,
-                                    const Eigen::VectorXd& y, BodyWorkspace& w) {
+BodyBalance balance(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                    BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses(tree, y.data(), w);
   set_places(tree, v, w);
@@ -256,10 +249,8 @@ KREISEL_DEFINED BodyBalance balance(const BodyTree& tree, const Surroundings& no
   return balance(tree, now.t, now.guide, now.gravity, y.data(), v, w);
 }
 
-KREISEL_DEFINED std::vector<std::pair<std::string, double>> conserved(const BodyTree& tree,
-                                                                      const Surroundings& now,
-                                                                      const Eigen::VectorXd& y,
-                                                                      BodyWorkspace& w) {
+std::vector<std::pair<std::string, double>> conserved(const BodyTree& tree, const Surroundings& now,
+                                                      const Eigen::VectorXd& y, BodyWorkspace& w) {
   std::vector<std::pair<std::string, double>> result;
   const BodyBalance sums = balance(tree, now, y, w);
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {

@@ -1,5 +1,3 @@
-#pragma once
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -18,7 +16,7 @@
 namespace kreisel::detail {
 
 /// The only body of a tree, where no joint force and no load acts on it.
-KREISEL_DECLARED [[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
+[[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
   const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && tree.loaded().empty();
   if (!alone || !tree.links().back().moved_by_forces()) return nullptr;
   for (const JointForce& force : tree.forces()) {
@@ -32,8 +30,7 @@ KREISEL_DECLARED [[nodiscard]] const BodyDescription* lone_body(const BodyTree& 
 inline constexpr double of_inputs = std::numeric_limits<double>::epsilon();
 
 /// In long double, so that what the description is turned into is off by nothing else.
-KREISEL_DECLARED [[nodiscard]] Eigen::Quaternion<exact::Real> orientation(
-    const kreisel::Joint& joint) {
+[[nodiscard]] Eigen::Quaternion<exact::Real> orientation(const kreisel::Joint& joint) {
   return joint.orientation.cast<exact::Real>().normalized();
 }
 
@@ -41,7 +38,7 @@ KREISEL_DECLARED [[nodiscard]] Eigen::Quaternion<exact::Real> orientation(
 /// of its first moment that is across it, at q = 0:
 ///
 ///   Theta q'' + E sin q + F cos q = 0,   E = p.g,   F = -a.(p x g)
-KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> pendulum_motion(
+[[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> pendulum_motion(
     const BodyDescription& body, const Vector3<double>& gravity, double begin,
     const Eigen::VectorXd& y) {
   using exact::Real;
@@ -82,8 +79,8 @@ struct TurningBody {
 };
 
 /// Nothing where the axes are no principal axes, or the weight lies on none.
-KREISEL_DECLARED [[nodiscard]] std::optional<TurningBody> turning_body(
-    const BodyDescription& body, const Vector3<double>& gravity) {
+[[nodiscard]] std::optional<TurningBody> turning_body(const BodyDescription& body,
+                                                      const Vector3<double>& gravity) {
   using exact::Real;
   const Inertia<>& inertia = body.inertia.value;
   const Symmetric3<>& T = inertia.tensor;
@@ -145,9 +142,10 @@ class FlightError {
   double velocity_ = 0;
 };
 
-KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> top_motion(
-    const BodyDescription& body, const Vector3<double>& gravity, double begin,
-    const Eigen::VectorXd& y) {
+[[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> top_motion(const BodyDescription& body,
+                                                                    const Vector3<double>& gravity,
+                                                                    double begin,
+                                                                    const Eigen::VectorXd& y) {
   using exact::Real;
   using Quaternion = Eigen::Quaternion<Real>;
   const auto turning = turning_body(body, gravity);
@@ -200,8 +198,9 @@ KREISEL_DECLARED [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> top_mo
   return ClosedForm<Eigen::VectorXd>{motion->name, at, error};
 }
 
-KREISEL_DEFINED std::optional<ClosedForm<Eigen::VectorXd>> closed_form(
-    const BodyTree& tree, const Vector3<double>& gravity, double begin, const Eigen::VectorXd& y) {
+std::optional<ClosedForm<Eigen::VectorXd>> closed_form(const BodyTree& tree,
+                                                       const Vector3<double>& gravity, double begin,
+                                                       const Eigen::VectorXd& y) {
   const BodyDescription* body = lone_body(tree);
   if (!body) return std::nullopt;
   switch (body->joint.kind) {

@@ -1,1 +1,0 @@
-#include <dynamics/solve/any_field_defined.hpp>

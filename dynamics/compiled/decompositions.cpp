@@ -1,1 +1,0 @@
-#include <dynamics/decompositions_defined.hpp>
