@@ -10,7 +10,7 @@
 #include <random>
 
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include "scenes/chains.hpp"
 #include "scenes/hand_written.hpp"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include <dynamics/ensemble/ensemble.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 
 #include <tests/support/worst.hpp>
 

@@ -14,10 +14,10 @@
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/euler_top.hpp>
-#include <dynamics/scene/held_body.hpp>
-#include <dynamics/scene/pendulum.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/pendulum/pendulum.hpp>
 
 #include "hand_written_fields.hpp"
 

@@ -13,9 +13,9 @@
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/study/prune.hpp>
 

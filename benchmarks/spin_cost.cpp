@@ -21,17 +21,16 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <programs/shared/gnuplot.hpp>
+#include <programs/shared/progress.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <dynamics/step/advance.hpp>
 #include <dynamics/study/precession_bodies.hpp>
-
-#include "shared/gnuplot.hpp"
-#include "shared/progress.hpp"
 
 using namespace kreisel;
 

@@ -5,7 +5,7 @@
 #include <exception>
 #include <string>
 
-#include <dynamics/scene/cardan_gyro_laws.hpp>
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
 #include <dynamics/step/advance.hpp>
 
 // A free gyro in Cardan's suspension, tilted by 0.5 rad, gets a knock and nutates. Its rings have

@@ -6,7 +6,7 @@
 #include <string>
 
 #include <dynamics/exact/free_top.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/step/advance.hpp>
 
 // Euler's top turns about its middle axis, which is unstable: every 30 s it turns over and back

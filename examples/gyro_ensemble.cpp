@@ -14,16 +14,15 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <programs/shared/command_line.hpp>
+#include <programs/shared/progress.hpp>
 #include <string>
 #include <vector>
 
 #include <dynamics/ensemble/ensemble.hpp>
 #include <dynamics/ensemble/part_files.hpp>
 #include <dynamics/file/atomic_file.hpp>
-#include <dynamics/scene/cardan_gyro_laws.hpp>
-
-#include "shared/command_line.hpp"
-#include "shared/progress.hpp"
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
 
 #ifdef KREISEL_WITH_MPI
 #include <dynamics/ensemble/ranks.hpp>

@@ -4,7 +4,7 @@
 #include <exception>
 
 #include <dynamics/guide/harmonic.hpp>
-#include <dynamics/scene/cardan_gyro_laws.hpp>
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
 #include <dynamics/step/advance.hpp>
 
 // A free gyro on a ship that rolls about x by 10 degrees, every 8 s, and yaws about z by 2 degrees,

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <exception>
 
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <dynamics/step/advance.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/spectrum.hpp>

@@ -5,7 +5,7 @@
 #include <exception>
 #include <string>
 
-#include <dynamics/scene/gyro_platform.hpp>
+#include <dynamics/gimbal/gyro_platform.hpp>
 #include <dynamics/study/campbell.hpp>
 
 // A platform that floats freely, steadied by three gyros whose frames hang on springs. Prints the

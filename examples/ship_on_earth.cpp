@@ -7,8 +7,8 @@
 #include <dynamics/guide/chain.hpp>
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/posed.hpp>
-#include <dynamics/scene/earth_gravitation.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/load/earth_gravitation.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <motor/attitude.hpp>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <dynamics/guide/posed.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <motor/attitude.hpp>
 

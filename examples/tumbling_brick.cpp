@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <dynamics/guide/earth_frame.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/oblate_gravitation.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/load/oblate_gravitation.hpp>
 #include <dynamics/step/advance.hpp>
 #include <motor/attitude.hpp>
 

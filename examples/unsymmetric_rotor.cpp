@@ -6,7 +6,7 @@
 #include <exception>
 #include <string>
 
-#include <dynamics/scene/unsymmetric_rotor.hpp>
+#include <dynamics/gimbal/unsymmetric_rotor.hpp>
 #include <dynamics/study/stability_boundaries.hpp>
 
 // A rotor with unequal transverse moments A and B runs at constant speed between springs of 1 and

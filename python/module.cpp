@@ -2,8 +2,8 @@
 
 #include <chrono>
 #include <cmath>
-#include <examples/simulate/columns.hpp>
-#include <examples/simulate/model.hpp>
+#include <dynamics/file/columns.hpp>
+#include <dynamics/file/model.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>

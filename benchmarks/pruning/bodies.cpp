@@ -2,8 +2,8 @@
 
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/translating.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <dynamics/guide/motion.hpp>
-#include <dynamics/scene/load.hpp>
+#include <dynamics/load/load.hpp>
 
 /// Right-hand sides in three forms: general, as one would write it who knows nothing of the scene;
 /// pruned, the same scene by its name; by hand, the least that computes the same numbers.

@@ -2,7 +2,7 @@
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"

@@ -1,7 +1,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/held_body.hpp>
-#include <dynamics/scene/pendulum.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/pendulum/pendulum.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"

@@ -1,6 +1,6 @@
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/euler_top.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"

@@ -23,8 +23,8 @@
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "chains.hpp"
 #include "hand_written.hpp"

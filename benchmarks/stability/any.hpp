@@ -3,7 +3,7 @@
 #include <functional>
 
 #include <dynamics/guide/motion.hpp>
-#include <dynamics/scene/load.hpp>
+#include <dynamics/load/load.hpp>
 
 namespace stability {
 

@@ -6,7 +6,7 @@
 
 #include <dynamics/exact/lagrange_top.hpp>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/axisymmetric_body.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
 
 #include "any.hpp"
 #include "trial.hpp"

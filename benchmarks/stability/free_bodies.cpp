@@ -7,7 +7,7 @@
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/free_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 
 #include "any.hpp"
 #include "trial.hpp"

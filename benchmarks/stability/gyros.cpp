@@ -11,7 +11,7 @@
 
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "../work_precision/references.hpp"
 #include "trial.hpp"

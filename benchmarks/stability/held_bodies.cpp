@@ -10,7 +10,7 @@
 #include <dynamics/exact/lagrange_top.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/step/explicit.hpp>
 
 #include "any.hpp"

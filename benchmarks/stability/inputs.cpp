@@ -14,12 +14,12 @@
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/axisymmetric_body.hpp>
-#include <dynamics/scene/body_system.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/held_body.hpp>
-#include <dynamics/scene/pendulum_deviation.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/pendulum/pendulum_deviation.hpp>
 
 #include "top_trial.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include <dynamics/exact/pendulum_motion.hpp>
-#include <dynamics/scene/physical_pendulum.hpp>
+#include <dynamics/pendulum/physical_pendulum.hpp>
 
 #include "trial.hpp"
 

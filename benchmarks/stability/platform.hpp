@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dynamics/scene/gyro_platform.hpp>
+#include <dynamics/gimbal/gyro_platform.hpp>
 
 namespace stability {
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include <dynamics/scene/unsymmetric_rotor.hpp>
+#include <dynamics/gimbal/unsymmetric_rotor.hpp>
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/spectrum.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include "platform.hpp"
 #include "trial.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 
 #include "trial.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <dynamics/exact/free_top.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 
 #include "top_trial.hpp"
 #include "truth.hpp"

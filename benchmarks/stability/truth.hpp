@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 
 namespace stability {
 

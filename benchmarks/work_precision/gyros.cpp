@@ -8,12 +8,12 @@
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/body_system.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "methods.hpp"
 #include "scenes.hpp"
-#include <tests/dynamics/scene/rotors_reference.hpp>
+#include <tests/dynamics/tree/rotors_reference.hpp>
 #include <tests/support/json.hpp>
 
 namespace work_precision {

@@ -9,8 +9,8 @@
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/held_body.hpp>
-#include <dynamics/scene/physical_pendulum.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/pendulum/physical_pendulum.hpp>
 
 #include "methods.hpp"
 #include "references.hpp"

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include <dynamics/guide/analytic.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <motor/attitude.hpp>
 
 #include "methods.hpp"

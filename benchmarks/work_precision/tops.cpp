@@ -7,7 +7,7 @@
 
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/step/splitting.hpp>
 
 #include "methods.hpp"

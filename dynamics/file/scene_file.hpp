@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include <dynamics/body/description.hpp>
+#include <dynamics/tree/description.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rates.hpp>

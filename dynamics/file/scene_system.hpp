@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <dynamics/file/scene_file.hpp>
-#include <dynamics/scene/felt_motion.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
 
 namespace kreisel {
 

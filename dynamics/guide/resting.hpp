@@ -5,7 +5,7 @@
 namespace kreisel {
 
 /// A frame that rests in another: u = v = 0. Exact; all kinds at rest give the same numbers as this
-/// one (tests/dynamics/scene/held_body.cpp).
+/// one (tests/dynamics/rigid/fixed_point_body.cpp).
 template <class G = Guide, class I = Inertial, class S = double>
 struct RestingFrame {
   Displacement<I, G, S> X = {};  ///< where it rests

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/closed_form.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/model/closed_form.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <motor/api.hpp>
 
 namespace kreisel {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include <dynamics/body/tree.hpp>
+#include <dynamics/tree/tree.hpp>
 #include <dynamics/exact/elliptic.hpp>
-#include <dynamics/scene/physical_pendulum.hpp>
+#include <dynamics/pendulum/physical_pendulum.hpp>
 #include <dynamics/solve/closed_form.hpp>
 
 /// Systems of bodies that are no more than a pendulum or a top.

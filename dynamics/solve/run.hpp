@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/scene/closed_form.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/model/closed_form.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/accuracy.hpp>

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/any_field.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/run.hpp>

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/scene/closed_form.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/model/closed_form.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
 #include <dynamics/solve/fixed_runs.hpp>
 #include <dynamics/solve/missed.hpp>

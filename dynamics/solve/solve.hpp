@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include <dynamics/scene/closed_form.hpp>
+#include <dynamics/model/closed_form.hpp>
 #include <dynamics/solve/closed_form.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/run.hpp>

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/fixed_runs.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/task.hpp>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/body/tree.hpp>
+#include <dynamics/tree/tree.hpp>
 
 namespace kreisel {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/scene/rotor_matrices.hpp>
+#include <dynamics/tree/rotor_matrices.hpp>
 #include <dynamics/study/precession.hpp>
 #include <motor/attitude.hpp>
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/study/precession.hpp>
 
 namespace kreisel {

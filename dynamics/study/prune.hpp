@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include <dynamics/scene/structure.hpp>
+#include <dynamics/model/structure.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/task.hpp>
 #include <dynamics/step/advance.hpp>
@@ -417,7 +417,7 @@ struct PrunedQuantities {
 /// Units  : radian, second; parts of the state that are no attitudes: relative
 /// Error  : measured, no theorem: true effect / bound is <= 0.83 in 1050 random scenes and for 1165
 ///          terms left out, tolerances of 1e-9 to 1e-2, and above 0.1 in 703 of 709
-///          (tests/dynamics/scene/prune.cpp). It holds for the motions that are given, not for
+///          (tests/dynamics/study/prune.cpp). It holds for the motions that are given, not for
 ///          others; for an ensemble give its outermost ones
 /// Cost   : two runs of both fields for each term, and two more for each that joins others left out.
 ///          In 4 scenes fields became 1.7 to 4.8 times as fast, runs of solve() 1.4 to 3 times; the

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <dynamics/decompositions.hpp>
-#include <dynamics/scene/rotor_matrices.hpp>
+#include <dynamics/tree/rotor_matrices.hpp>
 #include <dynamics/study/spectrum.hpp>
 
 namespace kreisel {

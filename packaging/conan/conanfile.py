@@ -14,18 +14,18 @@ class Kreisel(ConanFile):
     version = "0.1.0"
     description = "Rigid bodies, pendulums and gyros seen from moving reference frames"
     license = "BSD-3-Clause"
-    package_type = "header-library"
+    package_type = "static-library"
     settings = "os", "arch", "compiler", "build_type"
     options = {
         "earth": [True, False],  # kreisel::earth, gravity of the ellipsoid
-        "exact": [True, False],  # kreisel::exact, special functions and steppers of GSL: GPL-3
+        "gsl": [True, False],  # kreisel::gsl, steppers and special functions of GSL: GPL-3
     }
-    default_options = {"earth": False, "exact": False}
+    default_options = {"earth": False, "gsl": False}
 
     def export_sources(self):
         root = os.path.join(self.recipe_folder, "..", "..")
         for pattern in ("CMakeLists.txt", "README.md", "LICENSE", "motor/*", "dynamics/*", "docs/*", "examples/*",
-                        "packaging/*"):
+                        "programs/*", "packaging/*"):
             copy(self, pattern, root, self.export_sources_folder)
 
     def layout(self):
@@ -35,7 +35,7 @@ class Kreisel(ConanFile):
         self.requires("eigen/3.4.0", transitive_headers=True)
         if self.options.earth:
             self.requires("geographiclib/[>=2.1 <3]", transitive_headers=True)
-        if self.options.exact:
+        if self.options.gsl:
             self.requires("gsl/[>=2.7 <3]", transitive_headers=True)
 
     def build_requirements(self):
@@ -45,15 +45,11 @@ class Kreisel(ConanFile):
     def validate(self):
         check_min_cppstd(self, 20)
 
-    def package_id(self):
-        # Headers are the same on every machine; which of them there are, the options say.
-        self.info.settings.clear()
-
     def generate(self):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables.update({
             "KREISEL_WITH_GEOGRAPHICLIB": bool(self.options.earth),
-            "KREISEL_WITH_GSL": bool(self.options.exact),
+            "KREISEL_WITH_GSL": bool(self.options.gsl),
             "KREISEL_WITH_SUNDIALS": False,
             "KREISEL_WITH_SCENE_FILES": False,
             "KREISEL_BUILD_TESTS": False,
@@ -65,12 +61,15 @@ class Kreisel(ConanFile):
             PkgConfigDeps(self).generate()
 
     def build(self):
-        CMake(self).configure()
+        cmake = CMake(self)
+        cmake.configure()
+        cmake.build()
 
     def package(self):
         CMake(self).install()
         copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
-        rmdir(self, os.path.join(self.package_folder, "share"))  # Conan writes its own
+        for folder in ("share", "lib/cmake", "lib/pkgconfig"):  # Conan writes its own
+            rmdir(self, os.path.join(self.package_folder, folder))
 
     def package_info(self):
         self.cpp_info.set_property("cmake_file_name", "kreisel")
@@ -78,8 +77,8 @@ class Kreisel(ConanFile):
         self._component("dynamics", ["motor"])
         if self.options.earth:
             self._component("earth", ["dynamics", "geographiclib::geographiclib"])
-        if self.options.exact:
-            self._component("exact", ["dynamics", "gsl::gsl"])
+        if self.options.gsl:
+            self._component("gsl", ["dynamics", "gsl::gsl"])
 
     def _component(self, name, requires):
         component = self.cpp_info.components[name]
@@ -87,5 +86,6 @@ class Kreisel(ConanFile):
         component.set_property("pkg_config_name", f"kreisel-{name}")
         component.includedirs = [os.path.join("include", "kreisel")]
         component.bindirs = []
-        component.libdirs = []
+        component.libs = ["kreisel"] if name == "dynamics" else []
+        component.defines = ["EIGEN_MAX_ALIGN_BYTES=16"]
         component.requires = requires

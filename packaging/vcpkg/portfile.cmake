@@ -3,12 +3,10 @@
 #   vcpkg install kreisel --overlay-ports=<kreisel>/packaging/vcpkg
 cmake_path(SET SOURCE_PATH NORMALIZE "${CURRENT_PORT_DIR}/../..")
 
-set(VCPKG_BUILD_TYPE release) # headers alone
-
 vcpkg_check_features(OUT_FEATURE_OPTIONS options
   FEATURES
     earth KREISEL_WITH_GEOGRAPHICLIB
-    exact KREISEL_WITH_GSL
+    gsl KREISEL_WITH_GSL
 )
 if("earth" IN_LIST FEATURES)
   vcpkg_find_acquire_program(PKGCONFIG)
@@ -25,8 +23,10 @@ vcpkg_cmake_configure(
     -DKREISEL_BUILD_EXAMPLES=OFF
 )
 vcpkg_cmake_install()
-vcpkg_cmake_config_fixup(CONFIG_PATH share/cmake/kreisel)
+vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/kreisel)
 vcpkg_fixup_pkgconfig()
 
-file(REMOVE_RECURSE "${CURRENT_PACKAGES_DIR}/share/doc")
+file(REMOVE_RECURSE
+  "${CURRENT_PACKAGES_DIR}/share/doc" "${CURRENT_PACKAGES_DIR}/debug/include"
+  "${CURRENT_PACKAGES_DIR}/debug/share")
 vcpkg_install_copyright(FILE_LIST "${SOURCE_PATH}/LICENSE")

@@ -17,7 +17,7 @@
 #include <chrono>
 #include <csignal>
 #include <ctime>
-#include <examples/shared/progress.hpp>
+#include <programs/shared/progress.hpp>
 #include <fstream>
 #include <map>
 #include <set>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
-#include <examples/simulate/model.hpp>
+#include <dynamics/file/model.hpp>
 #include <exception>
 #include <fstream>
 #include <memory>

@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <examples/analyze/request.hpp>
+#include <programs/analyze/request.hpp>
 #include <optional>
 
 #include "command_line.hpp"

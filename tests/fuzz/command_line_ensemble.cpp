@@ -2,7 +2,7 @@
 // of the reader's memory.
 
 #include <cstdlib>
-#include <examples/ensemble/request.hpp>
+#include <programs/ensemble/request.hpp>
 #include <optional>
 
 #include "command_line.hpp"

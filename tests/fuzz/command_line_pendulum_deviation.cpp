@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <examples/pendulum_deviation/request.hpp>
+#include <programs/pendulum_deviation/request.hpp>
 #include <optional>
 
 #include "command_line.hpp"

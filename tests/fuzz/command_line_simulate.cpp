@@ -1,7 +1,7 @@
 // The command line of simulate.
 
 #include <cstdlib>
-#include <examples/simulate/request.hpp>
+#include <programs/simulate/request.hpp>
 #include <optional>
 
 #include "command_line.hpp"

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <examples/simulate/resume_file.hpp>
+#include <programs/simulate/resume_file.hpp>
 #include <filesystem>
 #include <fstream>
 #include <optional>

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <examples/pendulum_deviation/sites.hpp>
+#include <programs/pendulum_deviation/sites.hpp>
 
 #include <motor/error.hpp>
 

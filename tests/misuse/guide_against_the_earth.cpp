@@ -2,7 +2,7 @@
 // silently leave out the earth's rotation.
 // refused: the guide of a body says how Guide moves against Inertial
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 
 struct Earth {};
 

@@ -1,7 +1,7 @@
 // A user's load written in the guide: on other axes, its torque about another point than the body's.
 // refused: a load takes a Situation and returns a Force<Body>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/free_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 
 #ifdef MISUSE
 using Load = kreisel::Force<kreisel::Guide>;

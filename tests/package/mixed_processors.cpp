@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
 
 using namespace kreisel;

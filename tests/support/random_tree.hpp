@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/body/description.hpp>
+#include <dynamics/tree/description.hpp>
 
 #include <support/sample.hpp>
 

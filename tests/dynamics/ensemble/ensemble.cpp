@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <dynamics/ensemble/ensemble.hpp>
-#include <dynamics/scene/axisymmetric_body.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/euler_top.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/solve.hpp>
 
 #include <support/worst.hpp>

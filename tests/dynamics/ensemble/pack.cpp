@@ -8,10 +8,10 @@
 
 #include <dynamics/ensemble/packed_steps.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/euler_top.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 
 #include <support/heap.hpp>
 #include <support/near.hpp>

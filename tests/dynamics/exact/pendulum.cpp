@@ -16,7 +16,7 @@
 
 #include <dynamics/exact/pendulum.hpp>
 #include <dynamics/exact/pendulum_motion.hpp>
-#include <dynamics/scene/pendulum_period.hpp>
+#include <dynamics/pendulum/pendulum_period.hpp>
 
 #include <support/near.hpp>
 #include <support/worst.hpp>

@@ -12,7 +12,7 @@
 #include <dynamics/guide/chain.hpp>
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/scratch.hpp>
 

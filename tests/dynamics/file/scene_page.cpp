@@ -16,7 +16,7 @@
 #include <dynamics/guide/chain.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/json.hpp>
 #include <support/program.hpp>

@@ -10,7 +10,7 @@
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
 
 /// The scenes that people write first: rest, right angles, tiny starts, light damping, one output.

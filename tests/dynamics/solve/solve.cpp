@@ -17,10 +17,10 @@
 #include <dynamics/exact/lagrange_top.hpp>
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/axisymmetric_body.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
-#include <dynamics/scene/euler_top.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
 #include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/solve.hpp>

@@ -9,8 +9,8 @@
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/body_system.hpp>
-#include <dynamics/scene/cardan_gyro.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/solve/solve.hpp>
 
 #include <support/random_tree.hpp>

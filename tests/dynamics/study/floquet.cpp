@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/scene/unsymmetric_rotor.hpp>
+#include <dynamics/gimbal/unsymmetric_rotor.hpp>
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/stability_boundaries.hpp>
 

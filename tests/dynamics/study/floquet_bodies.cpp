@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/scene/body_system.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
 
 using namespace kreisel;

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/axisymmetric_body.hpp>
-#include <dynamics/scene/cardan_gyro_laws.hpp>
-#include <dynamics/scene/euler_top.hpp>
-#include <dynamics/scene/foeppl.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/held_body.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/gimbal/foeppl.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/spectrum.hpp>

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/scene/euler_top.hpp>
-#include <dynamics/scene/free_body.hpp>
-#include <dynamics/scene/held_body.hpp>
-#include <dynamics/scene/rotors_reference.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/tree/rotors_reference.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/linearize.hpp>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/scene/rotors_reference.hpp>
+#include <dynamics/tree/rotors_reference.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 #include <dynamics/study/precession_gimbals.hpp>

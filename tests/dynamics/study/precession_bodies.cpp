@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/scene/load.hpp>
+#include <dynamics/load/load.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/scene/cardan_gyro_laws.hpp>
-#include <dynamics/scene/foeppl.hpp>
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
+#include <dynamics/gimbal/foeppl.hpp>
 #include <dynamics/study/campbell.hpp>
 #include <dynamics/study/spectrum.hpp>
 #include <motor/motor.hpp>

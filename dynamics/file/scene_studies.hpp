@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <concepts>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <dynamics/tree/reaction.hpp>
+#include <dynamics/tree/tree.hpp>
+#include <dynamics/file/scene_file.hpp>
+
+/// What precession equations are good for in a scene.
+struct PrecessionCheck {
+  struct Root {
+    std::complex<double> technical;
+    std::complex<double> exact;
+  };
+
+  /// Of a test by all roots about a rest.
+  struct Test {
+    bool admissible = false;
+    std::string reason;  ///< why not
+    double greatest_shift = 0;
+    std::vector<Root> slow;
+  };
+
+  /// Of the motion that begins as the file says.
+  struct Motion {
+    double end = 0;
+    double bound = 0;
+    double nutation = 0;  ///< greatest amplitude that is left out
+    double valid_until = 0;
+    bool slow = true;
+  };
+
+  std::string beyond;  ///< why there is no answer at all
+  int velocities = 0;
+  int rank = 0;  ///< of G
+  int kept = 0;  ///< accelerations that the equations keep
+  std::string not_tested;
+  Test test;
+  std::string no_motion;
+  Motion motion;
+};
+
+/// The bodies of a scene on their guide, as studies take a system. BodySystem and what is a
+/// template on it are compiled in system.cpp alone.
+class System {
+  template <class N>
+  using Numbers = Eigen::Matrix<N, Eigen::Dynamic, 1>;
+
+ public:
+  using Vector = Eigen::VectorXd;
+
+  /// The guide is known from 0 to the scene's t_end.
+  explicit System(const kreisel::SceneFile& scene);
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+  ~System();
+
+  [[nodiscard]] const kreisel::BodyTree& tree() const;
+  [[nodiscard]] std::vector<int> blocks() const { return tree().blocks(); }
+
+  [[nodiscard]] Vector rates(double t, const Vector& y) const;
+
+  /// In the dual numbers of the studies.
+  template <class Dual>
+  requires(!std::same_as<Dual, double>)
+      [[nodiscard]] Numbers<Dual> rates(const Dual& t, const Numbers<Dual>& y) const;
+
+  [[nodiscard]] kreisel::JointReactions reactions(double t, const Vector& y) const;
+
+  /// How the state matrix changes with ln of all rotors' momenta.
+  [[nodiscard]] Eigen::MatrixXd momenta_slope(double t, const Vector& y) const;
+
+  /// `rest` is empty where there is none to test the roots about.
+  [[nodiscard]] PrecessionCheck precession(const Vector& start, const Vector& rest,
+                                           double t_end) const;
+
+  /// States by the precession equations at times in order, as far as they go: until the motion is
+  /// no longer slow. Angles of rotors stay what they are.
+  ///
+  /// Throws : kreisel::InvalidInput where there are no such equations; kreisel::ComputationFailed
+  [[nodiscard]] std::vector<Vector> technical(const Vector& start,
+                                              const std::vector<double>& times) const;
+
+ private:
+  class Bodies;
+  std::unique_ptr<const Bodies> bodies_;
+};

@@ -1,0 +1,758 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <dynamics/guide/mean_motion.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/series.hpp>
+#include <dynamics/inertia.hpp>
+#include <dynamics/gimbal/cardan_parts.hpp>
+#include <dynamics/gimbal/cardan_series.hpp>
+#include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
+#include <dynamics/load/load.hpp>
+#include <dynamics/model/structure.hpp>
+#include <dynamics/model/terms.hpp>
+#include <dynamics/step/lanes.hpp>
+#include <motor/absent.hpp>
+#include <motor/error.hpp>
+#include <motor/four.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+/// u of a guide in steady motion, worked out once.
+template <class M>
+[[nodiscard]] auto steady_rate(const M& guide) {
+  if constexpr (SteadyGuide<M>) {
+    return guide.steady().u;
+  } else {
+    return NoVector{};
+  }
+}
+template <class M>
+using SteadyRate = decltype(steady_rate(std::declval<const M&>()));
+
+template <class Rotor>
+inline constexpr bool is_driven = false;
+template <class Torque>
+inline constexpr bool is_driven<DrivenRotor<Torque>> = true;
+
+/// By more than a constant torque.
+template <class Rotor>
+inline constexpr bool is_driven_otherwise =
+    is_driven<Rotor> && !std::is_same_v<Rotor, DrivenRotor<double>>;
+
+/// Whether the drive's torque, if it is a function, is one of numbers S.
+template <class Rotor, class S>
+inline constexpr bool drive_takes = true;
+template <class Rotor, class S>
+requires is_driven_otherwise<Rotor>
+inline constexpr bool drive_takes<Rotor, S> = requires(const Rotor& rotor, const S& x) {
+  S(rotor.torque(x, x));
+};
+
+/// u and its rate on guide axes; G and V are numbers or Absent.
+template <class G, class V>
+struct Turning {
+  Components<G> u = {};
+  Components<V> du = {};
+};
+
+/// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
+/// number or, for a symmetric rotor that counts with the ring, Absent.
+template <class N>
+struct TurnedRotor {
+  N P;  ///< about A_2
+  N Q;  ///< about B_2
+  N R;  ///< the product of inertia, + off the diagonal
+  N W;  ///< P - Q without cancellation
+};
+
+/// Rates of the angles, and where they are given their rates too.
+template <class S, class D>
+struct CardanMotion {
+  S da, db, df;
+  D dda = {}, ddb = {};
+};
+
+/// Rates of angular momentum of the three bodies, each on its ring's axes, the rotor's on the inner
+/// ring's; of phi'' nothing. N is Absent where the rotor counts with the inner ring.
+template <class S, class K, class N>
+struct CardanRates {
+  K outer_a, outer_b, outer_c;
+  S inner_a, inner_b, inner_c;
+  N rotor_a, rotor_b;
+  S dz_2;   ///< of the angular velocity of the inner ring about C
+  N twist;  ///< u_A L_B - u_B L_A of the rotor, which with C_1 (dz_2 + phi'') is its rate about C
+};
+
+}  // namespace detail
+
+/// The gyro in Cardan's suspension: a rotor in an inner ring in an outer ring, all with mass, on a
+/// guide that moves in any way. Exact, for all angles.
+///
+///   alpha about A (guide x), then beta about B, then phi about the spin axis C:
+///   (p)_guide = R_x(alpha) R_y(beta) R_z(phi) (p)_rotor
+///
+/// All centres of mass lie where the axes meet, so that of the guide's motion only u and ou matter,
+/// and gravity not at all. The angles count whole turns; alpha and beta count from the references
+/// of their bearings.
+///
+/// phi'' is eliminated by the rotor's own equation, which leaves two equations for alpha'' and
+/// beta'' with the determinant
+///
+///   (A_3 + J sin^2 beta) (B_2 + Q) + cos^2 beta (A_2 (B_2 + Q) + B_2 P + A_1 B_1),
+///
+/// J = C_2, or C_1 + C_2 if the rotor is regulated: a sum of what is not negative, so nothing
+/// cancels, however light the rings are. Nothing is divided by cos beta. Only if A_3 + J sin^2 beta
+/// = 0 are the equations singular at beta = 90 degrees.
+///
+/// Source : paper 002 (35)-(40) corrected: the rates of the rings are not those of the rotor,
+///          u'_C2 = u'_A3 sin beta, u'_A3 = (u'_A cos phi - u'_B sin phi)/cos beta,
+///          phi' = u'_C - u'_C2; in (40) sin beta for sin^2 beta. These and the printed ones:
+///          tests/dynamics/gimbal/cardan_gyro_laws.cpp
+/// Units  : rad/s, N m
+/// Error  : of the accelerations <= 1e-14 of the greatest, rings with 1e-8 of the mass at 1e-8
+///          from 90 degrees included (tests/dynamics/gimbal/cardan_gyro.cpp)
+/// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving: one more;
+///          of the rest what guide and rotor leave (ctest dynamics.study.pruning_cost)
+/// Throws : InvalidInput where no body has such moments, the rotor's C is 0, the equations are
+///          singular at every angle, or stiffness, damping or friction is below 0;
+///          ComputationFailed from rates() and all that needs accelerations where they are singular
+///
+/// Parameter : what moments and bearings are: double; or a pack, for as many gyros side by side
+template <class M, class Rotor = FreeRotor, class Parameter = double>
+class CardanGyro {
+  static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
+  static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, FrictionlessRotor> ||
+                    std::is_same_v<Rotor, RegulatedRotor> || detail::is_driven<Rotor>,
+                "the rotor is a FreeRotor, FrictionlessRotor, DrivenRotor or RegulatedRotor");
+
+ public:
+  using Vector = Eigen::Matrix<double, 6, 1>;
+
+  using State = CardanState;
+
+  CardanGyro(const CardanMoments& moments, const CardanBearings& bearings, M guide,
+             Rotor rotor = {})
+      : moments_(moments),
+        bearings_(bearings),
+        guide_(std::move(guide)),
+        rotor_(std::move(rotor)),
+        symmetric_(moments.rotor.x() == moments.rotor.y()),
+        plain_(symmetric_ && bearings.outer.reference == 0 && bearings.inner.reference == 0),
+        loose_(plain_ && is_loose(bearings.outer) && is_loose(bearings.inner)),
+        singular_(singular()) {
+    check_moments();
+    check_bearing("outer", bearings.outer);
+    check_bearing("inner", bearings.inner);
+    require_not_negative("rotor friction", rotor_.friction, "N m s/rad");
+    if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
+      if (!std::isfinite(rotor_.torque)) refuse("torque of the drive = ", rotor_.torque, " N m");
+    }
+  }
+
+  /// Several gyros, one a lane of N; nothing if some are symmetric and some are not, or the friction
+  /// of their rotors differs.
+  template <class N>
+  requires(detail::is_resting<M> && !detail::is_driven<Rotor>)
+      [[nodiscard]] static std::optional<CardanGyro<M, Rotor, N>> side_by_side(
+          const std::array<const CardanGyro*, std::size_t(N::lanes)>& gyros) {
+    for (const CardanGyro* gyro : gyros) {
+      if (gyro->symmetric_ != gyros[0]->symmetric_ ||
+          gyro->rotor_.friction != gyros[0]->rotor_.friction) {
+        return {};
+      }
+    }
+    return CardanGyro<M, Rotor, N>(gyros);
+  }
+
+  [[nodiscard]] const BasicCardanMoments<Parameter>& moments() const { return moments_; }
+  [[nodiscard]] const BasicCardanBearings<Parameter>& bearings() const { return bearings_; }
+  [[nodiscard]] const Rotor& rotor() const { return rotor_; }
+
+  /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, phi; their rates), for double and
+  /// what calculates like it: long double, dual numbers.
+  ///
+  /// With dual numbers the derivative with respect to t is exact if the guide takes them too (a
+  /// lambda of auto does). A guide of double gives the rate of u, which is ou, but none of ou: its
+  /// part is left out.
+  template <class S>
+  requires detail::drive_takes<Rotor, S>
+  [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
+                                             const Eigen::Matrix<S, 6, 1>& y) const {
+    if constexpr (std::is_same_v<S, double>) {
+      if (loose_) return rates_of<detail::Absent, detail::Absent, detail::Absent>(t, y);
+    }
+    if (plain_) return rates_of<detail::Absent, detail::Absent, Parameter>(t, y);
+    return less_plain_rates<S>(t, y);
+  }
+  [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
+
+  /// The Taylor series of the motion, for TaylorSteps: where the guide rests, moves steadily or
+  /// analytically, and the drive, if any, gives one torque. Formulas: scene/cardan_series.hpp.
+  [[nodiscard]] auto series() const
+      requires(std::is_same_v<Parameter, double> && !detail::is_driven_otherwise<Rotor> &&
+               (detail::never_turns<M> || SteadyGuide<M> || AnalyticGuide<M>)) {
+    const auto& [A_1, B_1, C_1] =
+        std::array{moments_.rotor[0], moments_.rotor[1], moments_.rotor[2]};
+    detail::CardanConstants gyro{
+        .moments = moments_,
+        .bearings = bearings_,
+        .ring = {moments_.inner_ring, (A_1 + B_1) / 2, regulated ? C_1 : 0},
+        .n = (A_1 - B_1) / 2,
+        .singular = singular_,
+        .regulated = regulated};
+    if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) gyro.torque = rotor_.torque;
+    if constexpr (!regulated) gyro.friction = rotor_.friction;
+    if constexpr (detail::never_turns<M> || detail::is_resting<M>) {
+      return detail::CardanSeries(gyro, detail::Absent{});
+    } else if constexpr (SteadyGuide<M>) {
+      return detail::CardanSeries(gyro, detail::components(detail::vector<double>(steady_)));
+    } else {
+      return detail::CardanSeries(gyro, detail::FeltSeries(guide_, detail::NoVector{},
+                                                           detail::NoVector{}, detail::NoVector{}));
+    }
+  }
+
+  /// Whether anything takes energy out of the motion, so that steps may stay short for it.
+  [[nodiscard]] bool may_be_stiff() const {
+    return bearings_.outer.damping != 0 || bearings_.inner.damping != 0 || rotor_.friction != 0;
+  }
+
+  /// The same gyro with its springs off by a last digit, if it has any: as much as the sums of
+  /// moments that stand against them may be rounded by, which grows with each radian of their
+  /// oscillation. For estimates of what rounding does.
+  [[nodiscard]] std::optional<CardanGyro> off_by_last_digits() const
+      requires(std::is_same_v<Parameter, double>) {
+    if (bearings_.outer.stiffness == 0 && bearings_.inner.stiffness == 0) return std::nullopt;
+    CardanGyro other = *this;
+    for (CardanBearing* bearing : {&other.bearings_.outer, &other.bearings_.inner}) {
+      bearing->stiffness *= 1 + std::numeric_limits<double>::epsilon();
+    }
+    return other;
+  }
+
+  /// The moments in the bearings.
+  ///
+  /// Error  : <= 1e-13 of the largest; those about the bearings' axes are exact, the sum of spring,
+  ///          friction and drive
+  [[nodiscard]] CardanReactions reactions(double t, const State& state) const {
+    const Vector dy = rates(t, to_vector(state));
+    const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
+    const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
+    const auto k = momentum_rates<double, double, double, double, double>(
+        turning_at<double>(t), {sa, ca}, {sb, cb}, turned_rotor<double>(state.phi),
+        detail::RingMoments<double>(moments_.inner_ring, 0, 0),
+        {state.alpha_rate, state.beta_rate, state.phi_rate, dy[3], dy[4]});
+    const double friction = rotor_.friction * state.phi_rate;
+    const double on_rotor = regulated ? moments_.rotor.z() * k.dz_2 + k.twist  // phi'' = 0
+                                      : spin_torque<double>(t, state.phi_rate);
+    const double N_a = k.rotor_a + k.inner_a;
+    const double N_c = on_rotor + k.inner_c;
+    const double on_outer = -resistance(bearings_.outer, state.alpha, state.alpha_rate);
+    const double on_inner = -resistance(bearings_.inner, state.beta, state.beta_rate);
+    const double motor = on_rotor + friction;
+    return {{-k.rotor_a, -k.rotor_b, -on_rotor},
+            {-(cb * N_a + sb * N_c), -on_inner, sb * N_a - cb * N_c},
+            {on_outer, k.outer_b + on_inner, k.outer_c - sb * N_a + cb * N_c},
+            motor,
+            motor * state.phi_rate};
+  }
+
+  [[nodiscard]] CardanBalance balance(double t, const State& state) const {
+    const auto& [A_1, B_1, C_1] =
+        std::array{moments_.rotor[0], moments_.rotor[1], moments_.rotor[2]};
+    const auto& J_2 = moments_.inner_ring;
+    const auto& J_3 = moments_.outer_ring;
+    const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
+    const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
+    const auto [P, Q, R, W] = turned_rotor<double>(state.phi);
+    const auto [u, du] = turning_at<double>(t);
+    const Vector3<double> w_3(state.alpha_rate + u.x, u.y * ca + u.z * sa, u.z * ca - u.y * sa);
+    const Vector3<double> w_2(w_3.x() * cb - w_3.z() * sb, w_3.y() + state.beta_rate,
+                              w_3.x() * sb + w_3.z() * cb);
+    const double spin = w_2.z() + state.phi_rate;
+    const Vector3<double> L_1(P * w_2.x() + R * w_2.y(), R * w_2.x() + Q * w_2.y(), C_1 * spin);
+    const Vector3<double> L_21 = J_2.cwiseProduct(w_2) + L_1;
+    const Vector3<double> L_321 =
+        J_3.cwiseProduct(w_3) +
+        Vector3<double>(cb * L_21.x() + sb * L_21.z(), L_21.y(), cb * L_21.z() - sb * L_21.x());
+    const double kinetic = w_3.dot(J_3.cwiseProduct(w_3)) + w_2.dot(J_2.cwiseProduct(w_2)) +
+                           w_2.x() * L_1.x() + w_2.y() * L_1.y() + spin * L_1.z();
+    return {
+        kinetic / 2, spring_energy(state),
+        L_321.x(),   L_21.y(),
+        L_1.z(),     {L_321.x(), ca * L_321.y() - sa * L_321.z(), sa * L_321.y() + ca * L_321.z()}};
+  }
+
+  /// Those of the balance that stay, by name.
+  ///
+  ///   energy             guide at rest, free rotor, no friction
+  ///   energy of rings    guide at rest, regulated symmetric rotor, no friction in the rings:
+  ///                      kinetic energy without what phi' adds to it, and springs
+  ///   alpha momentum     guide at rest, outer bearing without spring and friction
+  ///   rotor momentum     free symmetric rotor without friction, any guide
+  ///   Jacobi integral    guide in steady motion, no friction in the rings, rotor free without
+  ///                      friction or symmetric and regulated:  T_2 - T_0 + potential
+  [[nodiscard]] std::vector<std::pair<const char*, double>> conserved(double t,
+                                                                      const State& state) const {
+    const CardanBalance all = balance(t, state);
+    const auto& [outer, inner] = bearings_;
+    const bool rings_free = outer.damping == 0 && inner.damping == 0;
+    const bool rotor_free = (std::is_same_v<Rotor, FreeRotor> ||
+                             std::is_same_v<Rotor, FrictionlessRotor>)&&rotor_.friction == 0;
+    std::vector<std::pair<const char*, double>> kept;
+    if constexpr (detail::is_resting<M>) {
+      if (rings_free && rotor_free) {
+        kept.emplace_back("energy", all.kinetic_energy + all.potential_energy);
+      }
+      if (rings_free && regulated && symmetric_) {
+        State without_spin = state;
+        without_spin.phi_rate = 0;
+        kept.emplace_back("energy of rings",
+                          balance(t, without_spin).kinetic_energy + all.potential_energy);
+      }
+      if (outer.stiffness == 0 && outer.damping == 0) {
+        kept.emplace_back("alpha momentum", all.alpha_momentum);
+      }
+    }
+    if constexpr (SteadyGuide<M> && !detail::is_resting<M>) {
+      // T_2 - T_0: what is quadratic in the rates less what does not depend on them.
+      if (rings_free && (rotor_free || (regulated && symmetric_))) {
+        State back = state, still = state;
+        back.alpha_rate = -state.alpha_rate;
+        back.beta_rate = -state.beta_rate;
+        still.alpha_rate = still.beta_rate = 0;
+        if (!regulated) {
+          back.phi_rate = -state.phi_rate;
+          still.phi_rate = 0;
+        }
+        const double both = all.kinetic_energy + balance(t, back).kinetic_energy;
+        kept.emplace_back("Jacobi integral",
+                          both / 2 - 2 * balance(t, still).kinetic_energy + all.potential_energy);
+      }
+    }
+    if (rotor_free && symmetric_) kept.emplace_back("rotor momentum", all.rotor_momentum);
+    return kept;
+  }
+
+  /// What rates() computes: see kreisel::terms. H = C_1 u_C1 is the momentum of the spin, i counts
+  /// the bodies.
+  [[nodiscard]] Terms terms() const {
+    using Felt = decltype(std::declval<const CardanGyro&>().template felt_turning<double>(0.0));
+    constexpr bool turns = !decltype(Felt::u)::absent;
+    constexpr bool turns_unsteadily = !decltype(Felt::du)::absent;
+    constexpr bool spun =
+        !detail::is_absent<decltype(std::declval<const CardanGyro&>().template spin_torque<double>(
+            0.0, 0.0))>;
+    const std::string of_turning = turns ? "" : "the guide does not turn";
+    const std::string of_steadiness = turns && !turns_unsteadily ? "the guide moves steadily" : "";
+    const std::string of_drive = regulated ? "the motor keeps phi'" : "FrictionlessRotor";
+    Terms list;
+    list.add("relative", "u' x (Theta_i u') of rings and rotor, H of the spin in it");
+    list.add("relative", "A_1 - B_1, which turns with phi", !symmetric_,
+             symmetric_ ? "the rotor is symmetric" : "");
+    list.add("guide", "u x (Theta_i u)", turns, of_turning);
+    list.add("guide", "Theta_i ou", turns_unsteadily, turns ? of_steadiness : of_turning);
+    list.add("guide", "gravity, a of the guide", false,
+             "every centre of mass lies where the axes meet");
+    list.add("Coriolis", "u' x (Theta_i u) + u x (Theta_i u') + Theta_i (u x u')", turns,
+             of_turning);
+    list.add("load", "springs and friction of the rings' bearings", !loose_,
+             loose_ ? "stiffness and damping are 0" : "");
+    list.add("load", "references of the bearings", !plain_,
+             plain_ ? "both are 0, and the rotor is symmetric" : "");
+    list.add("load", "drive and friction of the rotor", spun && !regulated,
+             spun && !regulated ? "" : of_drive);
+    return list;
+  }
+
+  /// This gyro with something left out, for prune(): on a guide in the mean steady motion between
+  /// two times; on one at rest, in whatever pose; with the mean of A_1 and B_1 for both; with rings
+  /// without mass.
+  [[nodiscard]] CardanGyro<RotatingFrame<>, Rotor> without(GuideUnsteadiness /*what*/, double begin,
+                                                           double end) const
+      requires(!SteadyGuide<M> && !detail::never_turns<M>) {
+    return {moments_, bearings_, mean_motion(guide_, begin, end), rotor_};
+  }
+  [[nodiscard]] CardanGyro<RestingFrame<>, Rotor> without(GuideRate /*what*/, double /*begin*/,
+                                                          double /*end*/) const
+      requires(!detail::is_resting<M> && !detail::never_turns<M>) {
+    return {moments_, bearings_, RestingFrame<>{}, rotor_};
+  }
+  [[nodiscard]] CardanGyro without(RotorAsymmetry /*what*/, double /*begin*/,
+                                   double /*end*/) const {
+    CardanMoments round = moments_;
+    round.rotor.x() = round.rotor.y() = (moments_.rotor.x() + moments_.rotor.y()) / 2;
+    return {round, bearings_, guide_, rotor_};
+  }
+  [[nodiscard]] CardanGyro without(RingInertia /*what*/, double /*begin*/, double /*end*/) const {
+    return {{moments_.rotor}, bearings_, guide_, rotor_};
+  }
+
+  /// For integrators. One by one: a stiff bearing's angle is far smaller than the other, phi far
+  /// greater.
+  static constexpr std::array<int, 6> blocks = {1, 1, 1, 1, 1, 1};
+
+  [[nodiscard]] static Vector to_vector(const State& s) {
+    return (Vector() << s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate).finished();
+  }
+
+  [[nodiscard]] static State from_vector(const Vector& y) {
+    return {y[0], y[1], y[2], y[3], y[4], y[5]};
+  }
+
+ private:
+  template <class, class, class>
+  friend class CardanGyro;
+
+  using One = CardanGyro<M, Rotor, double>;
+
+  using Gyros = std::array<const One*, std::size_t(detail::lanes_of<Parameter>)>;
+
+  explicit CardanGyro(const Gyros& gyros)
+      : moments_{gathered(gyros, [](const One& g) { return g.moments_.rotor; }),
+                 gathered(gyros, [](const One& g) { return g.moments_.inner_ring; }),
+                 gathered(gyros, [](const One& g) { return g.moments_.outer_ring; })},
+        bearings_{gathered_bearing(gyros, &CardanBearings::outer),
+                  gathered_bearing(gyros, &CardanBearings::inner)},
+        guide_(gyros[0]->guide_),
+        rotor_(gyros[0]->rotor_),
+        symmetric_(gyros[0]->symmetric_),
+        plain_(std::all_of(gyros.begin(), gyros.end(), [](const One* g) { return g->plain_; })),
+        loose_(std::all_of(gyros.begin(), gyros.end(), [](const One* g) { return g->loose_; })),
+        singular_(gathered(gyros, [](const One& g) { return g.singular_; })) {}
+
+  template <class Get>
+  [[nodiscard]] static auto gathered(const Gyros& gyros, const Get& get) {
+    return detail::gathered<Parameter>(gyros, get);
+  }
+
+  [[nodiscard]] static BasicCardanBearing<Parameter> gathered_bearing(
+      const Gyros& gyros, CardanBearing CardanBearings::*which) {
+    return {gathered(gyros, [&](const One& g) { return (g.bearings_.*which).stiffness; }),
+            gathered(gyros, [&](const One& g) { return (g.bearings_.*which).damping; }),
+            gathered(gyros, [&](const One& g) { return (g.bearings_.*which).reference; })};
+  }
+
+  static constexpr bool regulated = std::is_same_v<Rotor, RegulatedRotor>;
+
+  template <class... Words>
+  [[noreturn]] static void refuse(const Words&... words) {
+    std::ostringstream text;
+    text.precision(10);
+    text << "Cardan gyro: ";
+    (text << ... << words);
+    throw InvalidInput(text.str());
+  }
+
+  static void require_not_negative(const char* what, double value, const char* unit) {
+    if (!(value >= 0 && std::isfinite(value))) {
+      refuse(what, " = ", value, ' ', unit, " is not a finite number >= 0");
+    }
+  }
+
+  static void check_bearing(const std::string& name, const CardanBearing& bearing) {
+    require_not_negative((name + " bearing: stiffness").c_str(), bearing.stiffness, "N m/rad");
+    require_not_negative((name + " bearing: damping").c_str(), bearing.damping, "N m s/rad");
+    if (!std::isfinite(bearing.reference)) {
+      refuse(name, " bearing: reference = ", bearing.reference, " rad is not finite");
+    }
+  }
+
+  void check_moments() const {
+    const auto check_body = [](const char* name, const Vector3<double>& m) {
+      check(Inertia<double>{0, Vector3<double>::Zero(), {m.x(), m.y(), m.z()}}, Mass::zero_allowed,
+            name);
+    };
+    check_body("Cardan gyro, rotor", moments_.rotor);
+    check_body("Cardan gyro, inner ring", moments_.inner_ring);
+    check_body("Cardan gyro, outer ring", moments_.outer_ring);
+    if (!(moments_.rotor.z() > 0)) {
+      refuse("C of the rotor = ", moments_.rotor.z(),
+             " kg m^2: its rotation about the spin axis is not determined");
+    }
+    const bool needle = moments_.rotor.x() == 0 || moments_.rotor.y() == 0;
+    if (needle && !regulated && moments_.outer_ring.x() == 0 && moments_.inner_ring.isZero(0)) {
+      refuse(
+          "a rotor with A or B = 0 in rings without mass: the mass matrix is singular at every "
+          "angle");
+    }
+  }
+
+  [[nodiscard]] double spring_energy(const State& s) const {
+    return (bearings_.outer.stiffness * s.alpha * s.alpha +
+            bearings_.inner.stiffness * s.beta * s.beta) /
+           2;
+  }
+
+  [[nodiscard]] static bool is_loose(const CardanBearing& bearing) {
+    return bearing.stiffness == 0 && bearing.damping == 0;
+  }
+
+  /// What spring and friction resist with; the torque is its negative.
+  template <class S>
+  [[nodiscard]] static S resistance(const BasicCardanBearing<Parameter>& bearing, const S& q,
+                                    const S& dq) {
+    return bearing.stiffness * q + bearing.damping * dq;
+  }
+
+  /// On a rotor that is not regulated, about C: drive and friction.
+  template <class S>
+  [[nodiscard]] auto spin_torque([[maybe_unused]] const S& t, [[maybe_unused]] const S& df) const {
+    if constexpr (std::is_same_v<Rotor, FrictionlessRotor>) {
+      return detail::Absent{};
+    } else if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
+      return S(rotor_.torque - S(rotor_.friction * df));
+    } else if constexpr (detail::is_driven<Rotor>) {
+      return S(rotor_.torque(t, df) - S(rotor_.friction * df));
+    } else {
+      return S(-S(rotor_.friction * df));
+    }
+  }
+
+  /// Whether the guide itself calculates with S.
+  template <class S>
+  static constexpr bool guide_takes = GuideMotion<M, Guide, Inertial, S>;
+
+  template <class S>
+  [[nodiscard]] detail::Turning<S, S> turning_at(const S& t) const {
+    const auto lifted = [](const auto& turning) {
+      return detail::Turning<S, S>{{S(turning.u.x()), S(turning.u.y()), S(turning.u.z())},
+                                   {S(turning.du.x()), S(turning.du.y()), S(turning.du.z())}};
+    };
+    if constexpr (guide_takes<S>) {
+      return lifted(turning(guide_, t));
+    } else {
+      const double time = static_cast<double>(detail::number_in(t));
+      detail::Turning<S, S> result = lifted(turning(guide_, time));
+      // First order in t - time, which is 0 but for its derivatives.
+      const S later = t - time;
+      result.u = result.u + later * result.du;
+      return result;
+    }
+  }
+
+  /// What the equations feel of the guide: of a steady one that turns no rate, of one at rest
+  /// nothing.
+  template <class S>
+  [[nodiscard]] auto felt_turning(const S& t) const {
+    if constexpr (detail::is_resting<M> || detail::never_turns<M>) {
+      return detail::Turning<detail::Absent, detail::Absent>{};
+    } else if constexpr (SteadyGuide<M>) {
+      return detail::Turning<S, detail::Absent>{{S(steady_.x), S(steady_.y), S(steady_.z)}, {}};
+    } else {
+      return turning_at<S>(t);
+    }
+  }
+
+  template <class N, class S>
+  [[nodiscard]] detail::TurnedRotor<N> turned_rotor([[maybe_unused]] const S& phi) const {
+    if constexpr (detail::is_absent<N>) {
+      return {};
+    } else {
+      using std::cos, std::sin;
+      const Parameter A = moments_.rotor.x();
+      const Parameter B = moments_.rotor.y();
+      const S s = sin(phi);
+      const S c = cos(phi);
+      const S ss = s * s;
+      const S cc = c * c;
+      return {S(A * cc + B * ss), S(A * ss + B * cc), S((A - B) * (s * c)),
+              S((A - B) * ((c - s) * (c + s)))};
+    }
+  }
+
+  /// The left sides of the equations of motion.
+  ///
+  /// G, V, N, D are S or Absent: a guide that turns, one that does so unsteadily, a rotor that is
+  /// not counted with the inner ring, angular accelerations that are given.
+  template <class S, class G, class V, class N, class D>
+  [[nodiscard]] auto momentum_rates(const detail::Turning<G, V>& guide,
+                                    const detail::SinCos<G>& alpha, const detail::SinCos<S>& beta,
+                                    const detail::TurnedRotor<N>& rotor,
+                                    const detail::RingMoments<Parameter>& inner,
+                                    const detail::CardanMotion<S, D>& motion) const {
+    using K = detail::Total<G, D>;
+    using E = detail::Total<V, D>;
+    const auto& [ux, uy, uz] = guide.u;
+    const auto& [vx, vy, vz] = guide.du;
+    const auto& [sa, ca] = alpha;
+    const auto& [sb, cb] = beta;
+    const auto& [P, Q, R, W] = rotor;
+    const auto& [da, db, df, dda, ddb] = motion;
+    const auto& J_3 = moments_.outer_ring;
+
+    // Absolute angular velocities of outer (3) and inner ring (2) on their own axes, and rates;
+    // fx and fz without what beta' does to dx2 and dz2.
+    const S x3 = da + ux;
+    const G y3 = uy * ca + uz * sa;
+    const G z3 = uz * ca - uy * sa;
+    const E dx3 = dda + vx;
+    const G dy3 = da * z3 + V(vy * ca + vz * sa);
+    const G dz3 = V(vz * ca - vy * sa) - da * y3;
+    const S x2 = x3 * cb - z3 * sb;
+    const S y2 = y3 + db;
+    const S z2 = x3 * sb + z3 * cb;
+    const K fx = dx3 * cb - dz3 * sb;
+    const K fz = dx3 * sb + dz3 * cb;
+    const K dy2 = dy3 + ddb;
+    const S dz2 = fz + db * x2;
+
+    // A symmetric rotor, counted with the ring, is left with the momentum of its spin: all of it,
+    // or, with C in the ring, that against the ring.
+    constexpr bool counted = detail::is_absent<N>;
+    using Spin = std::conditional_t<counted, S, detail::Absent>;
+    const S L_c = moments_.rotor.z() * S(counted && regulated ? df : S(z2 + df));
+    const Spin H = detail::kept<Spin>(L_c);
+    detail::CardanRates<S, K, N> k;
+    k.outer_a = J_3.x() * dx3 + outer_[0] * G(y3 * z3);
+    k.outer_b = J_3.y() * dy3 + outer_[1] * G(z3 * x3);
+    k.outer_c = J_3.z() * dz3 + outer_[2] * G(x3 * y3);
+    k.inner_a = inner.a * K(fx + y3 * z2) + y2 * S(inner.c_less_ab * z2 + H);
+    k.inner_b = inner.b * dy2 + x2 * S(inner.a_less_c * z2 - H);
+    k.inner_c = inner.c * K(fz - y3 * x2) + inner.bc_less_a * S(x2 * y2);
+    if constexpr (!counted) {
+      const S dx2 = fx - db * z2;
+      const S L_a = P * x2 + R * y2;
+      const S L_b = Q * y2 + R * x2;
+      k.rotor_a = P * dx2 + R * dy2 + df * (W * y2 - 2.0 * (R * x2)) + (y2 * L_c - z2 * L_b);
+      k.rotor_b = Q * dy2 + R * dx2 + df * (W * x2 + 2.0 * (R * y2)) + (z2 * L_a - x2 * L_c);
+      k.twist = R * S((x2 - y2) * (x2 + y2)) - W * S(x2 * y2);
+    }
+    k.dz_2 = dz2;
+    return k;
+  }
+
+  /// N is S, or Absent if the rotor is symmetric; Reference is Absent where the bearings have none,
+  /// Torque where they have neither springs nor friction.
+  template <class N, class Reference, class Torque, class S>
+  [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
+    constexpr bool round = detail::is_absent<N>;
+    const Parameter A_1 = moments_.rotor.x();
+    const Parameter B_1 = moments_.rotor.y();
+    const Parameter C_1 = moments_.rotor.z();
+    const Parameter A_3 = moments_.outer_ring.x();
+    const detail::RingMoments<Parameter>& inner = round ? counted_ring_ : bare_ring_;
+
+    const auto guide = felt_turning<S>(t);
+    using G = std::decay_t<decltype(guide.u.x)>;
+    using V = std::decay_t<decltype(guide.du.x)>;
+    detail::SinCos<G> alpha;
+    if constexpr (!detail::is_absent<G>) {
+      alpha = detail::sin_cos(detail::kept<Reference>(bearings_.outer.reference), y[0]);
+    }
+    const detail::SinCos<S> beta =
+        detail::sin_cos(detail::kept<Reference>(bearings_.inner.reference), y[1]);
+    const auto& [sb, cb] = beta;
+    const detail::TurnedRotor<N> rotor = turned_rotor<N>(y[2]);
+    const auto& [P, Q, R, W] = rotor;
+    const auto k = momentum_rates<S, G, V, N, detail::Absent>(guide, alpha, beta, rotor, inner,
+                                                              {y[3], y[4], y[5]});
+
+    // The rotor's torque about C stands in for C_1 (dz_2 + phi''), or phi'' = 0 does.
+    const auto on_rotor = [&] {
+      if constexpr (!regulated) {
+        return spin_torque<S>(t, y[5]);
+      } else if constexpr (round) {
+        return detail::Absent{};
+      } else {
+        return S(C_1 * k.dz_2 + k.twist);
+      }
+    }();
+    const auto resisted = [](const auto& bearing, const S& q, const S& dq) {
+      if constexpr (detail::is_absent<Torque>) {
+        return detail::Absent{};
+      } else {
+        return resistance(bearing, q, dq);
+      }
+    };
+    const S left_a = resisted(bearings_.outer, y[0], y[3]) +
+                     S(S(cb * S(k.rotor_a + k.inner_a) + sb * S(on_rotor + k.inner_c)) + k.outer_a);
+    const S left_b = resisted(bearings_.inner, y[1], y[4]) + S(k.rotor_b + k.inner_b);
+    const S across = A_3 + carried_ * S(sb * sb);
+    const S cc = cb * cb;
+    using detail::any;  // lanes of a pack stop together
+    const auto stop = [&] {
+      detail::stop_where_singular(moments_, regulated, bearings_.inner.reference, y[1]);
+    };
+    S dda;
+    S ddb;
+    if constexpr (round) {
+      const S M_aa = across + cc * inner.a;
+      if (any(M_aa <= singular_)) stop();
+      dda = -left_a / M_aa;
+      ddb = -left_b / inner.b;
+    } else {
+      const S M_aa = across + cc * S(inner.a + P);
+      const S M_bb = inner.b + Q;
+      const S det = across * M_bb + cc * S(inner.a * M_bb + inner.b * P + A_1 * B_1);
+      if (any(det <= singular_)) stop();
+      const S M_ab = R * cb;
+      dda = (M_ab * left_b - M_bb * left_a) / det;
+      ddb = (M_ab * left_a - M_aa * left_b) / det;
+    }
+    S ddf(0);
+    if constexpr (!regulated) ddf = (on_rotor - k.twist) / C_1 - S(k.dz_2 + sb * dda);
+    return detail::gathered<S>(y[3], y[4], y[5], dda, ddb, ddf);
+  }
+
+  /// Out of line, so that the plain ones are not.
+  template <class S>
+  [[nodiscard]] EIGEN_DONT_INLINE Eigen::Matrix<S, 6, 1> less_plain_rates(
+      const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
+    if (symmetric_) return rates_of<detail::Absent, Parameter, Parameter>(t, y);
+    return rates_of<S, Parameter, Parameter>(t, y);
+  }
+
+  /// How small the determinant (of a symmetric rotor: its factor M_aa) counts as 0. It has no error
+  /// but rounding's; what makes it meaningless is the rounding of beta, where cos^2 beta is all
+  /// that keeps it from 0. A NaN is not less: steps answer it by shorter ones.
+  [[nodiscard]] double singular() const {
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    const auto& [rotor, inner, outer] = moments_;
+    const double most = std::max(rotor.x(), rotor.y());
+    const double about_a = outer.x() + inner.x() + most;  // C_2 <= A_2 + B_2
+    return 64 * eps * eps * about_a * (symmetric_ ? 1 : inner.y() + most);
+  }
+
+  /// What turns with the inner ring about C.
+  [[nodiscard]] Parameter carried() const {
+    if constexpr (regulated) return moments_.inner_ring.z() + moments_.rotor.z();
+    return moments_.inner_ring.z();
+  }
+
+  BasicCardanMoments<Parameter> moments_;
+  BasicCardanBearings<Parameter> bearings_;
+  M guide_;
+  [[no_unique_address]] Rotor rotor_;
+  bool symmetric_;
+  bool plain_;  ///< symmetric, and no reference of a bearing but 0
+  bool loose_;  ///< and besides neither springs nor friction in the rings' bearings
+  Parameter carried_ = carried();
+  detail::RingMoments<Parameter> bare_ring_{moments_.inner_ring, Parameter(0), Parameter(0)};
+  detail::RingMoments<Parameter> counted_ring_{moments_.inner_ring, moments_.rotor.x(),
+                                               regulated ? moments_.rotor.z() : Parameter(0)};
+  Vector3<Parameter> outer_{moments_.outer_ring.z() - moments_.outer_ring.y(),
+                            moments_.outer_ring.x() - moments_.outer_ring.z(),
+                            moments_.outer_ring.y() - moments_.outer_ring.x()};
+  Parameter singular_;
+  detail::SteadyRate<M> steady_ = detail::steady_rate(guide_);
+};
+
+}  // namespace kreisel

@@ -1,0 +1,294 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/pendulum/pendulum_equilibria.hpp>
+#include <dynamics/pendulum/pendulum_period.hpp>
+
+namespace kreisel {
+
+/// The motion of an undamped pendulum on a steady guide, from any angle and rate: it swings between
+/// two turning points, over one well or several, or it turns over.
+///
+///   Theta_C phi.^2/2 + U(phi) = const.,  dU/dphi = E sin phi + F cos phi + H cos 2phi + K sin 2phi
+///
+/// is told by a phase theta: swinging, phi = (l + r)/2 - (r - l)/2 cos(theta) between the turning
+/// points l and r; turning over, phi = phi(0) +- theta. In both dt/dtheta is smooth and has the
+/// period 2 pi, so that few terms of its Fourier series count. Integrated it is
+///
+///   t = T theta/(2 pi) + sum_k (s_k sin(k theta) + c_k cos(k theta)),
+///
+/// which Newton's method inverts. There are no steps: the state after 1e6 periods costs what that
+/// after one does.
+///
+/// S      : what it thinks in; exact::Real, lest a phase of 1e4 periods lose digits
+/// Source : paper 002 (23), the first integral
+/// Units  : rad, rad/s, s
+/// Error  : of the phase  (4 |theta| + 32) epsilon condition()   (tests/dynamics/pendulum/physical_pendulum)
+/// Throws : InvalidInput where nothing pulls at all, or the start is not finite; ComputationFailed at
+///          rest at an equilibrium, or so near a barrier that 1024 terms are not enough: between 2e-6
+///          and 2e-7 of its height (case pendulum-barrier of the catalogue)
+template <class S>
+class SteadyPendulumMotion {
+ public:
+  struct Point {
+    S angle;  ///< whole turns counted
+    S rate;
+  };
+
+  SteadyPendulumMotion(const PendulumBody<S>& body, const PendulumCoefficients<S>& c,
+                       const S& angle, const S& rate)
+      : theta_c_(body.theta_c), forwards_(!(rate < S(0))) {
+    require_finite(angle, "angle");
+    require_finite(rate, "rate");
+    const std::vector<Equilibrium<S>> all = equilibria(c);
+    count_from_nearest(all, angle);
+    moment_ = detail::ShiftedMoment<S>::at(c, origin_);
+    start_ = angle - origin_;
+    kinetic_ = theta_c_ * rate * rate / S(2);
+    const auto [left, right] = turning_points(all);
+    if (left && right) {
+      using std::atan2, std::sqrt;
+      swing_ = detail::Swing<S>{moment_, *left, *right, theta_c_};
+      // From the rate, too: near a turning point the angle hardly knows the phase.
+      const S width = *right - *left;
+      const S to_left = std::clamp(S((start_ - *left) / width), S(0), S(1));
+      const S pace = swing_->pace(S(sqrt(to_left)), S(sqrt(S(S(1) - to_left)))).time;
+      begin_phase_ = atan2(S(S(2) * rate * pace / width), S(S(1) - S(2) * to_left));
+    }
+    find_series();
+    begin_time_ = at_phase(begin_phase_).time;
+  }
+
+  /// Of a swing there and back, or of one turn over the top.
+  [[nodiscard]] S period() const { return S(2) * pi() * pace_; }
+
+  /// How much of its rounding the phase takes over: 1 far from barriers, and great near them.
+  [[nodiscard]] S condition() const { return condition_; }
+
+  /// How many radians of phase that time takes.
+  [[nodiscard]] S phase(const S& time) const {
+    using std::abs;
+    return abs(S(time / pace_));
+  }
+
+  /// Bound of what the phase is off at that time by rounding.
+  [[nodiscard]] S phase_error(const S& time) const {
+    return (S(4) * phase(time) + S(32)) * std::numeric_limits<S>::epsilon() * condition_;
+  }
+
+  /// What angle and rate change by for each radian of phase, at most.
+  [[nodiscard]] S angle_per_phase() const {
+    return swing_ ? S((swing_->right - swing_->left) / S(2)) : S(1);
+  }
+  [[nodiscard]] S rate_per_phase() const { return rate_per_phase_; }
+
+  /// Throws : InvalidInput for a time that is not finite
+  [[nodiscard]] Point at(const S& time) const {
+    using std::round, std::sin;
+    require_finite(time, "time");
+    const S from_zero = time + begin_time_;
+    const S turns = round(S(from_zero / period()));
+    const S theta = phase_at(S(from_zero - turns * period()));
+    const S pace = at_phase(theta).pace;
+    if (swing_) {
+      const S radius = (swing_->right - swing_->left) / S(2);
+      const S half = sin(S(theta / S(2)));
+      return {origin_ + (swing_->left + S(2) * radius * half * half), radius * sin(theta) / pace};
+    }
+    const S turned = theta + turns * S(2) * pi();
+    return {origin_ + (forwards_ ? S(start_ + turned) : S(start_ - turned)),
+            (forwards_ ? S(1) : S(-1)) / pace};
+  }
+
+ private:
+  struct Phase {
+    S time;  ///< t(theta)
+    S pace;  ///< dt/dtheta
+  };
+
+  static constexpr std::size_t most_nodes = 2048;
+
+  [[nodiscard]] static S pi() {
+    using std::acos;
+    return acos(S(-1));
+  }
+
+  static void require_finite(const S& number, const char* what) {
+    if (number - number == S(0)) return;
+    throw InvalidInput(std::string("motion of a pendulum: the ") + what + " is not finite");
+  }
+
+  void count_from_nearest(const std::vector<Equilibrium<S>>& all, const S& angle) {
+    using std::abs, std::round;
+    std::optional<S> least;
+    for (const Equilibrium<S>& candidate : all) {
+      if (!candidate.stable) continue;
+      const S origin =
+          candidate.angle + S(2) * pi() * round(S((angle - candidate.angle) / (S(2) * pi())));
+      const S away = abs(S(angle - origin));
+      if (least && !(away < *least)) continue;
+      least = away;
+      origin_ = origin;
+    }
+  }
+
+  /// Left and right of the start, counted from the origin; neither if it turns over.
+  ///
+  /// Throws : ComputationFailed where it rests, or ends on a barrier
+  [[nodiscard]] std::pair<std::optional<S>, std::optional<S>> turning_points(
+      const std::vector<Equilibrium<S>>& all) const {
+    using std::abs, std::ceil, std::floor;
+    const S turn = S(2) * pi();
+    const S epsilon = std::numeric_limits<S>::epsilon();
+    if (kinetic_ == S(0) &&
+        abs(moment_.moment(start_)) <= S(4) * epsilon * moment_.size() * abs(start_)) {
+      throw ComputationFailed("the pendulum rests at an equilibrium");
+    }
+    std::vector<S> below;
+    std::vector<S> above;  // mirrored
+    for (const Equilibrium<S>& other : all) {
+      const S at = other.angle - origin_;
+      const S first = at + turn * floor(S((start_ - at) / turn));
+      for (int turns = -1; turns <= 2; ++turns) {
+        const S stop = first + S(turns) * turn;
+        if (stop < start_) below.push_back(stop);
+        if (stop > start_) above.push_back(-stop);
+      }
+    }
+    const auto descending = [](const S& a, const S& b) { return a > b; };
+    std::sort(below.begin(), below.end(), descending);
+    std::sort(above.begin(), above.end(), descending);
+    const auto left = detail::climb(moment_, start_, kinetic_, below, S(1), origin_);
+    auto right = detail::climb(moment_.mirrored(), S(-start_), kinetic_, above, S(-1), origin_);
+    if (right) right = -*right;
+    return {left, right};
+  }
+
+  /// dt/dtheta.
+  [[nodiscard]] typename detail::Swing<S>::Pace pace_at(const S& theta) const {
+    using std::abs, std::cos, std::sin, std::sqrt;
+    if (swing_) return swing_->pace(sin(S(theta / S(2))), cos(S(theta / S(2))));
+    const S d = (forwards_ ? theta : S(-theta)) / S(2);
+    const S gained = S(-2) * d * moment_.slope(S(start_ + d), d);
+    const S left = kinetic_ + gained;
+    return {sqrt(S(theta_c_ / (S(2) * left))), (kinetic_ + abs(gained)) / left};
+  }
+
+  /// Doubles the nodes until the last terms are rounding.
+  void find_series() {
+    using std::abs, std::cos, std::sin;
+    const S epsilon = std::numeric_limits<S>::epsilon();
+    std::vector<S> paces;
+    condition_ = S(1);
+    for (std::size_t n = 16; n <= most_nodes; n *= 2) {
+      std::vector<S> finer(n);
+      std::vector<S> cosines(n);
+      std::vector<S> sines(n);
+      for (std::size_t j = 0; j < n; ++j) {
+        // From -pi to pi: further away a pendulum that turns over would lose digits of phi.
+        const S theta = pi() * (S(2) * S(double(j)) / S(double(n)) - (2 * j < n ? S(0) : S(2)));
+        cosines[j] = cos(theta);
+        sines[j] = sin(theta);
+        if (!paces.empty() && j % 2 == 0) {
+          finer[j] = paces[j / 2];
+          continue;
+        }
+        const auto pace = pace_at(theta);
+        condition_ = std::max(condition_, pace.condition);
+        finer[j] = pace.time;
+      }
+      paces = std::move(finer);
+      S sum(0);
+      for (const S& pace : paces) sum += pace;
+      pace_ = sum / S(double(n));
+      if (!(pace_ > S(0) && pace_ <= std::numeric_limits<S>::max())) {
+        throw ComputationFailed("the pendulum's period is not a number: its motion is too small");
+      }
+      sine_terms_.clear();
+      cosine_terms_.clear();
+      const S small = S(4) * epsilon * condition_ * pace_;
+      std::size_t last = 0;  // that counts
+      for (std::size_t k = 1; k < n / 2; ++k) {
+        S a(0);
+        S b(0);
+        for (std::size_t j = 0; j < n; ++j) {
+          a += paces[j] * cosines[j * k % n];
+          b += paces[j] * sines[j * k % n];
+        }
+        a *= S(2) / S(double(n));
+        b *= S(2) / S(double(n));
+        if (abs(a) + abs(b) > small) last = k;
+        sine_terms_.push_back(a / S(double(k)));
+        cosine_terms_.push_back(-b / S(double(k)));
+      }
+      if (!(last < 3 * n / 8)) continue;
+      sine_terms_.resize(last);
+      cosine_terms_.resize(last);
+      const auto rate = [&](std::size_t j) {
+        return swing_ ? S(angle_per_phase() * sines[j] / paces[j]) : S(S(1) / paces[j]);
+      };
+      for (std::size_t j = 0; j < n; ++j) {
+        const S change = abs(S(rate((j + 1) % n) - rate(j))) * S(double(n)) / (S(2) * pi());
+        rate_per_phase_ = std::max(rate_per_phase_, change);
+      }
+      return;
+    }
+    throw ComputationFailed("the pendulum is so near a barrier that its series does not converge");
+  }
+
+  [[nodiscard]] Phase at_phase(const S& theta) const {
+    using std::cos, std::sin;
+    const S c = cos(theta);
+    const S s = sin(theta);
+    S ck = c;  // cos(k theta)
+    S sk = s;
+    Phase sum{S(0), S(0)};
+    for (std::size_t i = 0; i < sine_terms_.size(); ++i) {
+      const S k(double(i + 1));
+      sum.time += sine_terms_[i] * sk + cosine_terms_[i] * ck;
+      sum.pace += k * (sine_terms_[i] * ck - cosine_terms_[i] * sk);
+      const S next = ck * c - sk * s;
+      sk = ck * s + sk * c;
+      ck = next;
+    }
+    return {pace_ * theta + sum.time, pace_ + sum.pace};
+  }
+
+  /// t(theta) rises, and differs from its mean by less than a period.
+  [[nodiscard]] S phase_at(const S& time) const {
+    const S mean = time / pace_;
+    const S turn = S(2) * pi();
+    return detail::root_in_bracket(S(mean - turn), S(mean + turn), mean,
+                                   S(S(4) * std::numeric_limits<S>::epsilon() * pi()),
+                                   [&](const S& theta) {
+                                     const Phase phase = at_phase(theta);
+                                     const S off = phase.time - time;
+                                     return std::pair(off > S(0), S(theta - off / phase.pace));
+                                   });
+  }
+
+  S theta_c_;
+  bool forwards_;
+  S origin_ = S(0);                       ///< the equilibrium that x is counted from
+  detail::ShiftedMoment<S> moment_ = {};  ///< of x
+  S start_ = S(0);                        ///< x at the start
+  S kinetic_ = S(0);                      ///< Theta_C phi.^2/2 at the start
+  std::optional<detail::Swing<S>> swing_;
+  S pace_ = S(0);       ///< mean dt/dtheta
+  S condition_ = S(1);  ///< greatest of all nodes
+  S rate_per_phase_ = S(0);
+  std::vector<S> sine_terms_;    ///< s_1, s_2, ..
+  std::vector<S> cosine_terms_;  ///< c_1, c_2, ..
+  S begin_phase_ = S(0);
+  S begin_time_ = S(0);  ///< t(begin_phase)
+};
+
+}  // namespace kreisel

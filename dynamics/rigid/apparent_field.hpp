@@ -1,0 +1,428 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include <dynamics/guide/motion.hpp>
+#include <dynamics/guide/series.hpp>
+#include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/load/load.hpp>
+#include <dynamics/model/structure.hpp>
+#include <dynamics/model/terms.hpp>
+#include <motor/absent.hpp>
+
+/// What a body in a guide feels of the guide's motion, on guide axes: by need and, where the motion
+/// is steady, worked out beforehand.
+
+namespace kreisel::detail {
+
+/// u and ou of the guide, and g' = g - a: uniform gravity less the inertial acceleration of the
+/// guide-fixed point in question.
+template <class U, class Du, class G>
+struct Felt {
+  U u;
+  Du du;
+  G g;
+};
+
+template <class L>
+inline constexpr bool is_without = false;
+template <class Quantity, Axis... axes>
+inline constexpr bool is_without<Without<Quantity, axes...>> = true;
+
+/// Whether a load is a field of gravity that is uniform in the guide or in the inertial frame.
+template <class L>
+inline constexpr bool is_field =
+    std::is_same_v<L, UniformGravity<Guide>> || std::is_same_v<L, UniformGravity<Inertial>>;
+
+/// Whether a load has to be asked with a situation.
+template <class L>
+inline constexpr bool is_force = !is_field<L> && !is_without<L>;
+
+template <class L>
+[[nodiscard]] constexpr bool reads_guide() {
+  if constexpr (requires { L::ignores_guide; }) {
+    return is_force<L> && !L::ignores_guide;
+  } else {
+    return is_force<L>;
+  }
+}
+
+/// Whether a body feels nothing but uniform gravity and a guide that moves steadily, or analytically.
+template <class M, class... Loads>
+inline constexpr bool feels_analytically = (SteadyGuide<M> ||
+                                            AnalyticGuide<M>)&&!(is_force<Loads> || ...);
+
+template <class A, class... Loads>
+inline constexpr bool has_field = (std::is_same_v<Loads, UniformGravity<A>> || ...);
+
+/// The sum of the fields that are uniform on the axes of A.
+template <class A, class... Loads>
+[[nodiscard]] auto field_on(const Loads&... loads) {
+  if constexpr (has_field<A, Loads...>) {
+    Vector3<double> sum = Vector3<double>::Zero();
+    const auto add = [&sum](const auto& load) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(load)>, UniformGravity<A>>) sum += load.g;
+    };
+    (add(loads), ...);
+    return components(sum);
+  } else {
+    return NoVector{};
+  }
+}
+
+/// The inertial acceleration of the guide-fixed point r, that of the guide's origin being a.
+template <class U, class Du, class A, class R>
+[[nodiscard]] auto carried_acceleration(const U& u, const Du& du, const A& a, const R& r) {
+  return a + cross(du, r) + cross(u, cross(u, r));
+}
+
+/// u/|u|, or 0, also where squares would leave the range. Eigen's takes the compiler longer than all
+/// else here.
+[[nodiscard]] inline Components<double> direction(const Components<double>& u) {
+  const double size = std::hypot(u.x, u.y, u.z);
+  return size > 0 ? u / size : Components<double>{};
+}
+
+/// A vector at rest in the inertial frame, on the axes of a guide that turns steadily with u = |u| n:
+///
+///   exp(-u t) g = n n.g + cos(|u| t) (g - n n.g) + sin(|u| t) g x n
+struct TurningField {
+  Components<double> across;
+  Components<double> aside;
+  double rate;
+
+  /// `along` is what of g does not turn.
+  TurningField(const Components<double>& g, const Components<double>& along,
+               const Components<double>& u)
+      : across(g - along), aside(cross(g, direction(u))), rate(std::hypot(u.x, u.y, u.z)) {}
+
+  template <class N>
+  [[nodiscard]] Components<N> at(const N& t) const {
+    using std::cos, std::sin;
+    const N angle = rate * t;
+    return N(cos(angle)) * across + N(sin(angle)) * aside;
+  }
+
+  /// Adds the coefficients below `order`, in powers of (time - t)/h.
+  void add_series(double t, double h, int order, GuideSeries::Coefficients& g) const {
+    const double c = std::cos(rate * t);
+    const double s = std::sin(rate * t);
+    const double cycle[] = {c, -s, -c, s};
+    double factor = 1;  // (|u| h)^n / n!
+    for (int n = 0; n < order; ++n) {
+      g[std::size_t(n)] = g[std::size_t(n)] + (factor * cycle[n % 4]) * across +
+                          (factor * cycle[(n + 3) % 4]) * aside;
+      factor *= rate * h / (n + 1);
+    }
+  }
+};
+
+/// What is known beforehand of g' and of the field that turns in the guide.
+template <class U, class G, class Field>
+struct Known {
+  U u;
+  G g;
+  Field field;
+};
+
+/// The series of a field that turns.
+template <class U, class G>
+struct TurningSeries {
+  Known<U, G, TurningField> known;
+
+  [[nodiscard]] GuideSeries at(double t, double h, int order) const {
+    GuideSeries s;
+    s.u[0] = components(vector<double>(known.u));
+    s.g[0] = components(vector<double>(known.g));
+    known.field.add_series(t, h, order, s.g);
+    return s;
+  }
+};
+template <class U, class G>
+TurningSeries(Known<U, G, TurningField>) -> TurningSeries<U, G>;
+
+struct Nothing {};
+
+template <class... Loads>
+inline constexpr bool restricts_felt_gravity = (vanishes<FeltGravity, Axis::x, Loads...> ||
+                                                vanishes<FeltGravity, Axis::y, Loads...> ||
+                                                vanishes<FeltGravity, Axis::z, Loads...>);
+
+template <class... Loads>
+inline constexpr bool restricts_guide_rate = (vanishes<GuideRate, Axis::x, Loads...> ||
+                                              vanishes<GuideRate, Axis::y, Loads...> ||
+                                              vanishes<GuideRate, Axis::z, Loads...>);
+
+/// Throws : InvalidInput where components are said to vanish that do not
+template <bool gravity, class P, class M, class... Loads>
+[[nodiscard]] auto known_motion(const P& r, const M& guide, const std::string& what,
+                                const Loads&... loads) {
+  if constexpr (!SteadyGuide<M>) {
+    static_assert(!restricts_guide_rate<Loads...> && !restricts_felt_gravity<Loads...>,
+                  "Without<GuideRate> and Without<FeltGravity> take a guide in steady motion");
+    return Nothing{};
+  } else {
+    const auto motion = guide.steady();
+    check_vanishing<GuideRate, Loads...>(vector<double>(motion.u), what + ", rate of the guide");
+    const auto u = without<GuideRate, Loads...>(motion.u);
+    using U = std::remove_const_t<decltype(u)>;
+    if constexpr (!gravity) {
+      return Known<U, NoVector, Nothing>{u, {}, {}};
+    } else {
+      const auto carried = carried_acceleration(u, NoVector{}, motion.origin_acceleration, r);
+      const auto in_guide = field_on<Guide>(loads...) - carried;
+      const auto inertial =
+          turned_back(Turn<double>::from(guide(0).X.value.rotation), field_on<Inertial>(loads...));
+      if constexpr (has_field<Inertial, Loads...> && !U::absent) {
+        static_assert(!restricts_felt_gravity<Loads...>,
+                      "gravity that rests in the inertial frame turns in this guide");
+        const Components<double> n = direction(components(vector<double>(u)));
+        const Components<double> all = components(vector<double>(inertial));
+        const bool turns = n.x != 0 || n.y != 0 || n.z != 0;
+        const Components<double> along =
+            turns ? (all.x * n.x + all.y * n.y + all.z * n.z) * n : all;
+        return Known<U, Components<double>, TurningField>{
+            u, in_guide + along, TurningField(all, along, components(vector<double>(u)))};
+      } else {
+        const auto all = in_guide + inertial;
+        check_vanishing<FeltGravity, Loads...>(vector<double>(all), what + ", felt gravity");
+        const auto g = without<FeltGravity, Loads...>(all);
+        return Known<U, std::remove_const_t<decltype(g)>, Nothing>{u, g, {}};
+      }
+    }
+  }
+}
+
+/// The Taylor series of u and g' of an analytic guide.
+///
+/// A guide mostly moves slower than what it carries: a series of its motion serves several steps of
+/// the body, shifted to where each begins.
+template <class M, class P, class InGuide, class InInertial>
+class FeltSeries {
+ public:
+  FeltSeries(const M& guide, const P& r, const InGuide& field, const InInertial& inertial_field)
+      : guide_(guide), r_(r), field_(field), inertial_field_(inertial_field) {}
+
+  [[nodiscard]] GuideSeries at(double t, double h, int order) {
+    const double ahead = std::abs(t - begin_) + 1.25 * std::abs(h);
+    if (!(ahead < reach_)) expand(t, h);
+    return shifted(series_, (t - begin_) / unit_, h / unit_, order);
+  }
+
+ private:
+  void expand(double t, double h) {
+    begin_ = t;
+    unit_ = std::abs(h);
+    series_ =
+        guide_.series(t, unit_, most_series_order, components(vector<double>(inertial_field_)));
+    series_.g[0] = series_.g[0] + field_;
+    if constexpr (!P::absent) take_off_carried();
+    reach_ = unit_ * std::min(reached(series_.u, most_series_order),
+                              reached(series_.g, most_series_order - 1));
+  }
+
+  /// The acceleration of r against the guide's origin.
+  void take_off_carried() {
+    GuideSeries::Coefficients around;  // u x r
+    for (std::size_t k = 0; k < around.size(); ++k) around[k] = cross(series_.u[k], r_);
+    for (std::size_t k = 0; k + 1 < around.size(); ++k) {
+      Components<double> carried = (double(k + 1) / unit_) * around[k + 1];
+      for (std::size_t i = 0; i <= k; ++i) carried = carried + cross(series_.u[i], around[k - i]);
+      series_.g[k] = series_.g[k] - carried;
+    }
+    series_.g.back() = {};
+  }
+
+  M guide_;
+  P r_;
+  InGuide field_;
+  InInertial inertial_field_;
+  GuideSeries series_ = {};
+  double begin_ = 0;
+  double unit_ = 1;
+  double reach_ = 0;  ///< s, of the series from where it begins
+};
+
+/// The motion of a guide M as a body with these loads feels it at the guide-fixed point r.
+///
+/// P is NoVector where r is the guide's origin. Without `gravity` g' is Absent: it does not matter
+/// to what is held at its centre of mass.
+template <bool gravity, class P, class M, class... Loads>
+class FeltMotion {
+ public:
+  FeltMotion(const P& r, const M& guide, const std::string& what, const Loads&... loads)
+      : r_(r), known_(known_motion<gravity>(r, guide, what, loads...)) {}
+
+  /// All that a body feels of a guide that moves steadily or analytically, for AttitudeSeries.
+  [[nodiscard]] auto whole(const M& guide, const Loads&... loads) const {
+    if constexpr (requires { known_.field.at(0.0); }) {
+      return TurningSeries{known_};
+    } else if constexpr (SteadyGuide<M>) {
+      return known_;
+    } else {
+      const auto in_guide = field_on<Guide>(loads...);
+      const auto inertial = field_on<Inertial>(loads...);
+      return FeltSeries(guide, r_, in_guide, inertial);
+    }
+  }
+
+  template <class N>
+  [[nodiscard]] auto at(const M& guide, const N& t, const Loads&... loads) const {
+    if constexpr (requires { known_.field.at(t); }) {
+      return felt(known_.u, NoVector{}, known_.g + known_.field.at(t));
+    } else if constexpr (SteadyGuide<M>) {
+      return felt(known_.u, NoVector{}, known_.g);
+    } else if constexpr (!gravity && never_turns<M>) {
+      return felt(NoVector{}, NoVector{}, NoVector{});
+    } else if constexpr (!gravity && std::is_same_v<N, double>) {
+      const FrameTurning<N> now = turning(guide, t);
+      return felt(components(now.u), components(now.du), NoVector{});
+    } else {
+      return in(guide_at<N>(guide, t), loads...);
+    }
+  }
+
+  /// The same from all of the guide's motion.
+  template <class N>
+  [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const Loads&... loads) const {
+    if constexpr (never_turns<M>) {
+      return in(now, NoVector{}, NoVector{}, Vector3<N>(now.dV.value.moment), loads...);
+    } else {
+      return in(now, components(now.V.value.resultant), components(now.dV.value.resultant),
+                now.origin_acceleration(), loads...);
+    }
+  }
+
+ private:
+  using KnownMotion =
+      decltype(known_motion<gravity>(std::declval<const P&>(), std::declval<const M&>(),
+                                     std::string(), std::declval<const Loads&>()...));
+
+  /// `a` is the inertial acceleration of the guide's origin.
+  template <class N, class U>
+  [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const U& u, const U& du,
+                        const Vector3<N>& a, const Loads&... loads) const {
+    if constexpr (gravity) {
+      const auto g =
+          field_on<Guide>(loads...) +
+          turned_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
+          carried_acceleration(u, du, components(a), r_);
+      return felt(u, du, g);
+    } else {
+      return felt(u, du, NoVector{});
+    }
+  }
+
+  template <class U, class Du, class G>
+  [[nodiscard]] static Felt<U, Du, G> felt(const U& u, const Du& du, const G& g) {
+    return {u, du, g};
+  }
+
+  P r_;
+  KnownMotion known_;
+};
+
+/// What is felt at the origin of a guide that moves steadily or analytically, as AnalyticGuide gives
+/// it.
+template <class M>
+[[nodiscard]] GuideSeries series_of(const M& guide, double t, double h, int order,
+                                    const Components<double>& g) {
+  if constexpr (AnalyticGuide<M>) {
+    return guide.series(t, h, order, g);
+  } else {
+    const UniformGravity<Inertial> field{vector<double>(g)};
+    const FeltMotion<true, NoVector, M, UniformGravity<Inertial>> felt({}, guide, "guide", field);
+    const auto whole = felt.whole(guide, field);
+    if constexpr (requires { whole.at(t, h, order); }) {
+      return whole.at(t, h, order);
+    } else {
+      GuideSeries steady;
+      steady.u[0] = components(vector<double>(whole.u));
+      steady.g[0] = components(vector<double>(whole.g));
+      return steady;
+    }
+  }
+}
+
+/// The loads that are no field and no statement, together.
+template <class N, class... Loads>
+[[nodiscard]] Force<Body, N> forces(const Situation<N>& s, const Loads&... loads) {
+  Force<Body, N> sum;
+  const auto add = [&](const auto& load) {
+    if constexpr (is_force<std::decay_t<decltype(load)>>) sum = sum + load(s);
+  };
+  (add(loads), ...);
+  return sum;
+}
+
+/// The loads that are not of the kind L.
+template <class L, class... Loads>
+[[nodiscard]] auto other_loads(const std::tuple<Loads...>& all) {
+  const auto other = [](const auto& load) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(load)>, L>) {
+      return std::tuple();
+    } else {
+      return std::tuple(load);
+    }
+  };
+  return std::apply([&](const auto&... loads) { return std::tuple_cat(other(loads)...); }, all);
+}
+
+/// Whether a guide turns, as far as its type knows.
+template <class M>
+[[nodiscard]] constexpr bool turns() {
+  if constexpr (SteadyGuide<M>) {
+    return !decltype(std::declval<const M&>().steady().u)::absent;
+  } else {
+    return !never_turns<M>;
+  }
+}
+
+template <class L>
+[[nodiscard]] const char* kind_of() {
+  if constexpr (requires { L::kind; }) {
+    return L::kind;
+  } else {
+    return "load";
+  }
+}
+
+/// Whether a body feels the guide's turning, its angular acceleration and g', as its Felt type says,
+/// and why not.
+template <class Now, class M, class... Loads>
+struct FeltTerms {
+  static constexpr bool turns = !decltype(Now::u)::absent;
+  static constexpr bool turns_unsteadily = !decltype(Now::du)::absent;
+  static constexpr bool pulled = !decltype(Now::g)::absent;
+
+  [[nodiscard]] static std::string of_turning() {
+    const std::string said = said_of<GuideRate, Loads...>();
+    return turns || !said.empty() ? said : "the guide does not turn";
+  }
+
+  [[nodiscard]] static std::string of_unsteadiness() {
+    if (turns_unsteadily) return {};
+    return turns ? "the guide moves steadily" : of_turning();
+  }
+
+  [[nodiscard]] static std::string of_gravity() {
+    const std::string said = said_of<FeltGravity, Loads...>();
+    return pulled || !said.empty() ? said : "no gravity, and the guide does not accelerate";
+  }
+
+  /// The loads, of which uniform gravity matters if `gravity_matters`.
+  static void add_loads(Terms& terms, bool gravity_matters, const std::string& why) {
+    [[maybe_unused]] const auto add = [&](const char* kind, bool force, bool field) {
+      if (force) terms.add("load", kind);
+      if (field) terms.add("load", kind, gravity_matters, why);
+    };
+    (add(kind_of<Loads>(), is_force<Loads>, is_field<Loads>), ...);
+  }
+};
+
+}  // namespace kreisel::detail

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+
+#include <dynamics/tree/elimination.hpp>
+#include <dynamics/tree/rotor_forces.hpp>
+
+/// The passes that solve for the joints' accelerations.
+
+namespace kreisel::detail {
+
+inline void clear_articulated(const BodyTree& tree, BodyWorkspace& w) {
+  for (std::size_t i = 0; i < tree.links().size(); ++i) {
+    w.articulated[i] = {};
+    w.size[i] = {};
+  }
+}
+
+/// Eliminates all joints: what depends on the coordinates alone.
+inline void eliminate_all(const BodyTree& tree, BodyWorkspace& w) {
+  clear_articulated(tree, w);
+  for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
+    add(w.articulated[i], w.inertia[i]);
+    eliminate(tree, i, w);
+  }
+}
+
+/// The joints' accelerations, once all are eliminated and all forces reduced.
+inline void accelerate_all(const BodyTree& tree, const double* joint_force, double* acceleration,
+                           BodyWorkspace& w) {
+  for (std::size_t i = 1; i < tree.links().size(); ++i) {
+    accelerate(tree.links()[i], i, acceleration, w);
+  }
+  accelerate_rotors(tree, joint_force, acceleration, w);
+}
+
+/// Solves for the joints' accelerations with the forces that stand in w.force at dv = 0.
+inline void solve(const BodyTree& tree, const double* joint_force, double* acceleration,
+                  BodyWorkspace& w) {
+  for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
+    reduce(tree.links()[i], i, joint_force, w);
+  }
+  accelerate_all(tree, joint_force, acceleration, w);
+}
+
+/// Eliminates and solves in one pass inwards and one outwards.
+inline void eliminate_and_solve(const BodyTree& tree, const double* joint_force,
+                                double* acceleration, BodyWorkspace& w) {
+  clear_articulated(tree, w);
+  for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
+    add(w.articulated[i], w.inertia[i]);
+    eliminate(tree, i, w);
+    reduce(tree.links()[i], i, joint_force, w);
+  }
+  accelerate_all(tree, joint_force, acceleration, w);
+}
+
+}  // namespace kreisel::detail

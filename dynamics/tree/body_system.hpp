@@ -1,0 +1,297 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <concepts>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/tree/evaluation.hpp>
+#include <dynamics/tree/passes.hpp>
+#include <dynamics/tree/series.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
+
+namespace kreisel {
+
+/// A tree of rigid bodies on a moving guide: any number of them, joined to the guide or to each
+/// other, with springs, dampers, drives, locks and loads.
+///
+/// The guide's motion enters by its velocity and acceleration motors where the tree begins, so it
+/// costs the same for one body and for a thousand, and a guide at rest costs nothing.
+///
+/// Everything is const and may be called from several threads, each with its own workspace(). No
+/// call that takes a workspace asks for memory, save for results that have not their size yet.
+///
+/// Source : paper 002 (26), (27): T_i V'*_i + [V'_i (T_i V'_i)] + ... = P_i + sum_j R_ij, with the
+///          R_ij eliminated (dynamics/tree/elimination.hpp)
+/// Error  : accelerations and reactions <= 1e-11 relative, times the condition of the mass matrix
+///          where that is above 1e3, against another formulation (tests/dynamics/tree/body_system)
+/// Cost   : linear in the number of bodies; benchmarks/body_system.cpp
+/// Throws : InvalidInput as BodyTree does, or where a state has the wrong size; ComputationFailed
+///          where a motion of a joint meets no inertia, naming body and direction
+template <class M>
+class BodySystem {
+  static_assert(detail::is_guide<M>, "the guide of a system says how Guide moves against Inertial");
+
+ public:
+  using S = double;
+  using Vector = Eigen::VectorXd;  ///< y = (coordinates of all joints; rates of all joints)
+
+  struct State {
+    Vector coordinates;
+    Vector rates;
+  };
+
+  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {})
+      : guide_(std::move(guide)), tree_(std::move(bodies)), gravity_(gravity) {
+    detail::check_gravity(gravity_);
+  }
+
+  [[nodiscard]] const M& guide() const { return guide_; }
+  [[nodiscard]] const BodyTree& tree() const { return tree_; }
+  [[nodiscard]] const Gravity& gravity() const { return gravity_; }
+  /// The field of gravity on guide axes.
+  [[nodiscard]] Vector3<S> gravity_at(double t) const { return detail::field(gravity_, guide_(t)); }
+  [[nodiscard]] BodyWorkspace workspace() const { return BodyWorkspace(tree_); }
+  [[nodiscard]] int body_count() const { return static_cast<int>(tree_.bodies().size()); }
+
+  /// All coordinates and rates 0, all quaternions 1.
+  [[nodiscard]] State rest() const {
+    State state{Vector::Zero(tree_.coordinates()), Vector::Zero(tree_.rates())};
+    for (const detail::Link& link : tree_.links()) {
+      if (detail::coordinate_count(link.kind) >= 4) state.coordinates[link.q + 3] = 1;
+    }
+    return state;
+  }
+
+  [[nodiscard]] static Vector to_vector(const State& state) {
+    const Eigen::Index n = state.coordinates.size();
+    Vector y(n + state.rates.size());
+    std::copy_n(state.coordinates.data(), n, y.data());
+    std::copy_n(state.rates.data(), state.rates.size(), y.data() + n);
+    return y;
+  }
+
+  [[nodiscard]] State from_vector(const Vector& y) const {
+    return {y.head(tree_.coordinates()), y.tail(tree_.rates())};
+  }
+
+  /// For integrators: components that share unit and size.
+  [[nodiscard]] std::vector<int> blocks() const { return tree_.blocks(); }
+
+  /// Forward dynamics: the rates of the joint rates. `extra` are joint forces besides those of the
+  /// description, empty or one for each rate.
+  ///
+  /// Source : paper 002 (26) solved for V'*
+  void accelerations(double t, const Vector& y, const Vector& extra, Vector& result,
+                     BodyWorkspace& w) const {
+    detail::require(tree_, y, extra.size(), w);
+    result.resize(tree_.rates());
+    detail::accelerate(tree_, at(t), y, extra, result.data(), w);
+  }
+
+  /// The vector field  y' = rates(t, y).
+  void rates(double t, const Vector& y, Vector& result, BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    detail::rates(tree_, at(t), y, result, w);
+  }
+
+  [[nodiscard]] Vector rates(double t, const Vector& y) const {
+    BodyWorkspace w = workspace();
+    Vector result;
+    rates(t, y, result, w);
+    return result;
+  }
+
+  /// The vector field for dual numbers (Eigen's AutoDiffScalar with derivatives of fixed size), as
+  /// the exact linearisation takes it:  M d(v') = -d(forces that v' takes).
+  ///
+  /// Error  : rates in time of a guide's accelerations and of rotors' speeds that take doubles alone
+  ///          are differences, which err by 2^-42 of their fifth derivatives
+  /// Cost   : one evaluation in dual numbers of the inverse dynamics, and a solution for each
+  ///          derivative; memory is asked for
+  /// Throws : InvalidInput besides, naming the body, for a load that takes no dual numbers
+  template <class Dual>
+  [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
+      const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
+    using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
+    detail::require_dual_loads(tree_);
+    BodyWorkspace w = workspace();
+    Vector number(y.size());
+    for (Eigen::Index i = 0; i < y.size(); ++i) number[i] = y[i].value();
+    Vector rate;
+    const double now = t.value();
+    rates(now, number, rate, w);
+    Duals result = rate.template cast<Dual>();
+    const Dual* v = y.data() + tree_.coordinates();
+    const Dual* dv = result.data() + tree_.coordinates();
+    detail::set_coordinate_rates(tree_, y.data(), v, result.data());
+    for (const detail::RotorLink& rotor : tree_.rotors()) {
+      const auto& asked = tree_.body(rotor.link.body).rotor->acceleration;
+      if (!asked || t.derivatives().isZero(0)) continue;
+      result[tree_.coordinates() + rotor.link.v].derivatives() =
+          detail::slope_in_time(asked, now) * t.derivatives();
+    }
+
+    detail::MotionSpace<Dual> d(tree_);
+    const FrameMotion<Guide, Inertial, Dual> guide = detail::guide_at<Dual>(guide_, t);
+    detail::set_poses_and_motions(tree_, detail::root(guide, gravity_, detail::is_resting<M>),
+                                  y.data(), v, dv, d);
+    detail::take_off_loads(tree_, t, guide, v, d);
+    detail::add_rotor_forces_at(tree_, v, dv, d);
+    detail::sum_inwards(tree_, d);
+    Duals taken(tree_.rates());
+    detail::project(tree_, d, taken.data());
+    detail::project_rotors(tree_, dv, d, taken.data());
+    detail::set_joint_forces(tree_, y.data(), v, d);
+
+    Vector left(tree_.rates());
+    for (Eigen::Index k = 0; k < Dual().derivatives().size(); ++k) {
+      for (Eigen::Index i = 0; i < left.size(); ++i) {
+        left[i] = d.joint_force[i].derivatives()[k] - taken[i].derivatives()[k];
+      }
+      detail::respond(tree_, left, w);
+      for (Eigen::Index i = 0; i < left.size(); ++i) {
+        result[tree_.coordinates() + i].derivatives()[k] += w.acceleration[i];
+      }
+    }
+    return result;
+  }
+
+  /// The same at a time that is given.
+  template <class Dual>
+  requires(!std::same_as<Dual, double>) [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
+      double t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
+    return rates(Dual(t), y);
+  }
+
+  /// Whether series() has one for what is in this system: no loads, no rates that rotors are asked
+  /// for, nothing that floats against another body, and a guide that moves analytically.
+  [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
+    if constexpr (requires { guide_.knows_series(); }) {
+      if (!guide_.knows_series()) return false;
+    }
+    return detail::knows_series(tree_);
+  }
+
+  /// The Taylor series of the motion, for TaylorSteps; this system has to outlive it. Formulas:
+  /// dynamics/tree/series.hpp.
+  [[nodiscard]] detail::TreeSeries series() const requires(detail::feels_analytically<M>) {
+    const auto field = [this](double t, const Vector& y, Vector& rate, BodyWorkspace& w) {
+      rates(t, y, rate, w);
+    };
+    return {tree_, detail::is_resting<M>, field, felt_at_origin()};
+  }
+
+  /// Whether anything may be so stiff or damped that steps stay short for it.
+  [[nodiscard]] bool may_be_stiff() const {
+    const auto& forces = tree_.forces();
+    return std::any_of(forces.begin(), forces.end(),
+                       [](const JointForce& f) { return f.stiffness != 0 || f.damping != 0; });
+  }
+
+  /// Inverse dynamics: the joint forces, besides those of the description, that bring about the
+  /// accelerations dv.
+  void joint_forces(double t, const Vector& y, const Vector& dv, Vector& result,
+                    BodyWorkspace& w) const {
+    detail::require(tree_, y, dv.size(), w);
+    detail::joint_forces(tree_, at(t), y, dv, result, w);
+  }
+
+  /// The mass matrix of all joints, drives and locks taken as free. Does not depend on the guide.
+  ///
+  /// Cost : the number of rates times the depth of the tree
+  void mass_matrix(const Vector& y, Eigen::MatrixXd& result, BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    detail::mass_matrix(tree_, y, result, w);
+  }
+
+  /// The reaction motors R_ij of all joints.
+  ///
+  /// Source : paper 002 (26), read from the ends of the tree inwards
+  void reactions(double t, const Vector& y, JointReactions& result, BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    detail::reactions(tree_, at(t), y, result, w);
+  }
+
+  /// The same by causes. Costs about four times as much.
+  void reaction_parts(double t, const Vector& y, std::vector<ReactionParts>& result,
+                      BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    detail::reaction_parts(tree_, at(t), y, result, w);
+  }
+
+  /// Where the body is and how it moves: what a Load is given.
+  [[nodiscard]] Situation<> situation(double t, const Vector& y, int body, BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    return detail::situation(tree_, at(t), y, body, w);
+  }
+
+  /// The left side of the law of one body, with the accelerations that the forces bring about.
+  ///
+  /// Source : paper 002 (26), its relative, guide and Coriolis terms in turn
+  [[nodiscard]] ForceParts<Body> terms(double t, const Vector& y, int body,
+                                       BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    return detail::terms(tree_, at(t), y, body, w);
+  }
+
+  /// What rates() computes of (26), whatever the state: see kreisel::terms.
+  [[nodiscard]] Terms terms() const {
+    return detail::terms(tree_, detail::is_resting<M>, gravity_);
+  }
+
+  [[nodiscard]] BodyBalance balance(double t, const Vector& y, BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    return detail::balance(tree_, at(t), y, w);
+  }
+
+  /// Invariants of a motion, by name, as far as the description shows them:
+  ///
+  ///   energy            guide at rest, all loads keep it (see Load), no damper; without that of the
+  ///                     spin if rotors are regulated
+  ///   linear and angular momentum   guide at rest, along the rates of root joints on which nothing
+  ///                     acts: about the joint of a spherical root, along gravity if there is one
+  ///   cyclic momentum   C (phi' + e.w) of every free rotor, on any guide
+  ///
+  /// Source : paper 000 (4), and (9): T2 + V = const for L = const
+  [[nodiscard]] std::vector<std::pair<std::string, S>> conserved(double t,
+                                                                 const State& state) const {
+    BodyWorkspace w = workspace();
+    const Vector y = to_vector(state);
+    detail::require(tree_, y, 0, w);
+    return detail::conserved(tree_, at(t), y, w);
+  }
+
+ private:
+  [[nodiscard]] detail::Surroundings at(double t) const {
+    return {t, guide_(t), detail::is_resting<M>, gravity_};
+  }
+
+  [[nodiscard]] auto felt_at_origin() const {
+    const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity_);
+    const auto* at_rest = std::get_if<UniformGravity<Inertial>>(&gravity_);
+    const Vector3<S> zero = Vector3<S>::Zero();
+    const auto moving = detail::components(on_guide ? on_guide->g : zero);
+    const auto resting = detail::components(at_rest ? at_rest->g : zero);
+    if constexpr (AnalyticGuide<M>) {
+      return [felt = detail::FeltSeries(guide_, detail::NoVector{}, moving, resting)](
+                 double t, double h, int order) mutable { return felt.at(t, h, order); };
+    } else {
+      return [guide = guide_, moving, resting](double t, double h, int order) {
+        GuideSeries felt = detail::series_of(guide, t, h, order, resting);
+        felt.g[0] = felt.g[0] + moving;
+        return felt;
+      };
+    }
+  }
+
+  M guide_;
+  BodyTree tree_;
+  Gravity gravity_;
+};
+
+}  // namespace kreisel

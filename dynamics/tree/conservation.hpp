@@ -1,0 +1,264 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <dynamics/tree/balance.hpp>
+#include <dynamics/tree/loads.hpp>
+
+/// Energy and momentum of a tree, and which of them do not change.
+
+namespace kreisel::detail {
+
+/// The energy of weight and loads of one body.
+[[nodiscard]] inline double potential(const Situation<>& s, const Gravity& gravity,
+                                      const BodyDescription& body) {
+  double sum = 0;
+  if (body.inertia.value.mass > 0) {
+    if (const auto* g = std::get_if<UniformGravity<Guide>>(&gravity)) sum += g->potential(s);
+    if (const auto* g = std::get_if<UniformGravity<Inertial>>(&gravity)) sum += g->potential(s);
+  }
+  for (const BodyLoad& load : body.loads) sum += load.potential(s);
+  return sum;
+}
+
+/// The energy of springs and of constant forces along single coordinates.
+[[nodiscard]] inline double joint_energy(const BodyTree& tree, const double* q) {
+  double sum = 0;
+  for (const Link& link : tree.links()) {
+    if (rate_count(link.kind) != 1) continue;
+    const JointForce& f = tree.forces()[static_cast<std::size_t>(link.v)];
+    const double stretch = q[link.q] - f.rest;
+    sum += f.stiffness * stretch * stretch / 2 - f.constant * q[link.q];
+  }
+  for (const RotorLink& rotor : tree.rotors()) {
+    if (rotor.mode != RotorMode::torque) continue;
+    sum -= tree.forces()[static_cast<std::size_t>(rotor.link.v)].constant * q[rotor.link.q];
+  }
+  return sum;
+}
+
+/// The weight l of a rotor, from its rate and the absolute angular velocity of its carrier. Needs
+/// poses and places in w.
+[[nodiscard]] inline double momentum_weight(const BodyTree& tree, std::size_t rotor,
+                                            const GuideNow<>& guide, const double* v,
+                                            const BodyWorkspace& w) {
+  const RotorLink& r = tree.rotors()[rotor];
+  const Vector3<double> turn = w.place[carrier(r)].V.resultant + guide.V.value.resultant;
+  return momentum_weight(r, v[r.link.v], dot(w.pose[tree.rotor_slot(rotor)].axis, turn));
+}
+
+/// What rotors add by their spin to what moves with their carriers.
+inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const double* v,
+                      const BodyWorkspace& w, BodyBalance& sum) {
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    const auto c = static_cast<std::size_t>(rotor.link.parent);
+    const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
+    const double rate = v[rotor.link.v];
+    const double relative = dot(e, w.place[c].V.resultant);
+    const double absolute = relative + dot(e, guide.V.value.resultant);
+    const auto energy = [&](double turn) {
+      return rotor.regulated() ? rotor.about * rate * (turn + rate / 2)
+                               : rotor.about * (rate + turn) * (rate + turn) / 2;
+    };
+    sum.kinetic_energy += energy(absolute);
+    sum.relative_kinetic_energy += energy(relative);
+    sum.momentum.value.moment += momentum_weight(rotor, rate, absolute) * e;
+    sum.relative_momentum.value.moment += momentum_weight(rotor, rate, relative) * e;
+  }
+}
+
+/// Needs poses and places in w.
+[[nodiscard]] inline BodyBalance balance(const BodyTree& tree, double t, const GuideNow<>& guide,
+                                         const Gravity& gravity, const double* q, const double* v,
+                                         const BodyWorkspace& w) {
+  BodyBalance sum;
+  sum.potential_energy = joint_energy(tree, q);
+  for (std::size_t link = 0; link < tree.links().size(); ++link) {
+    const Inertia<>& T = link == 0 ? tree.links()[0].inertia : w.inertia[link];
+    const auto& [x, V_rel] = w.place[link];
+    const Motor<> V = V_rel + guide.V.value.reduced_at(x);
+    const Motor<> p = T * V;
+    const Motor<> p_rel = T * V_rel;
+    sum.kinetic_energy += reciprocal(p, V) / 2;
+    sum.relative_kinetic_energy += reciprocal(p_rel, V_rel) / 2;
+    sum.momentum.value += carried(x, p);
+    sum.relative_momentum.value += carried(x, p_rel);
+  }
+  sum.carrier_energy = sum.kinetic_energy;
+  add_spins(tree, guide, v, w, sum);
+  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
+    sum.potential_energy += potential(situation(tree, t, guide, i, w), gravity, tree.body(i));
+  }
+  return sum;
+}
+
+/// Which energy does not change on a guide at rest.
+enum class EnergyLaw {
+  none,
+  all,
+  without_spin  ///< BodyBalance::carrier_energy and the potential one: T2 + V
+};
+
+/// Whether no force of a tree changes the energy on a guide at rest, but for motors of regulated
+/// rotors.
+[[nodiscard]] inline bool keeps_energy(const BodyTree& tree) {
+  return std::none_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
+    if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
+    const auto takes = [&b](const JointForce& f) {
+      return f.damping != 0 || (b.forces.size() > 2 && f.constant != 0);
+    };
+    return b.rule == JointRule::constant_rate ||
+           std::any_of(b.forces.begin(), b.forces.end(), takes) ||
+           !std::all_of(b.loads.begin(), b.loads.end(),
+                        [](const BodyLoad& load) { return load.keeps_energy(); });
+  });
+}
+
+/// Source : paper 000 (9)-(13) for L = const: d(u^t A* u)/dt = 2 u^t Q; no such law where a motor's
+///          rate changes as time goes or where another has a torque of its own besides
+[[nodiscard]] inline EnergyLaw energy_law(const BodyTree& tree) {
+  if (!keeps_energy(tree)) return EnergyLaw::none;
+  const auto any = [&tree](const auto& is) {
+    return std::any_of(tree.bodies().begin(), tree.bodies().end(),
+                       [&is](const BodyDescription& b) { return b.rotor && is(*b.rotor); });
+  };
+  const bool regulated = any([](const Rotor& r) { return r.mode == RotorMode::regulated; });
+  const bool driven = any([](const Rotor& r) { return r.mode == RotorMode::torque; });
+  const bool changed = any([](const Rotor& r) { return static_cast<bool>(r.acceleration); });
+  if (!regulated) return EnergyLaw::all;
+  return driven || changed ? EnergyLaw::none : EnergyLaw::without_spin;
+}
+
+/// A part of a tree that moves as one system: the link whose joint stands still in the guide, and
+/// all links behind it. Nothing but loads, gravity and that joint acts on it from outside.
+struct RootedPart {
+  std::size_t root = 0;
+  Motor<> momentum = {};  ///< on guide axes about the guide's origin
+  bool is_loaded = false;
+  bool has_weight = false;
+};
+
+/// Number of the part that each link belongs to; -1 for links that do not move in the guide.
+[[nodiscard]] inline std::vector<int> part_of_links(const BodyTree& tree,
+                                                    std::vector<RootedPart>& parts) {
+  std::vector<int> part(tree.links().size(), -1);
+  for (std::size_t i = 1; i < part.size(); ++i) {
+    const Link& link = tree.links()[i];
+    part[i] = part[static_cast<std::size_t>(link.parent)];
+    if (part[i] >= 0 || !link.moves()) continue;
+    part[i] = static_cast<int>(parts.size());
+    parts.push_back({.root = i});
+  }
+  return part;
+}
+
+/// The parts of a tree on a guide at rest, with their momenta. Needs poses and places in w.
+[[nodiscard]] inline std::vector<RootedPart> rooted_parts(const BodyTree& tree, const double* v,
+                                                          const BodyWorkspace& w) {
+  std::vector<RootedPart> parts;
+  const std::vector<int> part = part_of_links(tree, parts);
+  const auto with = [&](std::size_t link) {
+    return part[link] < 0 ? nullptr : &parts[static_cast<std::size_t>(part[link])];
+  };
+  for (std::size_t i = 1; i < part.size(); ++i) {
+    RootedPart* const own = with(i);
+    if (own == nullptr) continue;
+    const auto& [x, V] = w.place[i];
+    own->momentum += carried(x, w.inertia[i] * V);
+    own->has_weight = own->has_weight || w.inertia[i].mass != 0;
+  }
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    RootedPart* const own = with(carrier(rotor));
+    if (own == nullptr) continue;
+    const Vector3<double>& e = w.pose[tree.rotor_slot(k)].axis;
+    const double turn = dot(e, w.place[carrier(rotor)].V.resultant);
+    own->momentum.moment += momentum_weight(rotor, v[rotor.link.v], turn) * e;
+  }
+  for (const int body : tree.loaded()) {
+    const std::size_t slot = tree.link(body);
+    RootedPart* const own = with(is_rotor(tree, slot) ? carrier(rotor(tree, slot)) : slot);
+    if (own != nullptr) own->is_loaded = true;
+  }
+  return parts;
+}
+
+/// Whether the joint of a link exerts no force along its own rates.
+[[nodiscard]] inline bool moves_freely(const BodyTree& tree, const Link& link) {
+  if (!link.moved_by_forces()) return false;
+  const auto first = tree.forces().begin() + link.v;
+  return std::all_of(first, first + rate_count(link.kind), [](const JointForce& f) {
+    return f.stiffness == 0 && f.damping == 0 && f.constant == 0;
+  });
+}
+
+using Invariants = std::vector<std::pair<std::string, double>>;
+
+/// Momenta that a part of a tree keeps on a guide at rest, by name: those along rates of its root
+/// joint on which neither that joint nor gravity acts.
+///
+///   free       linear momentum, angular momentum about the guide's origin
+///   spherical  angular momentum about the joint
+///   revolute, first axis of a universal joint   angular momentum about the axis
+///   prismatic  linear momentum along the axis
+///
+/// With gravity only the linear momentum across it and the angular momentum along it.
+///
+/// gravity : on guide axes
+/// only    : no other part moves, so that names do not tell the body
+inline void add_kept_momenta(const BodyTree& tree, const RootedPart& part,
+                             const Vector3<double>& gravity, bool only, const BodyWorkspace& w,
+                             Invariants& result) {
+  constexpr double rounding = 1e-15;  // of axes in decimals
+  const Link& link = tree.links()[part.root];
+  if (part.is_loaded || !moves_freely(tree, link)) return;
+  const Vector3<double> g = part.has_weight ? gravity : Vector3<double>(Vector3<double>::Zero());
+  const double size = std::sqrt(dot(g, g));
+  const std::string body = "'" + tree.body(link.body).name + "'";
+  const std::string whose = only ? "" : " of " + body;
+  const Vector3<double>& p = part.momentum.resultant;
+  Vector3<double> L = part.momentum.moment;
+  if (link.kind != LinkKind::free) L -= cross(w.place[part.root].x, p);
+  static constexpr const char* axes[] = {" x", " y", " z"};
+  if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
+    const bool slides = link.kind == LinkKind::prismatic;
+    const Vector3<double> axis =
+        multiply(w.pose[static_cast<std::size_t>(link.parent)].R, link.axis);
+    const Vector3<double> across = cross(axis, g);
+    const double acting = slides ? std::abs(dot(axis, g)) : std::sqrt(dot(across, across));
+    if (acting > rounding * size) return;
+    const char* const name =
+        slides ? "momentum along the axis of " : "angular momentum about the axis of ";
+    result.emplace_back(name + body, dot(axis, slides ? p : L));
+    return;
+  }
+  for (int k = 0; k < 3 && link.kind == LinkKind::free; ++k) {
+    if (std::abs(g[k]) > rounding * size) continue;
+    result.emplace_back(std::string("momentum") + axes[k] + whose, p[k]);
+  }
+  if (size > 0) {
+    result.emplace_back("angular momentum along gravity" + whose, dot(L, g) / size);
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    result.emplace_back(std::string("angular momentum") + axes[k] + whose, L[k]);
+  }
+}
+
+/// Momenta that do not change on a guide at rest, by name. Needs poses and places in w.
+inline void add_kept_momenta(const BodyTree& tree, const GuideNow<>& guide, const Gravity& gravity,
+                             const double* v, const BodyWorkspace& w, Invariants& result) {
+  const std::vector<RootedPart> parts = rooted_parts(tree, v, w);
+  for (const RootedPart& part : parts) {
+    add_kept_momenta(tree, part, field(gravity, guide), parts.size() == 1, w, result);
+  }
+}
+
+}  // namespace kreisel::detail

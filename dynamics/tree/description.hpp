@@ -1,0 +1,202 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <concepts>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <dynamics/inertia.hpp>
+#include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/load/load.hpp>
+
+namespace kreisel {
+
+enum class JointKind {
+  fixed,
+  revolute,   ///< turns about `axis`
+  prismatic,  ///< slides along `axis`
+  universal,  ///< turns about `axis` of the parent, then about `second_axis`, which turns along
+  spherical,  ///< turns about a point
+  free        ///< not joined at all
+};
+
+/// How a body may move against its parent.
+///
+/// At zero coordinates the body's axes are the parent's, turned by `orientation`, and its origin
+/// lies at `position`. Both, and the axes, are written on the PARENT's axes; lengths of axes and
+/// norm of the quaternion do not matter.
+///
+/// Coordinates: revolute and prismatic one, universal two (about `axis`, about `second_axis`);
+///              spherical a quaternion (x, y, z, w) of any norm; free such a quaternion, then the
+///              place of the body's origin, from `position`, on the parent's axes
+/// Rates      : the coordinates' own; for a quaternion the angular velocity against the parent, on
+///              the body's axes; for a place the velocity against the parent, on the parent's axes
+/// Units      : radian, metre, rad/s, m/s
+struct Joint {
+  JointKind kind = JointKind::fixed;
+  Vector3<double> axis = Vector3<double>::Zero();
+  Vector3<double> second_axis = Vector3<double>::Zero();  ///< universal: with the first at 0
+  Vector3<double> position = Vector3<double>::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+};
+
+/// A joint force that follows one coordinate q or rate:  constant - stiffness (q - rest) - damping
+/// q'. A quaternion and a free place have no spring, for they have no single coordinate to pull at.
+///
+/// Units  : N m/rad and N m s/rad, or N/m and N s/m; rad or m; N m or N
+struct JointForce {
+  double stiffness = 0;
+  double rest = 0;
+  double damping = 0;
+  double constant = 0;
+};
+
+/// What rules the motion in a joint.
+enum class JointRule {
+  forces,        ///< the forces on the bodies
+  held,          ///< locked where it is; its rates count as 0
+  constant_rate  ///< revolute only: a motor keeps the rate whatever torque that takes
+};
+
+/// What rules the spin of a rotor.
+enum class RotorMode {
+  free,       ///< nothing turns it about its axis: its cyclic momentum p = C (spin) stays
+  regulated,  ///< a motor on the carrier keeps the relative rate phi' what it is asked to be
+  torque      ///< a motor gives a torque, its reaction acts on the carrier; dampers may brake it
+};
+
+/// Makes the body of a revolute joint a rotor, whose angle no equation of motion depends on: it is
+/// balanced, symmetric about the joint's axis e and carries nothing. For the motion of the others
+/// it is welded to its carrier, with the gyroscopic torque  -w x l e  as all that is left of it:
+/// the costs and the steps of a computation do not know how fast it turns. Coordinate (whole turns
+/// counted) and rate, relative to the carrier, remain those of the joint.
+///
+/// Tensor about the origin: C e e^t + A (1 - e e^t), up to 64u of its trace; centre of mass on the
+/// axis, up to 64u of a radius of gyration. A damper may be there in the modes regulated, where the
+/// motor overcomes it, and torque.
+///
+/// Source : paper 000 (2), (4), (8): l = C phi' if regulated, p = C (phi' + e.w) else
+/// Units  : N m; rad/s^2
+struct Rotor {
+  RotorMode mode = RotorMode::free;
+
+  /// Mode torque: on the rotor about the axis, besides the joint force, which may have no spring.
+  double torque = 0;
+
+  /// Mode regulated: phi'' of the rate asked for, which begins at that of the state; null: 0.
+  std::function<double(double t)> acceleration = nullptr;
+};
+
+namespace detail {
+
+/// A number and its rate along one direction.
+using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
+
+/// A situation in dual numbers, of which only the k-th derivative counts.
+///
+/// One : AlongOne; a parameter, so that nothing of it is compiled where this is not called
+template <class One, class Dual>
+[[nodiscard]] Situation<One> along_one(const Situation<Dual>& s, Eigen::Index k) {
+  const auto number = [k](const Dual& x) {
+    One one(x.value());
+    one.derivatives()[0] = x.derivatives()[k];
+    return one;
+  };
+  const auto all = [&number](const auto& v) { return v.unaryExpr(number).eval(); };
+  const auto motor = [&all](const Motor<Dual>& m) -> Motor<One> {
+    return {all(m.resultant), all(m.moment)};
+  };
+  const auto pose = [&all](const Pose<Dual>& X) -> Pose<One> {
+    return {all(X.rotation), all(X.translation)};
+  };
+  const Inertia<Dual>& T = s.inertia.value;
+  const Symmetric3<Dual>& t = T.tensor;
+  return {number(s.t),
+          {pose(s.X.value)},
+          {motor(s.V_rel.value)},
+          {{pose(s.guide.X.value)}, {motor(s.guide.V.value)}, {motor(s.guide.dV.value)}},
+          {{number(T.mass),
+            all(T.first_moment),
+            {number(t.xx), number(t.yy), number(t.zz), number(t.xy), number(t.xz), number(t.yz)}}}};
+}
+
+}  // namespace detail
+
+/// Any Load, kept by value. In dual numbers, as linear equations ask for, a load works that is a
+/// template on the number of the situation; others give numbers of type double alone.
+///
+/// A load for which it is all the same how a symmetric body is turned
+/// about its axis and how fast it spins, as gravitation, may act on a rotor; it says so by
+///
+///   static constexpr bool ignores_spin = true;
+class BodyLoad {
+ public:
+  template <class L>
+  requires(!std::same_as<L, BodyLoad> && Load<L>) BodyLoad(L load)
+      : force_(load) {  // NOLINT: a load is meant where a load is taken
+    if constexpr (requires(const Situation<>& s) { load.potential(s); }) {
+      potential_ = [load](const Situation<>& s) { return load.potential(s); };
+    }
+    if constexpr (requires { load.keeps_energy(); }) keeps_energy_ = load.keeps_energy();
+    if constexpr (Load<L, detail::AlongOne>) along_ = load;
+    if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
+  }
+
+  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const { return force_(s); }
+
+  /// Of dual numbers: a derivative at a time. Asks for takes_dual_numbers().
+  template <class Dual>
+  [[nodiscard]] Force<Body, Dual> operator()(const Situation<Dual>& s) const {
+    Force<Body, Dual> result;
+    for (Eigen::Index k = 0; k < s.t.derivatives().size(); ++k) {
+      const auto P = along_(detail::along_one<detail::AlongOne>(s, k)).value;
+      for (int i = 0; i < 3; ++i) {
+        const auto set = [k](Dual& to, const auto& from) {
+          to.value() = from.value();
+          to.derivatives()[k] = from.derivatives()[0];
+        };
+        set(result.value.resultant[i], P.resultant[i]);
+        set(result.value.moment[i], P.moment[i]);
+      }
+    }
+    return result;
+  }
+  [[nodiscard]] bool takes_dual_numbers() const { return static_cast<bool>(along_); }
+
+  /// Whether it does no work but that of its potential on a guide at rest: see Load.
+  [[nodiscard]] bool keeps_energy() const { return keeps_energy_; }
+  [[nodiscard]] double potential(const Situation<>& s) const {
+    return potential_ ? potential_(s) : 0;
+  }
+  [[nodiscard]] bool ignores_spin() const { return ignores_spin_; }
+
+ private:
+  std::function<Force<Body>(const Situation<>&)> force_;
+  std::function<double(const Situation<>&)> potential_;
+  std::function<Force<Body, detail::AlongOne>(const Situation<detail::AlongOne>&)> along_;
+  bool keeps_energy_ = false;
+  bool ignores_spin_ = false;
+};
+
+/// One body of a system and the joint that holds it to its parent.
+struct BodyDescription {
+  std::string name;
+  std::string parent = "guide";  ///< the guide frame, or the name of a body earlier in the list
+  Joint joint = {};
+  InertiaTensor<Body> inertia = {};     ///< about the body's origin, which lies in the joint
+  std::vector<JointForce> forces = {};  ///< one for each rate of the joint, or none
+  JointRule rule = JointRule::forces;
+  std::vector<BodyLoad> loads = {};
+  std::optional<Rotor> rotor = std::nullopt;
+};
+
+/// The field of gravity that all bodies of a system are in; a field that is not uniform is a load.
+using Gravity = std::variant<std::monostate, UniformGravity<Guide>, UniformGravity<Inertial>>;
+
+}  // namespace kreisel

@@ -1,0 +1,278 @@
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/tree/accelerations.hpp>
+#include <dynamics/tree/check.hpp>
+#include <dynamics/tree/conservation.hpp>
+#include <dynamics/tree/evaluation.hpp>
+#include <dynamics/tree/mass_matrix.hpp>
+#include <dynamics/tree/passes.hpp>
+#include <dynamics/tree/terms.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+BodyWorkspace::BodyWorkspace(const BodyTree& tree)
+    : MotionSpace(tree),
+      articulated(tree.links().size()),
+      single(tree.links().size()),
+      size(tree.links().size()),
+      delta(tree.links().size()),
+      ball(static_cast<std::size_t>(tree.balls())),
+      still(Eigen::VectorXd::Zero(tree.rates())),
+      acceleration(Eigen::VectorXd::Zero(tree.rates())),
+      spin_up(tree.rotors().size()) {}
+
+namespace detail {
+
+/// The force of its joint on a body, once w.force has been summed inwards.
+[[nodiscard]] inline Force<Body> joint_reaction(const BodyTree& tree, int body,
+                                                const BodyWorkspace& w) {
+  const std::size_t link = tree.link(body);
+  const Matrix3<double>& R = w.pose[link].R;
+  const auto& [force, moment] = w.force[link];
+  return {{transposed_product(R, force), transposed_product(R, moment)}};
+}
+
+/// The terms of (26) of one body, from the absolute accelerations in w, from which g was taken off.
+[[nodiscard]] inline ForceParts<Body> terms_of_body(const BodyTree& tree, const Situation<>& s,
+                                                    int body, const Vector3<double>& g,
+                                                    const BodyWorkspace& w) {
+  const std::size_t link = tree.link(body);
+  const LinkMotion<>& absolute = w.motion[link];
+  const auto& [x, V] = w.place[link];
+  const Vector3<double>& u = s.guide.V.value.resultant;
+  const Vector3<double>& du = s.guide.dV.value.resultant;
+  const Vector3<double> carried =
+      s.guide.origin_acceleration() + cross(du, x) + cross(u, cross(u, x));
+  const Vector3<double> turn = absolute.dw - du - cross(u, V.resultant);
+  const Vector3<double> slide = absolute.a + g - carried - 2.0 * cross(u, V.moment);
+  const Matrix3<double>& R = w.pose[link].R;
+  const Rate<Body, Velocity<Body, Guide, Body>> dV_rel{
+      {transposed_product(R, turn), transposed_product(R, slide - cross(V.resultant, V.moment))}};
+  const Displacement<Body, Guide> X = s.X.inverse();
+  return equation_of_motion(s.inertia, s.V_rel, X * s.guide.V, dV_rel, X * s.guide.dV);
+}
+
+void check_gravity(const Gravity& gravity) {
+  if (is_finite(field<double>(gravity, {}))) return;
+  throw InvalidInput("system of bodies: gravity is not finite");
+}
+
+void refuse_sizes(const BodyTree& tree, Eigen::Index components, Eigen::Index per_rate) {
+  if (components != tree.coordinates() + tree.rates()) {
+    throw InvalidInput("system of bodies: a state of " + std::to_string(components) +
+                       " components, not " + std::to_string(tree.coordinates() + tree.rates()));
+  }
+  if (per_rate != 0 && per_rate != tree.rates()) {
+    throw InvalidInput("system of bodies: " + std::to_string(per_rate) + " numbers for " +
+                       std::to_string(tree.rates()) + " rates");
+  }
+  throw InvalidInput("system of bodies: the workspace is of another system");
+}
+
+void require_dual_loads(const BodyTree& tree) {
+  for (const int body : tree.loaded()) {
+    const auto& loads = tree.body(body).loads;
+    if (std::all_of(loads.begin(), loads.end(),
+                    [](const BodyLoad& load) { return load.takes_dual_numbers(); })) {
+      continue;
+    }
+    refuse_body(tree.body(body).name,
+                "a load of it takes no dual numbers, so it has no linear equations: make "
+                "it a template on the number type N,  Force<Body, N> operator()(const "
+                "Situation<N>&) const");
+  }
+}
+
+/// Where a tree begins.
+[[nodiscard]] inline LinkMotion<> root(const Surroundings& now) {
+  return root(now.guide, now.gravity, now.guide_rests);
+}
+
+[[nodiscard]] inline const double* rates_of(const BodyTree& tree, const Eigen::VectorXd& y) {
+  return y.data() + tree.coordinates();
+}
+
+void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                const Eigen::VectorXd& extra, double* result, BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  set_poses_and_motions(tree, root(now), y.data(), v, nullptr, w);
+  take_off_loads(tree, now.t, now.guide, v, w);
+  set_joint_forces(tree, y.data(), v, w);
+  if (extra.size()) w.joint_force += extra;
+  ask_spin_up(tree, now.t, w);
+  add_rotor_forces(tree, v, w.joint_force.data(), w);
+  eliminate_and_solve(tree, w.joint_force.data(), result, w);
+}
+
+void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+           Eigen::VectorXd& result, BodyWorkspace& w) {
+  result.resize(y.size());
+  set_coordinate_rates(tree, y.data(), rates_of(tree, y), result.data());
+  accelerate(tree, now, y, {}, result.data() + tree.coordinates(), w);
+}
+
+void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force, BodyWorkspace& w) {
+  std::fill(w.motion.begin(), w.motion.end(), LinkMotion<>{});
+  std::fill(w.force.begin(), w.force.end(), Motor<>{});
+  ask_no_spin_up(w);
+  add_rotor_forces(tree, w.still.data(), joint_force.data(), w);
+  solve(tree, joint_force.data(), w.acceleration.data(), w);
+}
+
+void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                  const Eigen::VectorXd& dv, Eigen::VectorXd& result, BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  result.resize(tree.rates());
+  set_poses_and_motions(tree, root(now), y.data(), v, dv.size() ? dv.data() : nullptr, w);
+  take_off_loads(tree, now.t, now.guide, v, w);
+  const double* given = dv.size() ? dv.data() : w.still.data();
+  add_rotor_forces_at(tree, v, given, w);
+  sum_inwards(tree, w);
+  project(tree, w, result.data());
+  project_rotors(tree, given, w, result.data());
+  set_joint_forces(tree, y.data(), v, w);
+  result -= w.joint_force;
+}
+
+void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::MatrixXd& result,
+                 BodyWorkspace& w) {
+  set_poses(tree, y.data(), w);
+  mass_matrix(tree, w, result);
+}
+
+void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+               JointReactions& result, BodyWorkspace& w) {
+  accelerate(tree, now, y, {}, w.acceleration.data(), w);
+  joint_forces(tree, now, y, w.acceleration, result.drive, w);
+  for (const Link& link : tree.links()) {
+    if (!link.moved_by_forces()) continue;
+    for (int k = 0; k < rate_count(link.kind); ++k) result.drive[link.v + k] = 0;
+  }
+  for (const RotorLink& rotor : tree.rotors()) {
+    if (!rotor.regulated()) result.drive[rotor.link.v] = 0;
+  }
+  set_rotor_poses(tree, y.data(), w);
+  complete_rotor_forces(tree, rates_of(tree, y), w.acceleration.data(), w);
+  result.on_body.resize(tree.bodies().size());
+  for (std::size_t i = 0; i < tree.bodies().size(); ++i) {
+    result.on_body[i] = joint_reaction(tree, static_cast<int>(i), w);
+  }
+}
+
+/// Reactions to a part of the causes; the joints are eliminated and w.joint_force is set.
+inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double* v,
+                   const Surroundings* loads_at, const Eigen::VectorXd& y, BodyWorkspace& w) {
+  const auto set_forces = [&](const double* dv) {
+    set_motions(tree, root, v, dv, w);
+    if (loads_at) take_off_loads(tree, loads_at->t, loads_at->guide, rates_of(tree, y), w);
+  };
+  set_forces(nullptr);
+  add_rotor_forces(tree, v, w.joint_force.data(), w);
+  solve(tree, w.joint_force.data(), w.acceleration.data(), w);
+  const double* dv = w.acceleration.data();
+  set_forces(dv);
+  add_rotor_forces_at(tree, v, dv, w);
+  sum_inwards(tree, w);
+  set_rotor_poses(tree, y.data(), w);
+  complete_rotor_forces(tree, v, dv, w);
+}
+
+void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                    std::vector<ReactionParts>& result, BodyWorkspace& w) {
+  const LinkMotion<> moving{now.guide.V.value.resultant, now.guide.dV.value.resultant,
+                            now.guide.origin_acceleration()};
+  const Vector3<double> zero = Vector3<double>::Zero();
+  const LinkMotion<> weight{zero, zero, -field(now.gravity, now.guide)};
+  result.resize(tree.bodies().size());
+  set_poses(tree, y.data(), w);
+  eliminate_all(tree, w);
+  const double* v = rates_of(tree, y);
+  const double* still = w.still.data();
+  const auto note = [&](Force<Body> ReactionParts::*part) {
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      result[i].*part = joint_reaction(tree, static_cast<int>(i), w);
+    }
+  };
+  w.joint_force.setZero();
+  ask_spin_up(tree, now.t, w);
+  answer(tree, {}, v, nullptr, y, w);
+  note(&ReactionParts::spin);
+  answer(tree, moving, v, nullptr, y, w);
+  note(&ReactionParts::guide);
+  for (ReactionParts& parts : result) parts.guide = parts.guide - parts.spin;
+  ask_no_spin_up(w);
+  answer(tree, weight, still, nullptr, y, w);
+  note(&ReactionParts::gravity);
+  set_joint_forces(tree, y.data(), v, w);
+  answer(tree, {}, still, &now, y, w);
+  note(&ReactionParts::forces);
+}
+
+Situation<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                      int body, BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  set_poses(tree, y.data(), w);
+  set_places(tree, v, w);
+  set_rotor_places(tree, y.data(), v, w);
+  return situation(tree, now.t, now.guide, body, w);
+}
+
+ForceParts<Body> terms(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                       int body, BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  accelerate(tree, now, y, {}, w.acceleration.data(), w);
+  set_motions(tree, root(now), v, w.acceleration.data(), w);
+  set_places(tree, v, w);
+  set_rotor_places(tree, y.data(), v, w);
+  set_rotor_motions(tree, v, w.acceleration.data(), w);
+  return terms_of_body(tree, situation(tree, now.t, now.guide, body, w), body,
+                       field(now.gravity, now.guide), w);
+}
+
+Terms terms(const BodyTree& tree, bool guide_rests, const Gravity& gravity) {
+  return equation_terms(tree, guide_rests, gravity);
+}
+
+BodyBalance balance(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                    BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  set_poses(tree, y.data(), w);
+  set_places(tree, v, w);
+  set_rotor_places(tree, y.data(), v, w);
+  return balance(tree, now.t, now.guide, now.gravity, y.data(), v, w);
+}
+
+std::vector<std::pair<std::string, double>> conserved(const BodyTree& tree, const Surroundings& now,
+                                                      const Eigen::VectorXd& y, BodyWorkspace& w) {
+  std::vector<std::pair<std::string, double>> result;
+  const BodyBalance sums = balance(tree, now, y, w);
+  for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    if (rotor.mode != RotorMode::free) continue;
+    result.emplace_back("cyclic momentum of '" + tree.body(rotor.link.body).name + "'",
+                        momentum_weight(tree, k, now.guide, rates_of(tree, y), w));
+  }
+  if (!now.guide_rests) return result;
+  switch (energy_law(tree)) {
+    case EnergyLaw::none: break;
+    case EnergyLaw::all:
+      result.emplace_back("energy", sums.kinetic_energy + sums.potential_energy);
+      break;
+    case EnergyLaw::without_spin:
+      result.emplace_back("energy without spin", sums.carrier_energy + sums.potential_energy);
+      break;
+  }
+  add_kept_momenta(tree, now.guide, now.gravity, rates_of(tree, y), w, result);
+  return result;
+}
+
+}  // namespace detail
+
+}  // namespace kreisel

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/tree/balance.hpp>
+#include <dynamics/tree/loads.hpp>
+#include <dynamics/tree/reaction.hpp>
+#include <dynamics/tree/workspace.hpp>
+#include <dynamics/law/relative.hpp>
+#include <dynamics/model/terms.hpp>
+#include <motor/api.hpp>
+
+/// What a BodySystem computes once it is known how its guide moves, of whatever kind that is; what
+/// each function gives is said there (dynamics/tree/body_system.hpp).
+
+namespace kreisel::detail {
+
+/// What a tree is in at one time.
+struct Surroundings {
+  double t;
+  GuideNow<> guide;
+  bool guide_rests;
+  const Gravity& gravity;
+};
+
+/// Throws : InvalidInput for a gravity that is not finite
+KREISEL_API void check_gravity(const Gravity& gravity);
+
+KREISEL_API [[noreturn]] void refuse_sizes(const BodyTree& tree, Eigen::Index components,
+                                           Eigen::Index per_rate);
+
+/// Throws : InvalidInput for a state, numbers of the rates or a workspace that are not of this tree
+inline void require(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::Index per_rate,
+                    const BodyWorkspace& w) {
+  const bool fit = y.size() == tree.coordinates() + tree.rates() &&
+                   (per_rate == 0 || per_rate == tree.rates()) && w.pose.size() == tree.slots() &&
+                   w.joint_force.size() == tree.rates();
+  if (!fit) refuse_sizes(tree, y.size(), per_rate);
+}
+
+/// Throws : InvalidInput, naming the body, for a load that takes no dual numbers
+KREISEL_API void require_dual_loads(const BodyTree& tree);
+
+/// The accelerations, from w.joint_force and on.
+KREISEL_API void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                            const Eigen::VectorXd& extra, double* result, BodyWorkspace& w);
+
+KREISEL_API void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                       Eigen::VectorXd& result, BodyWorkspace& w);
+
+/// The accelerations  M dv = joint_force  of a system at rest, once the field has been evaluated where
+/// it is: joints eliminated, axes of rotors known. Into w.acceleration.
+KREISEL_API void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force,
+                         BodyWorkspace& w);
+
+KREISEL_API void joint_forces(const BodyTree& tree, const Surroundings& now,
+                              const Eigen::VectorXd& y, const Eigen::VectorXd& dv,
+                              Eigen::VectorXd& result, BodyWorkspace& w);
+
+KREISEL_API void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y,
+                             Eigen::MatrixXd& result, BodyWorkspace& w);
+
+KREISEL_API void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                           JointReactions& result, BodyWorkspace& w);
+
+KREISEL_API void reaction_parts(const BodyTree& tree, const Surroundings& now,
+                                const Eigen::VectorXd& y, std::vector<ReactionParts>& result,
+                                BodyWorkspace& w);
+
+KREISEL_API [[nodiscard]] Situation<> situation(const BodyTree& tree, const Surroundings& now,
+                                                const Eigen::VectorXd& y, int body,
+                                                BodyWorkspace& w);
+
+KREISEL_API [[nodiscard]] ForceParts<Body> terms(const BodyTree& tree, const Surroundings& now,
+                                                 const Eigen::VectorXd& y, int body,
+                                                 BodyWorkspace& w);
+
+KREISEL_API [[nodiscard]] Terms terms(const BodyTree& tree, bool guide_rests,
+                                      const Gravity& gravity);
+
+KREISEL_API [[nodiscard]] BodyBalance balance(const BodyTree& tree, const Surroundings& now,
+                                              const Eigen::VectorXd& y, BodyWorkspace& w);
+
+KREISEL_API [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
+    const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y, BodyWorkspace& w);
+
+}  // namespace kreisel::detail

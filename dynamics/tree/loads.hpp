@@ -1,0 +1,80 @@
+#pragma once
+
+#include <variant>
+
+#include <dynamics/tree/rotors.hpp>
+#include <dynamics/model/dual_numbers.hpp>
+
+/// Where the bodies of a tree are, and what acts on them from outside.
+
+namespace kreisel::detail {
+
+template <class S = double>
+using GuideNow = FrameMotion<Guide, Inertial, S>;
+
+/// The uniform field of gravity on guide axes.
+template <class S>
+[[nodiscard]] Vector3<S> field(const Gravity& gravity, const GuideNow<S>& guide) {
+  if (const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity)) {
+    return on_guide->g.template cast<S>();
+  }
+  if (const auto* inertial = std::get_if<UniformGravity<Inertial>>(&gravity)) {
+    return transposed_product(guide.X.value.rotation, inertial->g.template cast<S>().eval());
+  }
+  return Vector3<S>::Zero();
+}
+
+/// Where a tree begins. In a uniform field the weights of all bodies are what a guide accelerated by
+/// -g would ask for.
+template <class S>
+[[nodiscard]] LinkMotion<S> root(const GuideNow<S>& guide, const Gravity& gravity, bool rests) {
+  if (rests) return {Vector3<S>::Zero(), Vector3<S>::Zero(), -field(gravity, guide)};
+  return {guide.V.value.resultant, guide.dV.value.resultant,
+          guide.origin_acceleration() - field(gravity, guide)};
+}
+
+/// Places in the guide and velocity motors V' against it.
+template <class S>
+void set_places(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
+  for (std::size_t i = 1; i < tree.links().size(); ++i) {
+    const Link& link = tree.links()[i];
+    const auto parent = static_cast<std::size_t>(link.parent);
+    w.place[i] = place(link, w.pose[i], w.pose[parent], w.place[parent], v);
+  }
+}
+
+/// Needs poses and places in w.
+template <class S>
+[[nodiscard]] Situation<S> situation(const BodyTree& tree, const S& t, const GuideNow<S>& guide,
+                                     int body, const MotionSpace<S>& w) {
+  const std::size_t link = tree.link(body);
+  const auto& [x, V] = w.place[link];
+  const Matrix3<S>& R = w.pose[link].R;
+  return {t,
+          {{R, x}},
+          {{transposed_product(R, V.resultant), transposed_product(R, V.moment)}},
+          guide,
+          {lifted<S>(tree.body(body).inertia.value)}};
+}
+
+/// Takes the loads off the forces in w, which the joints have to bring up.
+template <class S>
+void take_off_loads(const BodyTree& tree, const S& t, const GuideNow<S>& guide, const S* v,
+                    MotionSpace<S>& w) {
+  if (tree.loaded().empty()) return;
+  set_places(tree, v, w);
+  for (const int body : tree.loaded()) {
+    const std::size_t link = tree.link(body);
+    if (is_rotor(tree, link)) set_place_without_angle(tree, link, v, w);
+    const Situation<S> s = situation(tree, t, guide, body, w);
+    for (const BodyLoad& load : tree.body(body).loads) {
+      const Motor<S> P = load(s).value;
+      w.force[link] -= Motor<S>{w.pose[link].R * P.resultant, w.pose[link].R * P.moment};
+    }
+    if (is_rotor(tree, link)) {
+      w.force[carrier(rotor(tree, link))] += carried(w.pose[link].r, w.force[link]);
+    }
+  }
+}
+
+}  // namespace kreisel::detail

@@ -1,0 +1,483 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <dynamics/tree/check.hpp>
+#include <dynamics/tree/evaluation.hpp>
+#include <dynamics/tree/series.hpp>
+
+namespace kreisel::detail {
+
+bool knows_series(const BodyTree& tree) {
+  if (!tree.loaded().empty()) return false;
+  for (const RotorLink& rotor : tree.rotors()) {
+    if (tree.body(rotor.link.body).rotor->acceleration) return false;
+  }
+  return std::all_of(tree.links().begin(), tree.links().end(), [](const Link& link) {
+    return link.kind != LinkKind::free || link.parent == 0;
+  });
+}
+
+/// Axes of which z is the one given.
+[[nodiscard]] inline Matrix3<double> axes_about(const Vector3<double>& axis) {
+  int least = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::abs(axis[i]) < std::abs(axis[least])) least = i;
+  }
+  Vector3<double> x = Vector3<double>::Zero();
+  x[least] = 1;
+  x = normalized(Vector3<double>(x - dot(x, axis) * axis));
+  Matrix3<double> axes;
+  axes << x, cross(axis, x), axis;
+  return axes;
+}
+
+[[nodiscard]] inline double along(const Four& a, const Four& b) {
+  const Four product = a * b;
+  return product[0] + product[1] + product[2];
+}
+
+/// (-y, x, -w, z): two vectors of a plane turned by a right angle.
+[[nodiscard]] inline Four turned_left(const Four& a) { return {-a[1], a[0], -a[3], a[2]}; }
+
+/// The k-th coefficients of w w^t: those with what is newest, and the others.
+inline void TreeSeries::Branch::begin_products(std::size_t k) {
+  squares = w[0] * w[k];
+  next = w[0] * w_cycled[k];
+}
+inline void TreeSeries::Branch::add_product(std::size_t i, std::size_t j) {
+  squares += w[i] * w[j];
+  next += w[i] * w_cycled[j];
+}
+
+/// From w_next; per_time = (k + 1)/h.
+inline void TreeSeries::Branch::accelerate(double per_time) {
+  dw.as_is = per_time * w_next.as_is;
+  dw.next = per_time * w_next.next;
+  dw.after = per_time * w_next.after;
+  gamma.main = Four(0, 0, 0, 0) - (squares.next() + squares.after());
+  gamma.upper = next - dw.after;
+  gamma.lower = next.after() + dw.next;
+}
+
+inline void TreeSeries::Ball::put_attitude(std::size_t k, const Four& coefficient) {
+  q[k] = coefficient;
+  q_cycled[k] = coefficient.next();
+  Four square(0, 0, 0, 0);
+  Four next = square;
+  Four by_w = square;
+  for (std::size_t j = 0; j <= k; ++j) {
+    square += q[j] * q[k - j];
+    next += q[j] * q_cycled[k - j];
+    by_w += q[k - j][3] * q[j];
+  }
+  turn_back[k] = Diagonals::turn_back(square, next, by_w, scale);
+  turn[k] = turn_back[k].transposed();
+}
+
+TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
+    : tree_(tree),
+      guide_rests_(guide_rests),
+      field_(std::move(field)),
+      felt_(std::move(felt)),
+      workspace_(tree),
+      left_(Eigen::VectorXd::Zero(tree.rates())),
+      still_(Eigen::VectorXd::Zero(tree.rates())),
+      branches_(tree.links().size()),
+      balls_(static_cast<std::size_t>(tree.balls())),
+      spins_(tree.rotors().size()),
+      fours_(tree.rates() <= most_inverted ? (static_cast<std::size_t>(tree.rates()) + 3) / 4 : 0),
+      inverse_(fours_ * static_cast<std::size_t>(tree.rates())) {
+  const Four zero(0, 0, 0, 0);
+  Branch& guide = branches_[0];
+  guide.gamma = {zero, zero, zero};
+  guide.w_next = Cycles(zero);
+  guide.dw = guide.w_next;
+  for (std::size_t i = 1; i < branches_.size(); ++i) {
+    const Link& link = tree.links()[i];
+    Branch& b = branches_[i];
+    b.parent = static_cast<std::size_t>(link.parent);
+    b.is_turned = b.parent != 0 || !guide_rests;
+    b.hands_on = b.parent != 0;
+    b.q = link.q;
+    b.v = tree.coordinates() + link.v;
+    b.rates = link.v;
+    const Matrix3<double> above = branches_[b.parent].own_axes.transpose();
+    if (link.moves() && link.kind == LinkKind::revolute) {
+      b.way = Way::turning;
+      const Matrix3<double> joint = axes_about(link.axis).transpose();
+      b.own_axes = joint * (link.still + link.cosine);
+      b.set_outwards(joint * above);
+    } else if (link.moves() && link.kind == LinkKind::prismatic) {
+      b.way = Way::sliding;
+      b.number = sliders_.size();
+      const Vector3<double> axis = above.transpose() * link.axis;
+      sliders_.emplace_back().axis = Cycles(four(components(axis)));
+    } else if (link.moves()) {
+      b.way = Way::ball;
+      b.number = static_cast<std::size_t>(link.factor);
+      b.floats = link.kind == LinkKind::free;
+      b.set_outwards(link.still.transpose() * above);
+      for (int j = 3; b.floats && j < 6; ++j) {
+        const int rate = link.v + j;
+        const JointForce& f = tree.forces()[static_cast<std::size_t>(rate)];
+        b.is_braked = b.is_braked || f.damping != 0 || f.constant != 0;
+      }
+    }
+    const Inertia<> T = Pose<>{b.own_axes, Vector3<double>::Zero()} * link.inertia;
+    b.mass = T.mass;
+    b.first_moment = Cycles(four(components(T.first_moment)));
+    b.tensor = Diagonals::of(T.tensor.matrix());
+    b.gyroscopic = GyroscopicDifferences(T.tensor);
+  }
+  for (std::size_t k = 0; k < spins_.size(); ++k) {
+    const RotorLink& rotor = tree.rotors()[k];
+    Spin& spin = spins_[k];
+    spin.carrier = static_cast<std::size_t>(rotor.link.parent);
+    spin.q = rotor.link.q;
+    spin.v = rotor.link.v;
+    spin.regulated = rotor.regulated();
+    spin.about = rotor.about;
+    const Matrix3<double>& axes = branches_[spin.carrier].own_axes;
+    spin.axis = four(components(Vector3<double>(axes * rotor.link.axis)));
+  }
+}
+
+void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c) {
+  y_ = c.col(0);
+  field_(t, y_, rate_, workspace_);
+  c.col(1) = h * rate_;
+  if (order == 1) return;
+  const GuideSeries felt = felt_(t, h, order);
+  begin(c);
+  prepare_response();
+  const double* dv = rate_.data() + tree_.coordinates();
+  for (int k = 0;; ++k) {
+    const double weight = h / (k + 1);
+    const auto at = static_cast<std::size_t>(k);
+    prepare(k, h, felt, c);
+    if (k > 0) {
+      go_outwards(at, weight, still_.data());
+      go_inwards(at);
+      set_left(k, c);
+      dv = response();
+      for (int i = 0; i < tree_.rates(); ++i) c(tree_.coordinates() + i, k + 1) = weight * dv[i];
+    }
+    if (k + 1 == order) return;
+    go_outwards(at, weight, dv);
+    go_inwards(at);
+  }
+}
+
+void TreeSeries::begin(const Columns& c) {
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    Branch& b = branches_[i];
+    const Matrix3<double> to_own = b.own_axes * workspace_.pose[i].R.transpose();
+    b.w_next = Cycles(four(components(Vector3<double>(to_own * workspace_.motion[i].w))));
+    if (i == 0) continue;
+    const Branch& parent = branches_[b.parent];
+    const Matrix3<double> above = parent.own_axes * workspace_.pose[b.parent].R.transpose();
+    b.r = Cycles(four(components(Vector3<double>(above * workspace_.pose[i].r))));
+    if (b.way == Way::still || b.way == Way::sliding) b.set_outwards(to_own * above.transpose());
+    const Four w = b.outwards * parent.w_next;
+    if (b.way == Way::turning) {
+      b.cos[0] = std::cos(c(b.q, 0));
+      b.sin[0] = std::sin(c(b.q, 0));
+      b.first_turn = Four(w[0], w[1], 0, 0);
+    } else if (b.way == Way::ball) {
+      Ball& ball = balls_[b.number];
+      ball.first_w = w;
+      ball.scale = 1 / c.col(0).segment<4>(b.q).squaredNorm();
+      ball.put_attitude(0, Four::from(&c(b.q, 0)));
+    }
+  }
+}
+
+void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
+  const auto at = static_cast<std::size_t>(k);
+  const double weight = h / (k + 1);
+  c.col(k + 1).head(tree_.coordinates()).setZero();
+  for (Branch& b : branches_) {
+    b.w[at] = b.w_next.as_is;
+    b.w_cycled[at] = b.w_next.next;
+  }
+  prepare_guide(at, 1 / weight, felt);
+  for (std::size_t i = 1; i < branches_.size(); ++i) {
+    Branch& b = branches_[i];
+    b.begin_products(at);
+    switch (b.way) {
+      case Way::still:
+        for (std::size_t j = 1; j <= at; ++j) b.add_product(j, at - j);
+        break;
+      case Way::turning: prepare_turning(b, k, weight, c); break;
+      case Way::sliding: prepare_sliding(b, k, weight, c); break;
+      case Way::ball:
+        prepare_ball(b, k, weight, c);
+        if (b.floats) prepare_floating(b, k, weight, c);
+        break;
+    }
+    b.gyroscopic_moment = b.gyroscopic.torque(b.next.next(), b.squares);
+  }
+  prepare_spins(k, weight, c);
+}
+
+void TreeSeries::prepare_guide(std::size_t k, double per_time, const GuideSeries& felt) {
+  Branch& guide = branches_[0];
+  guide.a = -1.0 * four(felt.g[k]);
+  if (guide_rests_) return;
+  guide.w_next = Cycles(four(felt.u[k + 1]));
+  guide.begin_products(k);
+  for (std::size_t j = 1; j <= k; ++j) guide.add_product(j, k - j);
+  guide.accelerate(per_time);
+  guide_gamma_[k] = guide.gamma;
+}
+
+void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
+  c(b.q, k + 1) = weight * c(b.v, k);
+  const auto last = static_cast<std::size_t>(k);
+  double by_cos = c(b.v, k) * b.cos[0];
+  double by_sin = c(b.v, k) * b.sin[0];
+  Four outer(0, 0, 0, 0);
+  Four outer_left = outer;
+  Four inner = outer;
+  Four inner_left = outer;
+  for (std::size_t j = 1; j <= last; ++j) {
+    const double cos = b.cos[j];
+    const double sin = b.sin[j];
+    const double rate = c(b.v, int(last - j));
+    b.add_product(j, last - j);
+    by_cos += rate * cos;
+    by_sin += rate * sin;
+    outer += cos * b.turned[last - j];
+    outer_left += sin * b.turned[last - j];
+    inner += cos * b.back[last - j];
+    inner_left += sin * b.back[last - j];
+  }
+  b.cos[last + 1] = -weight * by_sin;
+  b.sin[last + 1] = weight * by_cos;
+  outer += b.cos[last + 1] * b.first_turn;
+  outer_left += b.sin[last + 1] * b.first_turn;
+  b.outer = outer - turned_left(outer_left);
+  b.inner = inner + turned_left(inner_left);
+}
+
+void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
+  c(b.q, k + 1) = weight * c(b.v, k);
+  const auto last = static_cast<std::size_t>(k);
+  Slider& slider = sliders_[b.number];
+  slider.w_axis[last] = 2.0 * cross(branches_[b.parent].w[last], slider.axis.as_is);
+  b.carried = c(b.v, 0) * slider.w_axis[last];
+  slider.lever = Four(0, 0, 0, 0);
+  for (std::size_t j = 1; j <= last; ++j) {
+    const double q = c(b.q, int(j));
+    b.add_product(j, last - j);
+    b.carried += c(b.v, int(j)) * slider.w_axis[last - j] + q * slider.gamma_axis[last - j];
+    slider.lever += q * slider.moment[last - j];
+  }
+}
+
+void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
+  Ball& ball = balls_[b.number];
+  const auto last = static_cast<std::size_t>(k);
+  Four x(0, 0, 0, 0);
+  Four y = x;
+  Four z = x;
+  for (std::size_t j = 0; j <= last; ++j) {
+    const double* v = &c(b.v, int(last - j));
+    x += v[0] * ball.q[j];
+    y += v[1] * ball.q[j];
+    z += v[2] * ball.q[j];
+  }
+  // q (0, v)
+  const Four product = (Four(x[3], x[2], -x[1], -x[0]) + Four(-y[2], y[3], y[0], -y[1])) +
+                       Four(z[1], -z[0], z[3], -z[2]);
+  const Four dq = weight / 2 * product;
+  dq.to(&c(b.q, k + 1));
+  ball.put_attitude(last + 1, dq);
+
+  TransposedProducts w, a, f, n;
+  if (b.is_turned) w.add(ball.turn[last + 1], ball.first_w);
+  for (std::size_t j = 1; j <= last; ++j) {
+    b.add_product(j, last - j);
+    a.add(ball.turn[j], ball.a[last - j]);
+    if (b.is_turned) w.add(ball.turn[j], ball.w[last + 1 - j]);
+    if (b.hands_on || b.is_braked) f.add(ball.turn_back[j], ball.f[last - j]);
+    if (b.hands_on) n.add(ball.turn_back[j], ball.n[last - j]);
+  }
+  ball.w_sum = w.sum();
+  ball.a_sum = a.sum();
+  ball.f_sum = f.sum();
+  ball.n_sum = n.sum();
+}
+
+void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
+  c.col(k + 1).segment<3>(b.q + 4) = weight * c.col(k).segment<3>(b.v + 3);
+  b.carried = Four(0, 0, 0, 0);
+  if (guide_rests_) return;
+  Ball& ball = balls_[b.number];
+  const Branch& guide = branches_[0];
+  const auto last = static_cast<std::size_t>(k);
+  const auto three = [&](int row) {
+    return Cycles(Four(c(row, k), c(row + 1, k), c(row + 2, k), 0));
+  };
+  ball.place[last] = three(b.q + 4);
+  ball.slide[last] = three(b.v + 3);
+  for (std::size_t j = 0; j <= last; ++j) {
+    const Cycles& slide = ball.slide[last - j];
+    const Four& w = guide.w_cycled[j];
+    b.carried += 2.0 * (w * slide.after - w.next() * slide.next);
+    if (j < last) b.carried += guide_gamma_[j] * ball.place[last - j];
+  }
+}
+
+void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
+  const auto last = static_cast<std::size_t>(k);
+  for (Spin& spin : spins_) {
+    const Four& w = branches_[spin.carrier].w[last];
+    const double rate = c(tree_.coordinates() + spin.v, k);
+    spin.momentum[last] = spin.about * (spin.regulated ? rate : rate + along(spin.axis, w));
+    spin.aside[last] = cross(w, spin.axis);
+    spin.gyroscopic_moment = Four(0, 0, 0, 0);
+    for (std::size_t j = 0; j <= last; ++j) {
+      spin.gyroscopic_moment += spin.momentum[j] * spin.aside[last - j];
+    }
+    c(spin.q, k + 1) = weight * rate;
+  }
+}
+
+void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
+  for (std::size_t i = 1; i < branches_.size(); ++i) {
+    Branch& b = branches_[i];
+    const Branch& above = branches_[b.parent];
+    const double* own = dv + b.rates;
+    Four a = above.a + above.gamma * b.r;
+    if (b.way == Way::sliding) {
+      Slider& slider = sliders_[b.number];
+      slider.gamma_axis[k] = above.gamma * slider.axis;
+      a += b.carried + own[0] * slider.axis.as_is;
+    } else if (b.floats) {
+      a += b.carried + Four(own[3], own[4], own[5], 0);
+    }
+    a = b.outwards * Cycles(a);
+    Four w = b.outwards * above.w_next;
+    if (b.way == Way::turning) {
+      const Four before(w[0], w[1], a[0], a[1]);
+      b.turned[k] = before;
+      const Four turned = b.outer + (b.cos[0] * before - b.sin[0] * turned_left(before));
+      w = Four(turned[0], turned[1], w[2] + weight * own[0], 0);
+      a = Four(turned[2], turned[3], a[2], 0);
+    } else if (b.way == Way::ball) {
+      Ball& ball = balls_[b.number];
+      ball.w[k + 1] = w;
+      ball.a[k] = a;
+      a = ball.a_sum + ball.turn_back[0] * Cycles(a);
+      const Four turned = ball.w_sum + ball.turn_back[0] * Cycles(w);
+      w = weight * Four(own[0], own[1], own[2], 0);
+      if (b.is_turned) w += turned;
+    }
+    b.w_next = Cycles(w);
+    b.a = a;
+    b.accelerate(1 / weight);
+    b.force = b.mass * a + b.gamma * b.first_moment;
+    b.moment = cross(b.first_moment.as_is, a) + (b.tensor * b.dw - b.gyroscopic_moment);
+  }
+  for (const Spin& spin : spins_) {
+    Branch& carrier = branches_[spin.carrier];
+    carrier.moment += spin.gyroscopic_moment;
+    if (spin.regulated) continue;
+    const double acceleration = dv[spin.v] + along(spin.axis, carrier.dw.as_is);
+    carrier.moment += spin.about * acceleration * spin.axis;
+  }
+}
+
+void TreeSeries::go_inwards(std::size_t k) {
+  for (std::size_t i = branches_.size() - 1; i > 0; --i) {
+    Branch& b = branches_[i];
+    Four f = b.force;
+    Four n = b.moment;
+    if (b.way == Way::ball && (b.hands_on || b.is_braked)) {
+      Ball& ball = balls_[b.number];
+      ball.f[k] = f;
+      ball.n[k] = n;
+      f = ball.f_sum + ball.turn[0] * Cycles(f);
+      n = ball.n_sum + ball.turn[0] * Cycles(n);
+    }
+    if (!b.hands_on) continue;
+    if (b.way == Way::turning) {
+      const Four before(f[0], f[1], n[0], n[1]);
+      b.back[k] = before;
+      const Four turned = b.inner + (b.cos[0] * before + b.sin[0] * turned_left(before));
+      f = Four(turned[0], turned[1], f[2], 0);
+      n = Four(turned[2], turned[3], n[2], 0);
+    }
+    f = b.inwards * Cycles(f);
+    n = b.inwards * Cycles(n) + cross(b.r.as_is, f);
+    if (b.way == Way::sliding) {
+      Slider& slider = sliders_[b.number];
+      slider.moment[k] = cross(slider.axis.as_is, f);
+      n += slider.lever;
+    }
+    branches_[b.parent].force += f;
+    branches_[b.parent].moment += n;
+  }
+}
+
+void TreeSeries::set_left(int k, const Columns& c) {
+  for (int i = 0; i < tree_.rates(); ++i) {
+    const auto number = static_cast<std::size_t>(i);
+    const JointForce& f = tree_.forces()[number];
+    left_[i] = -f.stiffness * c(tree_.coordinate_of()[number], k) -
+               f.damping * c(tree_.coordinates() + i, k);
+  }
+  for (std::size_t i = 1; i < branches_.size(); ++i) {
+    const Branch& b = branches_[i];
+    double* left = left_.data() + b.rates;
+    if (b.way == Way::turning) {
+      left[0] -= b.moment[2];
+    } else if (b.way == Way::sliding) {
+      left[0] -= along(b.outwards * sliders_[b.number].axis, b.force);
+    } else if (b.way == Way::ball) {
+      for (int j = 0; j < 3; ++j) left[j] -= b.moment[j];
+      if (!b.floats) continue;
+      // What nothing brakes takes no force at any order.
+      const Ball& ball = balls_[b.number];
+      const Four f = b.inwards * Cycles(ball.f_sum + ball.turn[0] * Cycles(b.force));
+      for (int j = 0; j < 3; ++j) left[3 + j] -= f[j];
+    }
+  }
+  for (const Spin& spin : spins_) {
+    left_[spin.v] -= spin.about * along(spin.axis, branches_[spin.carrier].dw.as_is);
+  }
+}
+
+void TreeSeries::prepare_response() {
+  if (fours_ == 0) return;
+  left_.setZero();
+  for (int j = 0; j < tree_.rates(); ++j) {
+    left_[j] = 1;
+    respond(tree_, left_, workspace_);
+    left_[j] = 0;
+    dv_.fill(0);
+    std::copy_n(workspace_.acceleration.data(), tree_.rates(), dv_.begin());
+    for (std::size_t i = 0; i < fours_; ++i) {
+      inverse_[std::size_t(j) * fours_ + i] = Four::from(&dv_[4 * i]);
+    }
+  }
+}
+
+const double* TreeSeries::response() {
+  if (fours_ == 0) {
+    respond(tree_, left_, workspace_);
+    return workspace_.acceleration.data();
+  }
+  const auto rates = static_cast<std::size_t>(tree_.rates());
+  for (std::size_t i = 0; i < fours_; ++i) {
+    Four sum = left_[0] * inverse_[i];
+    for (std::size_t j = 1; j < rates; ++j)
+      sum += left_[Eigen::Index(j)] * inverse_[j * fours_ + i];
+    sum.to(&dv_[4 * i]);
+  }
+  return dv_.data();
+}
+
+}  // namespace kreisel::detail

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/tree/check.hpp>
+#include <dynamics/tree/tree.hpp>
+#include <motor/displacement.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+namespace detail {
+
+/// Makes a link turn about an axis of its parent, on which it stands as `still` says, after
+/// Rodrigues:  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
+inline void turn_about(Link& link, const Vector3<double>& axis) {
+  link.kind = LinkKind::revolute;
+  link.axis = normalized(axis);
+  const Vector3<double>& a = link.axis;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3<double> o(link.still(0, k), link.still(1, k), link.still(2, k));
+    const Vector3<double> along = dot(a, o) * a;
+    const Vector3<double> across = o - along;
+    const Vector3<double> turned = cross(a, o);
+    for (int i = 0; i < 3; ++i) {
+      link.still(i, k) = along[i];
+      link.cosine(i, k) = across[i];
+      link.sine(i, k) = turned[i];
+    }
+  }
+}
+
+}  // namespace detail
+
+BodyTree::BodyTree(std::vector<BodyDescription> bodies) : bodies_(std::move(bodies)) {
+  links_.emplace_back();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const std::string& name = bodies_[i].name;
+    if (name.empty() || name == "guide") {
+      detail::refuse_body(
+          name, "number " + std::to_string(i + 1) + " of the list needs a name other than 'guide'");
+    }
+    if (!index_.emplace(name, static_cast<int>(i)).second) {
+      detail::refuse_body(name, "the name is used twice; a body has one joint to one parent");
+    }
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    check_parent(static_cast<int>(i));
+    detail::check_numbers(bodies_[i]);
+    append(static_cast<int>(i));
+  }
+  for (std::size_t k = 0; k < rotors_.size(); ++k) {
+    last_link_[static_cast<std::size_t>(rotors_[k].link.body)] = rotor_slot(k);
+  }
+}
+
+int BodyTree::index(const std::string& name) const {
+  const auto found = index_.find(name);
+  if (found == index_.end()) throw InvalidInput("body '" + name + "' does not exist");
+  return found->second;
+}
+
+JointPlace BodyTree::place(int body) const {
+  const std::size_t slot = link(body);
+  const detail::Link& last =
+      slot < links_.size() ? links_[slot] : rotors_[slot - links_.size()].link;
+  const bool universal = this->body(body).joint.kind == JointKind::universal;
+  if (universal) return {last.q - 1, 2, last.v - 1, 2};
+  return {last.q, detail::coordinate_count(last.kind), last.v, detail::rate_count(last.kind)};
+}
+
+std::vector<int> BodyTree::blocks() const {
+  std::vector<int> blocks = coordinate_blocks_;
+  blocks.insert(blocks.end(), rate_blocks_.begin(), rate_blocks_.end());
+  return blocks;
+}
+
+void BodyTree::check_parent(int body) const {
+  const std::string& name = this->body(body).name;
+  const std::string& parent = this->body(body).parent;
+  if (parent == "guide") return;
+  const auto found = index_.find(parent);
+  if (found == index_.end()) detail::refuse_body(name, "its parent '" + parent + "' is unknown");
+  if (this->body(found->second).rotor) {
+    detail::refuse_body(name, "its parent '" + parent + "' is a rotor, which can carry nothing");
+  }
+  if (found->second < body) return;
+  // Up from the parent, to tell a loop from a list in the wrong order.
+  std::string path = name + " -> " + parent;
+  auto above = found;
+  for (std::size_t step = 0; step < bodies_.size(); ++step) {
+    if (above->second == body) {
+      detail::refuse_body(name, "closed loop " + path + "; only trees are computed");
+    }
+    const std::string& next = this->body(above->second).parent;
+    above = index_.find(next);
+    if (above == index_.end()) break;
+    path += " -> " + next;
+  }
+  detail::refuse_body(name, "its parent '" + parent + "' comes later; parents come first");
+}
+
+void BodyTree::append(int body) {
+  using detail::LinkKind;
+  const BodyDescription& b = this->body(body);
+  detail::Link link;
+  link.body = body;
+  link.rule = b.rule;
+  link.position = b.joint.position;
+  link.parent = b.parent == "guide" ? 0 : static_cast<int>(this->link(index_.at(b.parent)));
+  link.still = detail::Turn<double>::from(b.joint.orientation).matrix();
+  switch (b.joint.kind) {
+    case JointKind::fixed: break;
+    case JointKind::revolute: detail::turn_about(link, b.joint.axis); break;
+    case JointKind::prismatic:
+      link.kind = LinkKind::prismatic;
+      link.axis = detail::normalized(b.joint.axis);
+      break;
+    case JointKind::universal: {
+      detail::Link cross = link;
+      cross.still = Matrix3<double>::Identity();
+      detail::turn_about(cross, b.joint.axis);
+      cross.is_cross = true;
+      push(cross);
+      link.position = Vector3<double>::Zero();
+      link.parent = static_cast<int>(links_.size()) - 1;
+      detail::turn_about(link, b.joint.second_axis);
+      break;
+    }
+    case JointKind::spherical: link.kind = LinkKind::spherical; break;
+    case JointKind::free: link.kind = LinkKind::free; break;
+  }
+  if (link.kind == LinkKind::spherical || link.kind == LinkKind::free) link.factor = balls_++;
+  if (b.rotor) {
+    weld(link);
+  } else {
+    link.inertia = b.inertia.value;
+    push(link);
+  }
+  last_link_.push_back(links_.size() - 1);
+  if (!b.loads.empty()) loaded_.push_back(body);
+  const std::size_t before = forces_.size();
+  forces_.resize(static_cast<std::size_t>(rates_));
+  std::copy(b.forces.begin(), b.forces.end(),
+            forces_.begin() + static_cast<std::ptrdiff_t>(before));
+  if (b.rotor) forces_.back().constant += b.rotor->torque;
+}
+
+void BodyTree::weld(detail::Link& link) {
+  const BodyDescription& b = body(link.body);
+  number(link);
+  detail::RotorLink rotor;
+  rotor.link = link;
+  rotor.mode = b.rotor->mode;
+  const Inertia<>& T = b.inertia.value;
+  const Vector3<double> e = detail::axis_on_body(b.joint);
+  rotor.mass = T.mass;
+  rotor.first_moment = detail::dot(T.first_moment, e);
+  rotor.about = detail::dot(e, T.tensor * e);
+  rotor.across = (T.tensor.xx + T.tensor.yy + T.tensor.zz - rotor.about) / 2;
+  Inertia<>& carrier = links_[static_cast<std::size_t>(link.parent)].inertia;
+  const Pose<> place{Matrix3<double>::Identity(), link.position};
+  carrier = carrier + place * rotor.inertia(link.axis, rotor.regulated() ? rotor.about : 0);
+  rotors_.push_back(rotor);
+}
+
+void BodyTree::push(detail::Link& link) {
+  number(link);
+  links_.push_back(link);
+}
+
+void BodyTree::number(detail::Link& link) {
+  using detail::LinkKind;
+  link.q = coordinates_;
+  link.v = rates_;
+  coordinates_ += detail::coordinate_count(link.kind);
+  rates_ += detail::rate_count(link.kind);
+  coordinate_of_.resize(static_cast<std::size_t>(rates_), link.q);
+  const auto add_blocks = [&link](std::vector<int>& blocks, int ball) {
+    if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) blocks.push_back(1);
+    if (link.kind == LinkKind::spherical || link.kind == LinkKind::free) blocks.push_back(ball);
+    if (link.kind == LinkKind::free) blocks.push_back(3);
+  };
+  add_blocks(coordinate_blocks_, 4);
+  add_blocks(rate_blocks_, 3);
+}
+
+}  // namespace kreisel

@@ -1,0 +1,189 @@
+// A Cardan gyro is three bodies in three joints: two ways to the same numbers, which share no
+// formula.
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/step/advance.hpp>
+
+#include <support/sample.hpp>
+#include <support/worst.hpp>
+
+using namespace kreisel;
+using test::Sample;
+
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+BodyDescription described(const char* name, const char* parent, int axis,
+                          const Vector3<double>& moments, const JointForce& force) {
+  const Symmetric3<> tensor{moments.x(), moments.y(), moments.z()};
+  return {.name = name,
+          .parent = parent,
+          .joint = {.kind = JointKind::revolute, .axis = Vector3<double>::Unit(axis)},
+          .inertia = {{2, Vector3<double>::Zero(), tensor}},
+          .forces = {force}};
+}
+
+/// What the drive gives, of the three kinds of rotors.
+template <class Rotor>
+double torque_of(const Rotor& rotor) {
+  if constexpr (requires { rotor.torque; }) {
+    return rotor.torque;
+  } else {
+    return 0;
+  }
+}
+
+template <class M, class Rotor>
+BodySystem<M> as_bodies(const CardanMoments& m, const CardanBearings& b, const M& guide,
+                        const Rotor& rotor) {
+  const auto spring = [](const CardanBearing& bearing) {
+    return JointForce{bearing.stiffness, bearing.reference, bearing.damping, 0};
+  };
+  std::vector<BodyDescription> bodies{
+      described("outer ring", "guide", 0, m.outer_ring, spring(b.outer)),
+      described("inner ring", "outer ring", 1, m.inner_ring, spring(b.inner)),
+      described("rotor", "inner ring", 2, m.rotor, {0, 0, rotor.friction, torque_of(rotor)})};
+  if (std::is_same_v<Rotor, RegulatedRotor>) bodies[2].rule = JointRule::constant_rate;
+  return {guide, std::move(bodies)};
+}
+
+/// The gyro counts its angles from where the springs are slack, the bodies from the joints' zero.
+Vector6 counted_from_zero(const CardanBearings& b, Vector6 y) {
+  y[0] += b.outer.reference;
+  y[1] += b.inner.reference;
+  return y;
+}
+
+Vector3<double> turned(int axis, double angle, const Vector3<double>& v) {
+  return Eigen::AngleAxisd(angle, Vector3<double>::Unit(axis)) * v;
+}
+
+struct Worst {
+  double accelerations = 0;
+  double reactions = 0;
+};
+
+/// Accelerations, the nine moments and the motor's, each relative to the greatest of its kind.
+template <class M, class Rotor>
+void compare(const CardanMoments& m, const CardanBearings& b, const M& guide, const Rotor& rotor,
+             double t, const Vector6& y, Worst& worst) {
+  const CardanGyro gyro(m, b, guide, rotor);
+  const BodySystem<M> bodies = as_bodies(m, b, guide, rotor);
+  BodyWorkspace w = bodies.workspace();
+  const Eigen::VectorXd z = counted_from_zero(b, y);
+  const Vector3<double> dv = gyro.rates(t, y).template tail<3>();
+  const Vector3<double> dv_bodies = bodies.rates(t, z).template tail<3>();
+  worst.accelerations = test::worst_of(
+      worst.accelerations,
+      (dv - dv_bodies).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / dv.cwiseAbs().maxCoeff());
+
+  // Of the bodies each is what the outer one of two exerts, on the axes of the inner one.
+  const CardanReactions mine = gyro.reactions(t, gyro.from_vector(y));
+  JointReactions theirs;
+  bodies.reactions(t, z, theirs, w);
+  const auto moment = [&](std::size_t i) { return theirs.on_body[i].value.moment; };
+  const std::array<Vector3<double>, 4> off{
+      mine.guide_on_outer_ring - moment(0),
+      mine.inner_ring_on_outer_ring + turned(1, z[1], moment(1)),
+      mine.rotor_on_inner_ring + turned(2, z[2], moment(2)),
+      {std::is_same_v<Rotor, RegulatedRotor> ? mine.motor_torque - theirs.drive[2] : 0, 0, 0}};
+  double size = 0;
+  for (std::size_t i = 0; i < 3; ++i) size = std::max(size, moment(i).cwiseAbs().maxCoeff());
+  for (const Vector3<double>& v : off) {
+    worst.reactions =
+        test::worst_of(worst.reactions, v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / size);
+  }
+}
+
+CardanMoments moments_at_random(Sample& sample) {
+  const auto body = [&sample] {  // a box, so that the triangle inequality holds
+    const Vector3<double> s(sample.magnitude(-3, -1), sample.magnitude(-3, -1),
+                            sample.magnitude(-3, -1));
+    return Vector3<double>(s.y() + s.z(), s.z() + s.x(), s.x() + s.y());
+  };
+  CardanMoments m{body(), body(), body()};
+  if (sample.once_in(4)) m.rotor = m.rotor.x() * Vector3<double>(1, 1, 1.5);
+  if (sample.once_in(6)) m.inner_ring.setZero();
+  return m;
+}
+
+HarmonicFrame<> ship(Sample& sample) {
+  const auto series = [&sample](double size) {
+    HarmonicSeries<> s{size * sample.direction(), {}};
+    for (int i = 0; i < 2; ++i) {
+      s.terms.push_back({size * sample.direction(), sample.uniform(0.2, 3), sample.uniform(-3, 3)});
+    }
+    return s;
+  };
+  return {series(0.7), series(3), 0, 2};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(a_cardan_gyro_and_three_bodies)
+
+BOOST_AUTO_TEST_CASE(have_the_same_accelerations_and_reactions) {
+  Worst worst;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Sample sample(seed);
+    const CardanMoments m = moments_at_random(sample);
+    const CardanBearings b{{sample.magnitude(-2, 1), 0.01, sample.uniform(-1, 1)},
+                           {sample.magnitude(-2, 1), 0.02, sample.uniform(-1, 1)}};
+    Vector6 y;
+    y << sample.uniform(-4, 4), sample.uniform(-4, 4), sample.uniform(-10, 10),
+        sample.uniform(-5, 5), sample.uniform(-5, 5), sample.uniform(-100, 100);
+    const double drive = sample.number(-2, 0);
+    const double t = sample.uniform(0, 2);
+    const auto on = [&](const auto& guide) {
+      compare(m, b, guide, FreeRotor{0.001}, t, y, worst);
+      compare(m, b, guide, DrivenRotor{drive, 0.001}, t, y, worst);
+      compare(m, b, guide, RegulatedRotor{0.001}, t, y, worst);
+    };
+    on(RestingFrame<>{});
+    on(RotatingFrame<>{.angular_velocity = sample.vector(-1, 1),
+                       .origin_acceleration = sample.vector(-1, 1),
+                       .origin_velocity = sample.vector(-1, 1)});
+    on(ship(sample));
+  }
+  BOOST_TEST_MESSAGE("accelerations " << worst.accelerations << ", reactions " << worst.reactions);
+  BOOST_TEST(worst.accelerations < 1e-12);
+  BOOST_TEST(worst.reactions < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(move_together) {
+  Sample sample(7);
+  const HarmonicFrame<> guide = ship(sample);
+  const CardanMoments m{{.0055, .0045, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
+  const CardanBearings b{{2, 0.002, 0.25}, {1.5, 0.003, -0.5}};
+  const CardanGyro gyro(m, b, guide, DrivenRotor{0.005, 0.0001});
+  const auto bodies = as_bodies(m, b, guide, DrivenRotor{0.005, 0.0001});
+  const Vector6 start = (Vector6() << 0.1, -0.2, 0.3, 0.5, -0.4, 60).finished();
+  Advance run(gyro, 0, gyro.from_vector(start));
+  Advance bodies_run(bodies, 0, bodies.from_vector(counted_from_zero(b, start)));
+  double worst = 0;
+  for (int i = 1; i <= 8; ++i) {
+    const Vector6 y = counted_from_zero(b, gyro.to_vector(run.to(0.25 * i)));
+    const Vector6 z = bodies.to_vector(bodies_run.to(0.25 * i));
+    for (int k = 0; k < 6; ++k) {
+      worst = test::worst_of(worst, std::abs(y[k] - z[k]) / std::max(std::abs(y[k]), 1.0));
+    }
+  }
+  BOOST_TEST_MESSAGE("trajectories differ by " << worst);
+  BOOST_TEST(worst < 1e-11);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

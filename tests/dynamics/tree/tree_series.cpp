@@ -1,0 +1,134 @@
+#include <boost/test/data/monomorphic.hpp>
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/pendulum/pendulum_series.hpp>
+
+#include <support/random_tree.hpp>
+#include <support/sample.hpp>
+#include <support/series.hpp>
+
+using namespace kreisel;
+using test::Sample;
+namespace data = boost::unit_test::data;
+
+namespace {
+
+/// Where a body hangs on another that is lighter the accelerations differ by more than rounding of
+/// each: 1e-13 is 450u.
+template <class M>
+void hold_tree(const std::string& what, const BodySystem<M>& system, std::uint64_t seed) {
+  BOOST_TEST_REQUIRE(system.knows_series());
+  Sample sample(seed + 1000);
+  Eigen::VectorXd y = system.to_vector(system.rest());
+  for (double& x : y) x += sample.uniform(-1, 1);
+  test::hold_series(what, system, y, 0.05, 1e-13);
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(tree_series)
+
+BOOST_DATA_TEST_CASE(is_that_of_trees_on_all_kinds_of_guides, data::xrange(120), seed) {
+  const auto number = static_cast<std::uint64_t>(seed);
+  const auto bodies = test::random_tree(number);
+  const UniformGravity<Guide> along_guide{{1, 2, -9}};
+  const UniformGravity<Inertial> resting{{1, 2, -9}};
+  hold_tree("at rest", BodySystem(RestingFrame<>{}, bodies, along_guide), number);
+  RestingFrame<> aslant;
+  aslant.X.value.rotation = Sample(number).rotation();
+  hold_tree("at rest aslant", BodySystem(aslant, bodies, resting), number);
+  const RotatingFrame<> turntable{{0.3, -0.8, 0.5}, {1, 2, 3}};
+  hold_tree("on a turntable", BodySystem(turntable, bodies, along_guide), number);
+  hold_tree("on a turntable, gravity at rest", BodySystem(turntable, bodies, resting), number);
+  const HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}};
+  hold_tree("on a harmonic guide", BodySystem(HarmonicFrame<>(u, {}, 0, 2), bodies, resting),
+            number);
+}
+
+BOOST_AUTO_TEST_CASE(is_that_of_more_rates_than_are_inverted) {
+  std::vector<BodyDescription> chain;
+  Sample sample(7);
+  for (int i = 0; i < 20; ++i) {
+    BodyDescription b;
+    b.name = "link " + std::to_string(i);
+    if (i > 0) b.parent = chain.back().name;
+    b.joint = test::random_joint(sample, JointKind::revolute);
+    b.inertia = test::random_inertia(sample);
+    chain.push_back(b);
+  }
+  hold_tree("a chain of 20", BodySystem(RestingFrame<>{}, chain, UniformGravity<Guide>{{0, 0, -9}}),
+            0);
+}
+
+BOOST_AUTO_TEST_CASE(is_that_of_what_floats_and_is_braked) {
+  Sample sample(3);
+  BodyDescription body;
+  body.name = "body";
+  body.joint = test::random_joint(sample, JointKind::free);
+  body.inertia = test::random_inertia(sample);
+  body.forces.assign(6, {.damping = 0.3});
+  hold_tree("braked", BodySystem(RestingFrame<>{}, {body}, UniformGravity<Guide>{{0, 0, -9}}), 0);
+}
+
+/// Of a pendulum, which has a series of its own.
+BOOST_AUTO_TEST_CASE(is_that_of_a_pendulum) {
+  BodyDescription rod;
+  rod.name = "rod";
+  rod.joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}};
+  rod.inertia =
+      InertiaTensor<Body>::about_centre(1, {0, 0, -0.5}, Matrix3<double>::Identity() / 12);
+  const BodySystem system(RestingFrame<>{}, {rod}, UniformGravity<Guide>{{0, 0, -9.81}});
+  const double e = 9.81 * 0.5 / (1.0 / 12 + 0.25);
+  detail::PendulumSeries pendulum(e, 0, 0, 0, 0);
+  Eigen::Matrix<double, 2, 25> expected;
+  Eigen::MatrixXd c(2, 25);
+  c.col(0) << 0.7, -1.2;
+  expected.col(0) = c.col(0);
+  pendulum(0, 0.1, 20, expected);
+  auto series = system.series();
+  series(0, 0.1, 20, c);
+  for (int k = 1; k <= 20; ++k) {
+    BOOST_TEST(
+        (c.col(k) - expected.col(k)).norm() <= 1e-13 * expected.col(k).norm(),
+        "order " << k << ": " << c.col(k).transpose() << " and " << expected.col(k).transpose());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(is_not_known_of_what_changes_otherwise) {
+  BodyDescription carrier;
+  carrier.name = "carrier";
+  carrier.joint = {.kind = JointKind::free};
+  carrier.inertia = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Identity());
+  const auto knows = [](const std::vector<BodyDescription>& bodies) {
+    return BodySystem(RestingFrame<>{}, bodies).knows_series();
+  };
+  BOOST_TEST(knows({carrier}));
+
+  BodyDescription loaded = carrier;
+  loaded.loads = {[](const Situation<>&) { return Force<Body>{}; }};
+  BOOST_TEST(!knows({loaded}));
+
+  BodyDescription beside = carrier;
+  beside.name = "beside";
+  beside.parent = "carrier";
+  BOOST_TEST(!knows({carrier, beside}));
+
+  BodyDescription wheel = carrier;
+  wheel.name = "wheel";
+  wheel.parent = "carrier";
+  wheel.joint = {.kind = JointKind::revolute, .axis = {0, 0, 1}};
+  wheel.rotor = Rotor{RotorMode::regulated};
+  BOOST_TEST(knows({carrier, wheel}));
+  wheel.rotor->acceleration = [](double t) { return t; };
+  BOOST_TEST(!knows({carrier, wheel}));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
