@@ -2,8 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <dynamics/file/columns.hpp>
-#include <dynamics/file/model.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -19,7 +17,11 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/columns.hpp>
+#include <dynamics/file/model.hpp>
 #include <motor/error.hpp>
+
+using namespace kreisel;
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -207,23 +209,23 @@ void warn_if_missed(const kreisel::RunReport& report) {
   }
 }
 
-Run solve(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
-          const std::optional<std::string>& method, const std::optional<std::vector<double>>& times,
-          bool reactions) {
+Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
+                const std::optional<std::string>& method,
+                const std::optional<std::vector<double>>& times, bool reactions) {
   const kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
-  const std::unique_ptr<Model> model = make_model(file);
+  const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
   kreisel::Task task;
   task.times = file.output_times;
   task.tolerance = file.tolerance;
   task.method = file.method;
   SignalWatch watch;
-  kreisel::Trajectory<JointState> run;
+  kreisel::Trajectory<kreisel::JointState> run;
   std::vector<std::vector<double>> numbers;
   {
     const py::gil_scoped_release released;
     run = model->solve(
         task, start_of(file),
-        [&watch](double /*t*/, const JointState& /*state*/) { return !watch.stop(); },
+        [&watch](double /*t*/, const kreisel::JointState& /*state*/) { return !watch.stop(); },
         [&watch] { return watch.stop(); });
     for (std::size_t i = 0; i < run.states.size() && !watch.stop(); ++i) {
       numbers.push_back(row(*model, run.times[i], run.states[i], reactions));
@@ -354,7 +356,7 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("text", &Scene::text, "as a scene file has it")
       .def_static("from_text", &scene_of_text, "text"_a, "path"_a = "scene.toml",
                   "The same of a text; path names it in messages, tables are looked for beside it.")
-      .def("solve", &solve, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),
+      .def("solve", &solve_scene, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),
            "method"_a = py::none(), "times"_a = py::none(), "reactions"_a = false,
            "The motion from t = 0.\n\n"
            "t_end      s; times in s, increasing, instead of the scene's output times\n"

@@ -1,5 +1,3 @@
-#include "approximation.hpp"
-
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include <algorithm>
@@ -10,17 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/approximation.hpp>
+#include <dynamics/file/gimbal_motion.hpp>
+#include <dynamics/file/measured.hpp>
+#include <dynamics/file/steady_motions.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <motor/error.hpp>
 
-#include "../analyze/steady.hpp"
-#include "gimbal_motion.hpp"
-#include "measured.hpp"
+namespace kreisel {
 
 using Eigen::VectorXd;
-using kreisel::InvalidInput;
-using kreisel::RunStatus;
-using kreisel::Trajectory;
 
 namespace {
 
@@ -29,7 +26,7 @@ class LinearMotion {
  public:
   static constexpr const char* method = "matrix exponential";
 
-  explicit LinearMotion(const kreisel::SceneFile& scene) : system_(scene) {
+  explicit LinearMotion(const SceneFile& scene) : system_(scene) {
     const VectorXd start = joined(start_of(scene));
     const Steady steady = steady_motion::find_steady(system_, scene, start);
     if (!steady.exists()) {
@@ -38,10 +35,10 @@ class LinearMotion {
     about_ = steady_motion::linearized(system_, 0, steady.state);
   }
 
-  /// Throws : kreisel::ComputationFailed where the states have grown out of all numbers
+  /// Throws : ComputationFailed where the states have grown out of all numbers
   [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
                                              const std::vector<double>& times) const {
-    const kreisel::Tangent tangent = steady_motion::tangent_of(system_, about_.state);
+    const Tangent tangent = steady_motion::tangent_of(system_, about_.state);
     VectorXd eta = tangent.between(about_.state, start);
     double before = 0;
     std::vector<VectorXd> result;
@@ -51,14 +48,14 @@ class LinearMotion {
       const VectorXd steady = tangent.moved(about_.state, VectorXd(t * about_.rate));
       result.push_back(tangent.moved(steady, eta));
       if (!result.back().allFinite()) {
-        throw kreisel::ComputationFailed("model 'linear': the motion grows beyond all numbers");
+        throw ComputationFailed("model 'linear': the motion grows beyond all numbers");
       }
     }
     return result;
   }
 
  private:
-  System system_;
+  StudySystem system_;
   steady_motion::Linearisation about_;
 };
 
@@ -67,36 +64,36 @@ class PrecessionMotion {
  public:
   static constexpr const char* method = "technical equations, verner98";
 
-  explicit PrecessionMotion(const kreisel::SceneFile& scene) : system_(scene) {}
+  explicit PrecessionMotion(const SceneFile& scene) : system_(scene) {}
 
-  /// Throws : kreisel::InvalidInput, kreisel::ComputationFailed
+  /// Throws : InvalidInput, ComputationFailed
   [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
                                              const std::vector<double>& times) const {
     return system_.technical(start, times);
   }
 
  private:
-  System system_;
+  StudySystem system_;
 };
 
 template <class Motion>
-class Approximation final : public Model {
+class Approximation final : public SceneSolver {
  public:
-  Approximation(const kreisel::SceneFile& scene, std::unique_ptr<Model> exact)
+  Approximation(const SceneFile& scene, std::unique_ptr<SceneSolver> exact)
       : exact_(std::move(exact)), motion_(scene) {}
 
   [[nodiscard]] Trajectory<JointState> solve(
-      const kreisel::Task& task, const JointState& start, const Listener& listener,
+      const Task& task, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const override {
     const auto clock = std::chrono::steady_clock::now();
     Trajectory<JointState> result = exact_->solve(
         task, start, [&](double, const JointState&) { return !interrupted(); }, interrupted);
     if (result.report.status != RunStatus::complete) return result;
     const std::vector<VectorXd> states = motion_.states(joined(start), task.times);
-    kreisel::detail::ErrorMeasure<Measured> distance({tree().blocks()}, task.smallest);
+    detail::ErrorMeasure<Measured> distance({tree().blocks()}, task.smallest);
     // Relative to the greatest size of the whole run: an approximation may begin with other rates.
     for (const JointState& state : result.states) (void)distance(joined(state), joined(state));
-    kreisel::RunReport& report = result.report;
+    RunReport& report = result.report;
     report.method = Motion::method;
     const auto at_start = conserved(task.begin, start);
     for (auto& invariant : report.invariants) invariant.largest = 0;
@@ -138,44 +135,43 @@ class Approximation final : public Model {
 
   [[nodiscard]] double model_error() const override { return model_error_; }
 
-  [[nodiscard]] const kreisel::BodyTree& tree() const override { return exact_->tree(); }
-  [[nodiscard]] kreisel::JointReactions reactions(double t,
-                                                  const JointState& state) const override {
+  [[nodiscard]] const BodyTree& tree() const override { return exact_->tree(); }
+  [[nodiscard]] JointReactions reactions(double t, const JointState& state) const override {
     return exact_->reactions(t, state);
   }
-  [[nodiscard]] kreisel::ForceParts<kreisel::Body> terms(double t, const JointState& state,
-                                                         int body) const override {
+  [[nodiscard]] ForceParts<Body> terms(double t, const JointState& state, int body) const override {
     return exact_->terms(t, state, body);
   }
-  [[nodiscard]] kreisel::Terms equation_terms() const override { return exact_->equation_terms(); }
+  [[nodiscard]] Terms equation_terms() const override { return exact_->equation_terms(); }
   [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const override {
     return exact_->conserved(t, state);
   }
-  [[nodiscard]] kreisel::Pose<double> pose(double t, const JointState& state,
-                                           int body) const override {
+  [[nodiscard]] Pose<double> pose(double t, const JointState& state, int body) const override {
     return exact_->pose(t, state, body);
   }
 
  private:
-  std::unique_ptr<Model> exact_;
+  std::unique_ptr<SceneSolver> exact_;
   Motion motion_;
   mutable double model_error_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Model> make_approximation(const kreisel::SceneFile& scene,
-                                          std::unique_ptr<Model> exact) {
+std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
+                                               std::unique_ptr<SceneSolver> exact) {
   switch (scene.model) {
-    case kreisel::SceneModel::linear:
+    case SceneModel::linear:
       return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));
-    case kreisel::SceneModel::precession:
+    case SceneModel::precession:
       return std::make_unique<Approximation<PrecessionMotion>>(scene, std::move(exact));
-    case kreisel::SceneModel::foeppl:
-    case kreisel::SceneModel::fuchs_weigand:
+    case SceneModel::foeppl:
+    case SceneModel::fuchs_weigand:
       return std::make_unique<Approximation<GimbalMotion>>(scene, std::move(exact));
-    case kreisel::SceneModel::exact: break;
+    case SceneModel::exact: break;
   }
   return exact;
 }
+
+}  // namespace kreisel

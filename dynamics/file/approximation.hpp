@@ -2,7 +2,9 @@
 
 #include <memory>
 
-#include "model.hpp"
+#include <dynamics/file/model.hpp>
+
+namespace kreisel {
 
 /// The model of a scene: the exact one, or that of the approximation which it asks for, with states
 /// by its equations, all else by the exact ones. Its error is the distance from the exact motion,
@@ -12,6 +14,8 @@
 /// precession    : technical equations, which have no angles of rotors
 /// foeppl        : paper 002 (50), FoepplGyro
 /// fuchs-weigand : paper 002 (49), UnsymmetricRotor
-/// Throws        : kreisel::InvalidInput where the scene has no such equations
-[[nodiscard]] std::unique_ptr<Model> make_approximation(const kreisel::SceneFile& scene,
-                                                        std::unique_ptr<Model> exact);
+/// Throws        : InvalidInput where the scene has no such equations
+[[nodiscard]] std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
+                                                             std::unique_ptr<SceneSolver> exact);
+
+}  // namespace kreisel

@@ -1,9 +1,8 @@
-#include "columns.hpp"
-
 #include <array>
 
-using kreisel::BodyTree;
-using kreisel::JointKind;
+#include <dynamics/file/columns.hpp>
+
+namespace kreisel {
 
 namespace {
 
@@ -57,7 +56,8 @@ std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
   return names;
 }
 
-std::vector<double> row(const Model& model, double t, const JointState& state, bool reactions) {
+std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
+                        bool reactions) {
   const BodyTree& tree = model.tree();
   std::vector<double> values{t};
   const auto append = [&values](const auto& vector) {
@@ -75,7 +75,7 @@ std::vector<double> row(const Model& model, double t, const JointState& state, b
     append(state.rates.segment(v, v_count).eval());
   }
   if (!reactions) return values;
-  const kreisel::JointReactions carried = model.reactions(t, state);
+  const JointReactions carried = model.reactions(t, state);
   for (int i = 0; i < count(tree); ++i) {
     const auto& [force, torque] = carried.on_body[static_cast<std::size_t>(i)].value;
     append(force);
@@ -86,7 +86,7 @@ std::vector<double> row(const Model& model, double t, const JointState& state, b
 }
 
 std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
-                              const Scale& scale) {
+                              const SceneScale& scale) {
   std::size_t at = 1;
   const auto show = [&](const auto& list) {
     for (const char* const unit : list) {
@@ -107,7 +107,7 @@ JointState state_of(const BodyTree& tree, const std::vector<double>& row) {
   for (int i = 0; i < count(tree); ++i) {
     const auto [q, q_count, v, v_count] = tree.place(i);
     if (turns_freely(tree, i)) {
-      const kreisel::Joint& joint = tree.body(i).joint;
+      const Joint& joint = tree.body(i).joint;
       const Eigen::Quaterniond a(next[0], next[1], next[2], next[3]);
       state.coordinates.segment<4>(q) = (joint.orientation.conjugate() * a).coeffs();
       if (q_count == 7) {
@@ -123,3 +123,5 @@ JointState state_of(const BodyTree& tree, const std::vector<double>& row) {
   }
   return state;
 }
+
+}  // namespace kreisel

@@ -1,5 +1,3 @@
-#include "equilibria.hpp"
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -11,14 +9,16 @@
 #include <utility>
 
 #include <dynamics/decompositions.hpp>
+#include <dynamics/file/equilibria.hpp>
+#include <dynamics/file/steady_motions.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <motor/error.hpp>
 
-#include "steady.hpp"
+namespace kreisel {
 
+using detail::Link;
+using detail::LinkKind;
 using Eigen::MatrixXd, Eigen::VectorXd;
-using kreisel::detail::Link;
-using kreisel::detail::LinkKind;
 using std::numbers::pi;
 
 namespace steady_motion {
@@ -26,7 +26,7 @@ namespace steady_motion {
 namespace {
 
 /// Places of the angles at which a whole turn changes nothing.
-std::vector<int> periodic_angles(const System& system) {
+std::vector<int> periodic_angles(const StudySystem& system) {
   std::vector<int> places;
   for (const Link& link : system.tree().links()) {
     const bool turns = link.kind == LinkKind::revolute && link.moved_by_forces();
@@ -52,13 +52,13 @@ double halton(int index, int base) {
 class Starts {
  public:
   /// fixed : directions that keep their values
-  Starts(const System& system, VectorXd base, const Places& fixed)
+  Starts(const StudySystem& system, VectorXd base, const Places& fixed)
       : base_(std::move(base)), choices_(1) {
     int dimension = 0;
     for (const Link& link : system.tree().links()) {
       if (!link.moved_by_forces() || fixed[static_cast<std::size_t>(link.v)]) continue;
       links_.push_back(&link);
-      dimension += kreisel::detail::rate_count(link.kind);
+      dimension += detail::rate_count(link.kind);
       choices_ = std::min(most_choices, choices_ * choices(link.kind));
     }
     const int most = std::max(16, 6000 / std::max(1, dimension * dimension));
@@ -92,7 +92,7 @@ class Starts {
     for (const Link* const link : links_) {
       const int choice = number % choices(link->kind);
       number /= choices(link->kind);
-      y.segment(link->q, kreisel::detail::coordinate_count(link->kind)).setZero();
+      y.segment(link->q, detail::coordinate_count(link->kind)).setZero();
       if (link->kind == LinkKind::revolute) y[link->q] = choice * pi;
       if (choices(link->kind) == 4) y[link->q + (choice + 3) % 4] = 1;
     }
@@ -130,7 +130,7 @@ class Starts {
 /// Searches equilibria of a system and keeps those that differ.
 class Search {
  public:
-  Search(const System& system, const VectorXd& start, double t_end)
+  Search(const StudySystem& system, const VectorXd& start, double t_end)
       : system_(system),
         directions_(system),
         tangent_(tangent_of(system, start)),
@@ -169,10 +169,10 @@ class Search {
   /// the accelerations are not determined.
   void refine(const VectorXd& guess) {
     try {
-      const auto reached = kreisel::find_equilibrium(
+      const auto reached = find_equilibrium(
           system_, 0, guess, {.held = list(fixed_), .running = running_, .most_iterations = 40});
       add(reached.state, reached.residual);
-    } catch (const kreisel::ComputationFailed&) {
+    } catch (const ComputationFailed&) {
       // Another start may lead to one.
     }
   }
@@ -182,7 +182,7 @@ class Search {
     std::optional<VectorXd> low;
     try {
       low = descended(guess);
-    } catch (const kreisel::ComputationFailed&) {
+    } catch (const ComputationFailed&) {
       // As above.
     }
     if (low) refine(*low);
@@ -195,9 +195,8 @@ class Search {
     double step = 0;
     double before = 0;
     for (int i = 0; i < 50; ++i) {
-      const auto there = kreisel::detail::derivatives(system_, 0, y, tangent_.basis(y),
-                                                      kreisel::detail::InTime::no);
-      const auto r = kreisel::detail::reduced(tangent_, y, there);
+      const auto there = detail::derivatives(system_, 0, y, tangent_.basis(y), detail::InTime::no);
+      const auto r = detail::reduced(tangent_, y, there);
       const VectorXd a = r.v.tail(directions_.rates)(free_);
       const double size = a.cwiseAbs().maxCoeff();
       if (!std::isfinite(size)) return std::nullopt;
@@ -211,9 +210,9 @@ class Search {
       before = size;
       const MatrixXd J = r.A.bottomRows(directions_.rates)(free_, free_);
       const MatrixXd M = MatrixXd::Identity(J.rows(), J.cols()) / step - J;
-      VectorXd move = kreisel::detail::shortest_solution(M, a, 1e-15).x;
+      VectorXd move = detail::shortest_solution(M, a, 1e-15).x;
       move *= std::min(1.0, 1 / move.cwiseAbs().maxCoeff());
-      y = tangent_.moved(y, kreisel::detail::scattered(tangent_.dimension(), free_, move));
+      y = tangent_.moved(y, detail::scattered(tangent_.dimension(), free_, move));
     }
     return y;
   }
@@ -275,12 +274,12 @@ class Search {
   void note_neutral(const MatrixXd& A, Equilibrium& equilibrium) const {
     const MatrixXd J = A.bottomRows(directions_.rates)(free_, free_);
     if (J.size() == 0) return;
-    const auto [values, U, V] = kreisel::detail::singular_values(J);
+    const auto [values, U, V] = detail::singular_values(J);
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       if (values[k] > 1e-9 * values[0]) continue;
       const double reach = 0.2;
       const VectorXd eta =
-          kreisel::detail::scattered(tangent_.dimension(), free_, VectorXd(reach * V.col(k)));
+          detail::scattered(tangent_.dimension(), free_, VectorXd(reach * V.col(k)));
       const VectorXd a = accelerations(tangent_.moved(equilibrium.state, eta));
       const bool is_family = a.cwiseAbs().maxCoeff() <= 1e-8 * (1e-9 + reach * values[0]);
       equilibrium.neutral += is_family ? 1 : 0;
@@ -288,9 +287,9 @@ class Search {
     }
   }
 
-  const System& system_;
+  const StudySystem& system_;
   Directions directions_;
-  kreisel::Tangent tangent_;
+  Tangent tangent_;
   double t_end_;
   VectorXd base_;
   Places fixed_;
@@ -302,21 +301,23 @@ class Search {
 
 }  // namespace
 
-Equilibria find_equilibria(const System& system, const VectorXd& start, double t_end) {
+Equilibria find_equilibria(const StudySystem& system, const VectorXd& start, double t_end) {
   return Search(system, start, t_end).run();
 }
 
-VectorXd in_turns_of(const System& system, VectorXd state, const VectorXd& other) {
+VectorXd in_turns_of(const StudySystem& system, VectorXd state, const VectorXd& other) {
   for (const int q : periodic_angles(system)) {
     state[q] -= 2 * pi * std::ceil((state[q] - other[q]) / (2 * pi) - 0.5);
   }
   return state;
 }
 
-double distance(const System& system, const VectorXd& a, const VectorXd& b) {
+double distance(const StudySystem& system, const VectorXd& a, const VectorXd& b) {
   const VectorXd near = in_turns_of(system, b, a);
   const VectorXd eta = tangent_of(system, a).between(a, near);
   return eta.head(system.tree().rates()).cwiseAbs().maxCoeff();
 }
 
 }  // namespace steady_motion
+
+}  // namespace kreisel

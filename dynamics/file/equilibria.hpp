@@ -4,7 +4,9 @@
 
 #include <vector>
 
-#include "system.hpp"
+#include <dynamics/file/study_system.hpp>
+
+namespace kreisel {
 
 namespace steady_motion {
 
@@ -32,16 +34,18 @@ struct Equilibria {
 /// start : its rates are taken where they are given or those of rotors
 /// t_end : up to which the equations have to stay what they are
 /// Cost  : at most max(16, 6000/n^2) starts for n rates, at most 100 linearisations for each
-[[nodiscard]] Equilibria find_equilibria(const System& system, const Eigen::VectorXd& start,
+[[nodiscard]] Equilibria find_equilibria(const StudySystem& system, const Eigen::VectorXd& start,
                                          double t_end);
 
 /// The state with whole turns added to its angles without a spring, next to those of another.
-[[nodiscard]] Eigen::VectorXd in_turns_of(const System& system, Eigen::VectorXd state,
+[[nodiscard]] Eigen::VectorXd in_turns_of(const StudySystem& system, Eigen::VectorXd state,
                                           const Eigen::VectorXd& other);
 
 /// The greatest difference of coordinates, in radian and metre, but for whole turns of angles without
 /// a spring; of attitudes that of the angles of the turn between both.
-[[nodiscard]] double distance(const System& system, const Eigen::VectorXd& a,
+[[nodiscard]] double distance(const StudySystem& system, const Eigen::VectorXd& a,
                               const Eigen::VectorXd& b);
 
 }  // namespace steady_motion
+
+}  // namespace kreisel

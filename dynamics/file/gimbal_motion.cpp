@@ -1,5 +1,3 @@
-#include "gimbal_motion.hpp"
-
 #include <Eigen/Geometry>
 
 #include <array>
@@ -7,11 +5,13 @@
 #include <limits>
 #include <string>
 
+#include <dynamics/file/gimbal_motion.hpp>
 #include <dynamics/step/advance.hpp>
 #include <motor/error.hpp>
 
+namespace kreisel {
+
 using Eigen::Matrix3d, Eigen::Vector3d, Eigen::VectorXd;
-using kreisel::BodyDescription;
 
 namespace {
 
@@ -23,8 +23,8 @@ class Refusal {
   explicit Refusal(bool symmetric) : model_(symmetric ? "foeppl" : "fuchs-weigand") {}
 
   [[noreturn]] void operator()(const std::string& why) const {
-    throw kreisel::InvalidInput("model '" + model_ +
-                                "' is of a gyro in two rings on a guide at rest; " + why);
+    throw InvalidInput("model '" + model_ + "' is of a gyro in two rings on a guide at rest; " +
+                       why);
   }
   [[noreturn]] void operator()(const BodyDescription& body, const std::string& why) const {
     (*this)("body '" + body.name + "' " + why);
@@ -35,31 +35,31 @@ class Refusal {
 };
 
 /// Joints, one in the other, whose axes meet in one point, and nothing but springs and friction.
-void check_joints(const kreisel::SceneFile& scene, const Refusal& refuse) {
+void check_joints(const SceneFile& scene, const Refusal& refuse) {
   if (!scene.rests()) refuse("this guide moves");
   if (scene.bodies.size() != 3) refuse("here are not three bodies");
   for (std::size_t i = 0; i < 3; ++i) {
     const BodyDescription& body = scene.bodies[i];
     const bool rotor = i == 2;
-    if (body.joint.kind != kreisel::JointKind::revolute) refuse(body, "is on no revolute joint");
+    if (body.joint.kind != JointKind::revolute) refuse(body, "is on no revolute joint");
     if (body.parent != (i == 0 ? "guide" : scene.bodies[i - 1].name)) {
       refuse(body, "is not held by the body before it");
     }
     if (i > 0 && !body.joint.position.isZero(0)) {
       refuse(body, "has its joint elsewhere than where the axes meet");
     }
-    const kreisel::Inertia<double>& T = body.inertia.value;
+    const Inertia<double>& T = body.inertia.value;
     if (T.first_moment.norm() > slack * std::sqrt(T.mass * T.tensor.matrix().trace())) {
       refuse(body, "has its centre of mass elsewhere than where the axes meet");
     }
-    if (body.rule == kreisel::JointRule::held) refuse(body, "is locked");
-    if (!rotor && body.rule != kreisel::JointRule::forces) refuse(body, "has a drive");
+    if (body.rule == JointRule::held) refuse(body, "is locked");
+    if (!rotor && body.rule != JointRule::forces) refuse(body, "has a drive");
     if (!rotor && body.rotor) refuse(body, "is a rotor that carries another");
     if (!body.loads.empty()) refuse(body, "has a load");
-    const bool regulated = body.rule == kreisel::JointRule::constant_rate ||
-                           (body.rotor && body.rotor->mode == kreisel::RotorMode::regulated);
+    const bool regulated = body.rule == JointRule::constant_rate ||
+                           (body.rotor && body.rotor->mode == RotorMode::regulated);
     if (body.rotor && body.rotor->torque != 0) refuse(body, "is a rotor that a torque speeds up");
-    for (const kreisel::JointForce& force : body.forces) {
+    for (const JointForce& force : body.forces) {
       if (!rotor && force.rest != 0) refuse(body, "has a spring that is not slack at 0");
       if (!regulated && force.constant != 0) refuse(body, "has a constant force");
       if (rotor && !regulated && (force.stiffness != 0 || force.damping != 0)) {
@@ -79,7 +79,7 @@ Vector3d principal(const BodyDescription& body, const Matrix3d& axes, const Refu
   return moments;
 }
 
-kreisel::CardanBearing bearing(const BodyDescription& ring) {
+CardanBearing bearing(const BodyDescription& ring) {
   if (ring.forces.empty()) return {};
   return {ring.forces.front().stiffness, ring.forces.front().damping};
 }
@@ -87,8 +87,7 @@ kreisel::CardanBearing bearing(const BodyDescription& ring) {
 template <class Gyro>
 std::vector<VectorXd> ring_oscillation(const Gyro& gyro, double t_begin, const VectorXd& start,
                                        const std::vector<double>& times) {
-  kreisel::Advance run(gyro, t_begin, {start[0], start[1], start[3], start[4]},
-                       {.relative = 1e-13});
+  Advance run(gyro, t_begin, {start[0], start[1], start[3], start[4]}, {.relative = 1e-13});
   std::vector<VectorXd> result;
   for (const double t : times) {
     const auto ring = run.on_the_way(t_begin + t, t_begin + times.back());
@@ -100,9 +99,8 @@ std::vector<VectorXd> ring_oscillation(const Gyro& gyro, double t_begin, const V
 }
 
 /// The equations that the model asks for, with this scene's numbers.
-std::variant<kreisel::FoepplGyro<>, kreisel::UnsymmetricRotor<>> gyro_of(
-    const kreisel::SceneFile& scene) {
-  const bool symmetric = scene.model == kreisel::SceneModel::foeppl;
+std::variant<FoepplGyro<>, UnsymmetricRotor<>> gyro_of(const SceneFile& scene) {
+  const bool symmetric = scene.model == SceneModel::foeppl;
   const Refusal refuse(symmetric);
   check_joints(scene, refuse);
   // All on guide axes, at zero angles.
@@ -110,7 +108,7 @@ std::variant<kreisel::FoepplGyro<>, kreisel::UnsymmetricRotor<>> gyro_of(
   std::array<Matrix3d, 3> turned;
   Matrix3d parent = Matrix3d::Identity();
   for (int i = 0; i < 3; ++i) {
-    const kreisel::Joint& joint = scene.bodies[std::size_t(i)].joint;
+    const Joint& joint = scene.bodies[std::size_t(i)].joint;
     axes.col(i) = parent * joint.axis.normalized();
     parent *= joint.orientation.normalized().toRotationMatrix();
     turned[std::size_t(i)] = parent;
@@ -123,27 +121,29 @@ std::variant<kreisel::FoepplGyro<>, kreisel::UnsymmetricRotor<>> gyro_of(
   const auto moments = [&](std::size_t i) {
     return principal(scene.bodies[i], turned[i].transpose() * axes, refuse);
   };
-  kreisel::CardanMoments all{moments(2), moments(1), moments(0)};
-  const kreisel::CardanBearings bearings{bearing(scene.bodies[0]), bearing(scene.bodies[1])};
+  CardanMoments all{moments(2), moments(1), moments(0)};
+  const CardanBearings bearings{bearing(scene.bodies[0]), bearing(scene.bodies[1])};
   const double speed = sign * scene.start[2].rates.front();
-  if (!symmetric) return kreisel::UnsymmetricRotor<>(all, bearings, speed);
+  if (!symmetric) return UnsymmetricRotor<>(all, bearings, speed);
   Vector3d& rotor = all.rotor;
   if (std::abs(rotor.x() - rotor.y()) > slack * rotor.sum()) {
     refuse(scene.bodies[2], "is not symmetric about its axis; 'fuchs-weigand' takes it");
   }
   rotor.x() = rotor.y() = (rotor.x() + rotor.y()) / 2;
-  return kreisel::FoepplGyro<>(all, bearings, speed);
+  return FoepplGyro<>(all, bearings, speed);
 }
 
 }  // namespace
 
-GimbalMotion::GimbalMotion(const kreisel::SceneFile& scene) : gyro_(gyro_of(scene)) {}
+GimbalMotion::GimbalMotion(const SceneFile& scene) : gyro_(gyro_of(scene)) {}
 
 std::vector<VectorXd> GimbalMotion::states(const VectorXd& start,
                                            const std::vector<double>& times) const {
   // Of the unsymmetric rotor the coefficients are those of one that begins at the angle 0.
-  const bool periodic = std::holds_alternative<kreisel::UnsymmetricRotor<>>(gyro_);
+  const bool periodic = std::holds_alternative<UnsymmetricRotor<>>(gyro_);
   const double begin = periodic ? start[2] / start[5] : 0;
   return std::visit([&](const auto& gyro) { return ring_oscillation(gyro, begin, start, times); },
                     gyro_);
 }
+
+}  // namespace kreisel

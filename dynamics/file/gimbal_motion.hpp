@@ -9,15 +9,17 @@
 #include <dynamics/gimbal/foeppl.hpp>
 #include <dynamics/gimbal/unsymmetric_rotor.hpp>
 
+namespace kreisel {
+
 /// The scene's three bodies as a gyro in two rings at rest: what Foeppl's equations, and Fuchs' and
 /// Weigand's, are about. Small angles of the rings, a rotor at constant speed.
 ///
-/// Throws : kreisel::InvalidInput with what the scene has that the equations have not
+/// Throws : InvalidInput with what the scene has that the equations have not
 class GimbalMotion {
  public:
   static constexpr const char* method = "small oscillations, verner98";
 
-  explicit GimbalMotion(const kreisel::SceneFile& scene);
+  explicit GimbalMotion(const SceneFile& scene);
 
   /// States of all joints, their coordinates before their rates. The angle of the rotor grows with
   /// the time.
@@ -25,5 +27,7 @@ class GimbalMotion {
                                                     const std::vector<double>& times) const;
 
  private:
-  std::variant<kreisel::FoepplGyro<>, kreisel::UnsymmetricRotor<>> gyro_;
+  std::variant<FoepplGyro<>, UnsymmetricRotor<>> gyro_;
 };
+
+}  // namespace kreisel

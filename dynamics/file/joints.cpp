@@ -1,21 +1,21 @@
-#include "joints.hpp"
-
 #include <variant>
 #include <vector>
 
-using kreisel::BodyTree;
+#include <dynamics/file/joints.hpp>
+
+namespace kreisel {
 
 std::vector<std::filesystem::path> files_read(const std::filesystem::path& scene_file,
-                                              const kreisel::SceneFile& scene) {
+                                              const SceneFile& scene) {
   std::vector<std::filesystem::path> files = scene.log_files();
   files.insert(files.begin(), scene_file);
   return files;
 }
 
-JointState start_of(const kreisel::SceneFile& scene) {
+JointState start_of(const SceneFile& scene) {
   std::vector<double> coordinates;
   std::vector<double> rates;
-  for (const kreisel::JointStart& joint : scene.start) {
+  for (const JointStart& joint : scene.start) {
     coordinates.insert(coordinates.end(), joint.coordinates.begin(), joint.coordinates.end());
     rates.insert(rates.end(), joint.rates.begin(), joint.rates.end());
   }
@@ -36,9 +36,11 @@ Eigen::Vector3d place(const BodyTree& tree, int body, const JointState& state) {
   return tree.body(body).joint.position + state.coordinates.segment<3>(tree.place(body).q + 4);
 }
 
-double drive_torque(const BodyTree& tree, int body, const kreisel::JointReactions& reactions) {
-  const kreisel::BodyDescription& b = tree.body(body);
-  const bool regulated = b.rotor && b.rotor->mode == kreisel::RotorMode::regulated;
-  const bool driven = b.rule == kreisel::JointRule::constant_rate || regulated;
+double drive_torque(const BodyTree& tree, int body, const JointReactions& reactions) {
+  const BodyDescription& b = tree.body(body);
+  const bool regulated = b.rotor && b.rotor->mode == RotorMode::regulated;
+  const bool driven = b.rule == JointRule::constant_rate || regulated;
   return driven ? reactions.drive[tree.place(body).v] : 0;
 }
+
+}  // namespace kreisel

@@ -1,5 +1,3 @@
-#include "log_error.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,11 +5,13 @@
 #include <optional>
 #include <variant>
 
+#include <dynamics/file/log_error.hpp>
+#include <dynamics/file/measured.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <motor/error.hpp>
 
-#include "measured.hpp"
+namespace kreisel {
 
 using Eigen::VectorXd;
 
@@ -23,11 +23,10 @@ struct Interrupted {};
 /// The end of a run.
 struct End {
   JointState state;
-  kreisel::JointReactions reactions;
+  JointReactions reactions;
 };
 
-LogError::Joint joint_distance(const kreisel::BodyTree& tree, int body, const End& a,
-                               const End& b) {
+LogError::Joint joint_distance(const BodyTree& tree, int body, const End& a, const End& b) {
   const auto [q, q_count, v, v_count] = tree.place(body);
   LogError::Joint off;
   if (q_count < 4) {
@@ -77,7 +76,7 @@ void set_numbers(LogError& error, const VectorXd& numbers) {
 /// Runs along other logs, held against one.
 class Beside {
  public:
-  Beside(const Model& model, const kreisel::Trajectory<JointState>& run,
+  Beside(const SceneSolver& model, const Trajectory<JointState>& run,
          const std::function<bool()>& interrupted)
       : model_(model),
         run_(run),
@@ -85,18 +84,17 @@ class Beside {
         end_{run.states.back(), model.reactions(run.times.back(), run.states.back())} {}
 
   /// The end of a run along another guide.
-  [[nodiscard]] End end_of(const kreisel::SceneFile& scene, double tolerance) const {
-    const std::unique_ptr<Model> other = make_model(scene);
-    kreisel::Task task;
+  [[nodiscard]] End end_of(const SceneFile& scene, double tolerance) const {
+    const std::unique_ptr<SceneSolver> other = make_model(scene);
+    Task task;
     task.times = {run_.times.back()};
     task.tolerance = tolerance;
-    task.method = kreisel::method_named(run_.report.method).value_or(kreisel::Method::automatic);
+    task.method = method_named(run_.report.method).value_or(Method::automatic);
     const auto beside = other->solve(
         task, start_of(scene), [](double, const JointState&) { return true; }, interrupted_);
     if (interrupted_()) throw Interrupted{};
-    if (beside.report.status != kreisel::RunStatus::complete) {
-      throw kreisel::ComputationFailed("error of the log: a run beside failed: " +
-                                       beside.report.message);
+    if (beside.report.status != RunStatus::complete) {
+      throw ComputationFailed("error of the log: a run beside failed: " + beside.report.message);
     }
     const JointState& state = beside.states.back();
     return {state, other->reactions(task.times.back(), state)};
@@ -104,7 +102,7 @@ class Beside {
 
   /// The distance of two ends.
   [[nodiscard]] LogError distance(const End& a, const End& b) const {
-    kreisel::detail::ErrorMeasure<Measured> measure({model_.tree().blocks()}, 1e-3);
+    detail::ErrorMeasure<Measured> measure({model_.tree().blocks()}, 1e-3);
     for (const JointState& passed : run_.states) (void)measure(joined(passed), joined(passed));
     LogError error;
     if (joined(a.state).size() > 0) error.worst = measure(joined(a.state), joined(b.state));
@@ -117,24 +115,24 @@ class Beside {
   [[nodiscard]] const End& end() const { return end_; }
 
  private:
-  const Model& model_;
-  const kreisel::Trajectory<JointState>& run_;
+  const SceneSolver& model_;
+  const Trajectory<JointState>& run_;
   const std::function<bool()>& interrupted_;
   End end_;
 };
 
 /// Squares of the errors that the log of one link makes; nothing where the link follows none.
-std::optional<VectorXd> squares_of_link(const kreisel::SceneFile& scene, std::size_t i,
-                                        const Beside& beside, double tolerance) {
+std::optional<VectorXd> squares_of_link(const SceneFile& scene, std::size_t i, const Beside& beside,
+                                        double tolerance) {
   const auto along = [&](const auto& link) -> std::optional<VectorXd> {
     if constexpr (requires { link.log; }) {
-      const VectorXd error = kreisel::error_of_log(
+      const VectorXd error = error_of_log(
           link.log, link.spline, beside.end(),
-          [&](const auto& log, const kreisel::LogSpline& spline) {
+          [&](const auto& log, const LogSpline& spline) {
             auto other_link = link;
             other_link.log = log;
             other_link.spline = spline;
-            kreisel::SceneFile other = scene;
+            SceneFile other = scene;
             other.guide[i] = other_link;
             return beside.end_of(other, tolerance);
           },
@@ -149,8 +147,8 @@ std::optional<VectorXd> squares_of_link(const kreisel::SceneFile& scene, std::si
 
 }  // namespace
 
-std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene, const Model& model,
-                                      const kreisel::Trajectory<JointState>& run,
+std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver& model,
+                                      const Trajectory<JointState>& run,
                                       const std::function<bool()>& interrupted) {
   if (!scene.follows_log()) return LogError{};
   const Beside beside(model, run, interrupted);
@@ -174,3 +172,5 @@ std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene, const Mod
     return std::nullopt;
   }
 }
+
+}  // namespace kreisel

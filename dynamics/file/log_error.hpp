@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "model.hpp"
+#include <dynamics/file/model.hpp>
+
+namespace kreisel {
 
 /// How far the errors of logs move the end of a run.
 struct LogError {
@@ -21,12 +23,13 @@ struct LogError {
 };
 
 /// The error of a run that its guide's logs make, by runs along these logs taken in other ways; see
-/// kreisel::error_of_log. Nothing where it was interrupted.
+/// error_of_log. Nothing where it was interrupted.
 ///
 /// Cost   : thirteen runs for each log, to 1e-6, or to the task's tolerance where the error is as
 ///          small
-/// Throws : kreisel::ComputationFailed where such a run fails
-[[nodiscard]] std::optional<LogError> error_of_logs(const kreisel::SceneFile& scene,
-                                                    const Model& model,
-                                                    const kreisel::Trajectory<JointState>& run,
+/// Throws : ComputationFailed where such a run fails
+[[nodiscard]] std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver& model,
+                                                    const Trajectory<JointState>& run,
                                                     const std::function<bool()>& interrupted);
+
+}  // namespace kreisel

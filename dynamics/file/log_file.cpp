@@ -1,5 +1,3 @@
-#include "log_file.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,8 +6,9 @@
 #include <sstream>
 #include <utility>
 
-#include "log_layout.hpp"
-#include "log_text.hpp"
+#include <dynamics/file/log_file.hpp>
+#include <dynamics/file/log_layout.hpp>
+#include <dynamics/file/log_text.hpp>
 
 namespace kreisel {
 

@@ -1,8 +1,7 @@
-#include "log_header.hpp"
-
 #include <algorithm>
 #include <utility>
 
+#include <dynamics/file/log_header.hpp>
 #include <dynamics/file/quoted.hpp>
 
 namespace kreisel::detail {

@@ -1,9 +1,8 @@
-#include "log_layout.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 
+#include <dynamics/file/log_layout.hpp>
 #include <dynamics/file/quoted.hpp>
 
 namespace kreisel::detail {

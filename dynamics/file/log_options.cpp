@@ -1,11 +1,10 @@
-#include "log_options.hpp"
-
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include <dynamics/file/log_header.hpp>
+#include <dynamics/file/log_options.hpp>
 #include <dynamics/file/log_text.hpp>
 
 namespace kreisel::detail {

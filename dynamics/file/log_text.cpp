@@ -1,5 +1,3 @@
-#include "log_text.hpp"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -7,6 +5,8 @@
 #include <cstring>
 #include <limits>
 #include <system_error>
+
+#include <dynamics/file/log_text.hpp>
 
 namespace kreisel::detail {
 

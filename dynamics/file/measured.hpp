@@ -4,7 +4,9 @@
 
 #include <vector>
 
-#include "../shared/joints.hpp"
+#include <dynamics/file/joints.hpp>
+
+namespace kreisel {
 
 /// Coordinates and rates of joints as one vector.
 [[nodiscard]] inline Eigen::VectorXd joined(const JointState& state) {
@@ -13,8 +15,10 @@
   return y;
 }
 
-/// The blocks of a system's state, for kreisel::detail::ErrorMeasure.
+/// The blocks of a system's state, for detail::ErrorMeasure.
 struct Measured {
   using Vector = Eigen::VectorXd;
   std::vector<int> blocks;
 };
+
+}  // namespace kreisel

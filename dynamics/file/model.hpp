@@ -6,48 +6,49 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/joints.hpp>
 #include <dynamics/law/relative.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/task.hpp>
 
-#include "../shared/joints.hpp"
+namespace kreisel {
 
 /// The system of a scene, whatever its guide. One virtual call for each run or row, none for each
 /// evaluation.
-class Model {
+class SceneSolver {
  public:
   /// Told of every state at an output time; says whether to go on. Where solve() begins again with
   /// shorter steps, the times begin again too.
   using Listener = std::function<bool(double t, const JointState& state)>;
 
-  virtual ~Model() = default;
+  virtual ~SceneSolver() = default;
 
   /// Whether a signal wants the run to end is asked at every evaluation.
-  [[nodiscard]] virtual kreisel::Trajectory<JointState> solve(
-      const kreisel::Task& task, const JointState& start, const Listener& listener,
+  [[nodiscard]] virtual Trajectory<JointState> solve(
+      const Task& task, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const = 0;
 
   /// How far its equations themselves were off in the latest run; 0 for the exact ones.
   [[nodiscard]] virtual double model_error() const { return 0; }
 
-  [[nodiscard]] virtual const kreisel::BodyTree& tree() const = 0;
-  [[nodiscard]] virtual kreisel::JointReactions reactions(double t,
-                                                          const JointState& state) const = 0;
-  [[nodiscard]] virtual kreisel::ForceParts<kreisel::Body> terms(double t, const JointState& state,
-                                                                 int body) const = 0;
+  [[nodiscard]] virtual const BodyTree& tree() const = 0;
+  [[nodiscard]] virtual JointReactions reactions(double t, const JointState& state) const = 0;
+  [[nodiscard]] virtual ForceParts<Body> terms(double t, const JointState& state,
+                                               int body) const = 0;
   /// Of the equation that is computed, whatever the state.
-  [[nodiscard]] virtual kreisel::Terms equation_terms() const = 0;
+  [[nodiscard]] virtual Terms equation_terms() const = 0;
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const = 0;
   /// The body in the guide.
-  [[nodiscard]] virtual kreisel::Pose<double> pose(double t, const JointState& state,
-                                                   int body) const = 0;
+  [[nodiscard]] virtual Pose<double> pose(double t, const JointState& state, int body) const = 0;
 };
 
-/// Throws : kreisel::InvalidInput
-[[nodiscard]] std::unique_ptr<Model> make_model(const kreisel::SceneFile& scene);
+/// Throws : InvalidInput
+[[nodiscard]] std::unique_ptr<SceneSolver> make_model(const SceneFile& scene);
 
 /// The two that make_model() chooses from, compiled apart.
-[[nodiscard]] std::unique_ptr<Model> make_resting_model(const kreisel::SceneFile& scene);
-[[nodiscard]] std::unique_ptr<Model> make_moving_model(const kreisel::SceneFile& scene);
+[[nodiscard]] std::unique_ptr<SceneSolver> make_resting_model(const SceneFile& scene);
+[[nodiscard]] std::unique_ptr<SceneSolver> make_moving_model(const SceneFile& scene);
+
+}  // namespace kreisel

@@ -1,6 +1,9 @@
-#include "model_on_guide.hpp"
+#include <dynamics/file/model_on_guide.hpp>
 
-std::unique_ptr<Model> make_moving_model(const kreisel::SceneFile& scene) {
-  return std::make_unique<ModelOnGuide<kreisel::SceneGuide>>(kreisel::make_guide(scene),
-                                                             kreisel::bodies_in_gravity(scene));
+namespace kreisel {
+
+std::unique_ptr<SceneSolver> make_moving_model(const SceneFile& scene) {
+  return std::make_unique<ModelOnGuide<SceneGuide>>(make_guide(scene), bodies_in_gravity(scene));
 }
+
+}  // namespace kreisel

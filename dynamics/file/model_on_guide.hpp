@@ -2,11 +2,12 @@
 
 #include <utility>
 
+#include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_system.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
 
-#include "model.hpp"
+namespace kreisel {
 
 /// A system as solve() sees it: it hands on every state of which it is asked what is conserved, and
 /// stops a run between two outputs.
@@ -26,7 +27,7 @@ class WatchedSystem {
   [[nodiscard]] static Vector to_vector(const State& state) { return System::to_vector(state); }
   [[nodiscard]] State from_vector(const Vector& y) const { return system_.from_vector(y); }
 
-  void rates(double t, const Vector& y, Vector& result, kreisel::BodyWorkspace& w) const {
+  void rates(double t, const Vector& y, Vector& result, BodyWorkspace& w) const {
     stop_if_interrupted();
     system_.rates(t, y, result, w);
   }
@@ -52,7 +53,7 @@ class WatchedSystem {
 
  private:
   void stop_if_interrupted() const {
-    if (interrupted_()) throw kreisel::ComputationFailed("interrupted");
+    if (interrupted_()) throw ComputationFailed("interrupted");
   }
 
   const System& system_;
@@ -69,23 +70,23 @@ template <class System>
 }
 
 template <class M>
-class ModelOnGuide final : public Model {
-  using System = kreisel::BodySystem<M>;
+class ModelOnGuide final : public SceneSolver {
+  using System = BodySystem<M>;
   using State = typename System::State;
 
  public:
-  ModelOnGuide(M guide, kreisel::SceneBodies scene)
+  ModelOnGuide(M guide, SceneBodies scene)
       : system_(std::move(guide), std::move(scene.bodies), scene.gravity),
         workspace_(system_.workspace()) {}
 
-  [[nodiscard]] kreisel::Trajectory<JointState> solve(
-      const kreisel::Task& task, const JointState& start, const Listener& listener,
+  [[nodiscard]] Trajectory<JointState> solve(
+      const Task& task, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const override {
     const WatchedSystem<System> watched(system_, interrupted);
-    kreisel::Task watched_task = task;
+    Task watched_task = task;
     watched_task.progress = [&](double t) { return listener(t, watched.latest()); };
     auto run = kreisel::solve(watched, State{start.coordinates, start.rates}, watched_task);
-    kreisel::Trajectory<JointState> result{
+    Trajectory<JointState> result{
         std::move(run.times), {}, std::move(run.report), std::move(run.errors)};
     for (State& state : run.states) {
       result.states.push_back({std::move(state.coordinates), std::move(state.rates)});
@@ -93,21 +94,19 @@ class ModelOnGuide final : public Model {
     return result;
   }
 
-  [[nodiscard]] const kreisel::BodyTree& tree() const override { return system_.tree(); }
+  [[nodiscard]] const BodyTree& tree() const override { return system_.tree(); }
 
-  [[nodiscard]] kreisel::JointReactions reactions(double t,
-                                                  const JointState& state) const override {
-    kreisel::JointReactions result;
+  [[nodiscard]] JointReactions reactions(double t, const JointState& state) const override {
+    JointReactions result;
     system_.reactions(t, vector(state), result, workspace_);
     return result;
   }
 
-  [[nodiscard]] kreisel::ForceParts<kreisel::Body> terms(double t, const JointState& state,
-                                                         int body) const override {
+  [[nodiscard]] ForceParts<Body> terms(double t, const JointState& state, int body) const override {
     return system_.terms(t, vector(state), body, workspace_);
   }
 
-  [[nodiscard]] kreisel::Terms equation_terms() const override { return kreisel::terms(system_); }
+  [[nodiscard]] Terms equation_terms() const override { return kreisel::terms(system_); }
 
   [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const override {
@@ -118,8 +117,7 @@ class ModelOnGuide final : public Model {
     return result;
   }
 
-  [[nodiscard]] kreisel::Pose<double> pose(double t, const JointState& state,
-                                           int body) const override {
+  [[nodiscard]] Pose<double> pose(double t, const JointState& state, int body) const override {
     return system_.situation(t, vector(state), body, workspace_).X.value;
   }
 
@@ -129,5 +127,7 @@ class ModelOnGuide final : public Model {
   }
 
   System system_;
-  mutable kreisel::BodyWorkspace workspace_;
+  mutable BodyWorkspace workspace_;
 };
+
+}  // namespace kreisel

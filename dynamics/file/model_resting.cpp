@@ -1,8 +1,10 @@
+#include <dynamics/file/model_on_guide.hpp>
 #include <dynamics/guide/resting.hpp>
 
-#include "model_on_guide.hpp"
+namespace kreisel {
 
-std::unique_ptr<Model> make_resting_model(const kreisel::SceneFile& scene) {
-  return std::make_unique<ModelOnGuide<kreisel::RestingFrame<>>>(kreisel::RestingFrame<>{},
-                                                                 kreisel::bodies_in_gravity(scene));
+std::unique_ptr<SceneSolver> make_resting_model(const SceneFile& scene) {
+  return std::make_unique<ModelOnGuide<RestingFrame<>>>(RestingFrame<>{}, bodies_in_gravity(scene));
 }
+
+}  // namespace kreisel

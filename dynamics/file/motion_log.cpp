@@ -1,9 +1,8 @@
-#include "motion_log.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include <dynamics/file/motion_log.hpp>
 #include <motor/attitude.hpp>
 
 namespace kreisel {

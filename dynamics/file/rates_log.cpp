@@ -1,4 +1,4 @@
-#include "rates_log.hpp"
+#include <dynamics/file/rates_log.hpp>
 
 namespace kreisel {
 

@@ -8,12 +8,11 @@
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/rates_log.hpp>
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
-
-#include "scene_section.hpp"
 
 namespace kreisel {
 

@@ -7,12 +7,12 @@
 #include <variant>
 #include <vector>
 
-#include <dynamics/tree/description.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/tabulated.hpp>
 #include <dynamics/solve/task.hpp>
+#include <dynamics/tree/description.hpp>
 #include <motor/error.hpp>
 
 /// What a scene file says, checked and typed: one mechanical system on one guide frame.

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include <dynamics/file/scene_numbers.hpp>
-
-#include "scene_section.hpp"
+#include <dynamics/file/scene_section.hpp>
 
 namespace kreisel {
 

@@ -1,5 +1,3 @@
-#include "scene_section.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include <dynamics/file/printable.hpp>
 #include <dynamics/file/quoted.hpp>
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/file/scene_section.hpp>
 
 namespace kreisel::detail {
 

@@ -7,8 +7,8 @@
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/load/earth_gravitation.hpp>
+#include <dynamics/model/dual_numbers.hpp>
 
 namespace kreisel {
 

@@ -1,23 +1,24 @@
-#include "steady.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include <dynamics/decompositions.hpp>
+#include <dynamics/file/steady_motions.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <motor/error.hpp>
+
+namespace kreisel {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace steady_motion {
 
-Linearisation linearized(const System& system, double t, const VectorXd& y) {
-  return kreisel::linearize<kreisel::Guide, kreisel::Body>(system, t, y);
+Linearisation linearized(const StudySystem& system, double t, const VectorXd& y) {
+  return linearize<Guide, Body>(system, t, y);
 }
 
-kreisel::Tangent tangent_of(const System& system, const VectorXd& y) {
-  return {static_cast<int>(y.size()), kreisel::quaternions(system.tree())};
+Tangent tangent_of(const StudySystem& system, const VectorXd& y) {
+  return {static_cast<int>(y.size()), quaternions(system.tree())};
 }
 
 std::vector<int> list(const Places& places, bool in) {
@@ -28,8 +29,8 @@ std::vector<int> list(const Places& places, bool in) {
   return result;
 }
 
-Directions::Directions(const System& system) : rates(system.tree().rates()) {
-  auto ruled = kreisel::RuledDirections::of(system.tree());
+Directions::Directions(const StudySystem& system) : rates(system.tree().rates()) {
+  auto ruled = RuledDirections::of(system.tree());
   given = set(ruled.given);
   held = set(ruled.held);
   running = set(ruled.running);
@@ -98,8 +99,8 @@ Places joined(Places a, const Places& b) {
   return a;
 }
 
-VectorXd off(const System& system, const VectorXd& y) {
-  const kreisel::Tangent tangent = tangent_of(system, y);
+VectorXd off(const StudySystem& system, const VectorXd& y) {
+  const Tangent tangent = tangent_of(system, y);
   VectorXd eta(tangent.dimension());
   for (Eigen::Index i = 0; i < eta.size(); ++i) {
     eta[i] = 0.1 * std::cos(2.0 * static_cast<double>(i + 1));
@@ -107,8 +108,8 @@ VectorXd off(const System& system, const VectorXd& y) {
   return tangent.moved(y, eta);
 }
 
-bool stays(const System& system, const Linearisation& linear, double t_end) {
-  const kreisel::Tangent tangent = tangent_of(system, linear.state);
+bool stays(const StudySystem& system, const Linearisation& linear, double t_end) {
+  const Tangent tangent = tangent_of(system, linear.state);
   const double fastest = linear.rate.cwiseAbs().maxCoeff();
   std::vector<double> times{0.31 * t_end, 0.77 * t_end};
   // So that no angle happens to have gone whole turns.
@@ -123,7 +124,7 @@ bool stays(const System& system, const Linearisation& linear, double t_end) {
 
 namespace {
 
-Steady steady_at(const System& system, const Linearisation& linear) {
+Steady steady_at(const StudySystem& system, const Linearisation& linear) {
   Steady steady;
   steady.state = linear.state;
   const Places running = Directions(system).running;
@@ -137,7 +138,7 @@ Steady steady_at(const System& system, const Linearisation& linear) {
 
 }  // namespace
 
-Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
+Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_end) {
   const Linearisation at_guess = linearized(system, 0, guess);
   const double change = at_guess.unsteadiness.norm();
   const bool moves = at_guess.rate.norm() > 0;
@@ -160,9 +161,9 @@ Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
   }
   Steady steady;
   try {
-    const auto found = kreisel::find_equilibrium(
-        system, 0, guess,
-        {.held = list(held), .running = list(joined(directions.running, cyclic))});
+    const auto found =
+        find_equilibrium(system, 0, guess,
+                         {.held = list(held), .running = list(joined(directions.running, cyclic))});
     const Linearisation there = linearized(system, 0, found.state);
     if (!stays(system, there, t_end)) {
       steady.reason =
@@ -174,7 +175,7 @@ Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
     steady.distance = (found.state - guess).cwiseAbs().maxCoeff();
     const bool same = steady.distance <= 1e-9 * (1 + guess.cwiseAbs().maxCoeff());
     steady.kind = same ? Steady::Kind::start : Steady::Kind::found;
-  } catch (const kreisel::ComputationFailed& error) {
+  } catch (const ComputationFailed& error) {
     steady.reason = error.what();
   }
   return steady;
@@ -183,19 +184,19 @@ Steady find_steady(const System& system, const VectorXd& guess, double t_end) {
 namespace {
 
 /// Why a scene has no steady motion whatever its bodies do; empty where it may have one.
-std::string changes(const kreisel::SceneFile& scene) {
+std::string changes(const SceneFile& scene) {
   if (scene.follows_log()) return "the guide follows a log";
-  if (has_link<kreisel::scene_guide::Harmonic>(scene)) {
+  if (has_link<scene_guide::Harmonic>(scene)) {
     return "the guide swings: the motions that stay repeat it";
   }
   return "";
 }
 
 /// Rotors on which a torque acts that no friction balances, as the end of a reason.
-std::string driven_rotors(const System& system) {
+std::string driven_rotors(const StudySystem& system) {
   std::string text;
   for (const auto& rotor : system.tree().rotors()) {
-    if (rotor.mode != kreisel::RotorMode::torque) continue;
+    if (rotor.mode != RotorMode::torque) continue;
     const auto& force = system.tree().forces()[static_cast<std::size_t>(rotor.link.v)];
     if (force.constant == 0 || force.damping != 0) continue;
     text += "; the torque on rotor '" + system.tree().body(rotor.link.body).name +
@@ -204,12 +205,12 @@ std::string driven_rotors(const System& system) {
   return text;
 }
 
-double growth(const System& system, const VectorXd& state) {
-  return kreisel::detail::eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
+double growth(const StudySystem& system, const VectorXd& state) {
+  return detail::eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
 }
 
 /// The equilibrium next to a state; null where there is none.
-const Equilibrium* nearest(const System& system, const Equilibria& equilibria,
+const Equilibrium* nearest(const StudySystem& system, const Equilibria& equilibria,
                            const VectorXd& state) {
   const Equilibrium* best = nullptr;
   double least = 0;
@@ -228,12 +229,12 @@ const Equilibrium* nearest(const System& system, const Equilibria& equilibria,
 
 }  // namespace
 
-Equilibria find_equilibria(const System& system, const kreisel::SceneFile& scene,
+Equilibria find_equilibria(const StudySystem& system, const SceneFile& scene,
                            const VectorXd& start) {
   return changes(scene).empty() ? find_equilibria(system, start, scene.t_end) : Equilibria{};
 }
 
-Steady find_steady(const System& system, const kreisel::SceneFile& scene, const VectorXd& start,
+Steady find_steady(const StudySystem& system, const SceneFile& scene, const VectorXd& start,
                    const Equilibria& equilibria) {
   Steady steady;
   steady.reason = changes(scene);
@@ -258,8 +259,10 @@ Steady find_steady(const System& system, const kreisel::SceneFile& scene, const 
   return rest;
 }
 
-Steady find_steady(const System& system, const kreisel::SceneFile& scene, const VectorXd& start) {
+Steady find_steady(const StudySystem& system, const SceneFile& scene, const VectorXd& start) {
   return find_steady(system, scene, start, find_equilibria(system, scene, start));
 }
 
 }  // namespace steady_motion
+
+}  // namespace kreisel

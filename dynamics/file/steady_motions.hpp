@@ -8,11 +8,12 @@
 #include <variant>
 #include <vector>
 
+#include <dynamics/file/equilibria.hpp>
+#include <dynamics/file/study_system.hpp>
 #include <dynamics/study/body_states.hpp>
 #include <dynamics/study/linearize.hpp>
 
-#include "equilibria.hpp"
-#include "system.hpp"
+namespace kreisel {
 
 /// A state in which the motion does not change, but for angles on which nothing depends.
 struct Steady {
@@ -33,11 +34,12 @@ struct Steady {
 
 namespace steady_motion {
 
-using Linearisation = kreisel::Linearisation<kreisel::Guide, kreisel::Body>;
+using Linearisation = kreisel::Linearisation<Guide, Body>;
 
-[[nodiscard]] Linearisation linearized(const System& system, double t, const Eigen::VectorXd& y);
+[[nodiscard]] Linearisation linearized(const StudySystem& system, double t,
+                                       const Eigen::VectorXd& y);
 
-[[nodiscard]] kreisel::Tangent tangent_of(const System& system, const Eigen::VectorXd& y);
+[[nodiscard]] Tangent tangent_of(const StudySystem& system, const Eigen::VectorXd& y);
 
 /// A set of directions.
 using Places = std::vector<bool>;
@@ -53,7 +55,7 @@ struct Directions {
   Places given, held, running;  ///< as RuledDirections has them
   std::vector<int> attitudes;
 
-  explicit Directions(const System& system);
+  explicit Directions(const StudySystem& system);
 
   /// Coordinates on which no acceleration depends: at a state and at another, for an equilibrium
   /// may hide a dependence.
@@ -71,30 +73,33 @@ struct Directions {
 };
 
 /// A state that has nothing special.
-[[nodiscard]] Eigen::VectorXd off(const System& system, const Eigen::VectorXd& y);
+[[nodiscard]] Eigen::VectorXd off(const StudySystem& system, const Eigen::VectorXd& y);
 
 template <class Kind>
-[[nodiscard]] bool has_link(const kreisel::SceneFile& scene) {
+[[nodiscard]] bool has_link(const SceneFile& scene) {
   return std::any_of(scene.guide.begin(), scene.guide.end(),
                      [](const auto& link) { return std::holds_alternative<Kind>(link); });
 }
 
 /// Whether the linear equations stay what they are along the motion and with time.
-[[nodiscard]] bool stays(const System& system, const Linearisation& linear, double t_end);
+[[nodiscard]] bool stays(const StudySystem& system, const Linearisation& linear, double t_end);
 
 /// The steady motion at the guess, or next to it.
-[[nodiscard]] Steady find_steady(const System& system, const Eigen::VectorXd& guess, double t_end);
+[[nodiscard]] Steady find_steady(const StudySystem& system, const Eigen::VectorXd& guess,
+                                 double t_end);
 
 /// Equilibria of a scene; none where its guide goes on changing.
-[[nodiscard]] Equilibria find_equilibria(const System& system, const kreisel::SceneFile& scene,
+[[nodiscard]] Equilibria find_equilibria(const StudySystem& system, const SceneFile& scene,
                                          const Eigen::VectorXd& start);
 
 /// The steady motion at a scene's start; else a turning one that Newton's method finds from there;
 /// else the nearest of the equilibria and of what Newton's method finds, of several at the same
 /// distance that whose neighbouring motions grow least.
-[[nodiscard]] Steady find_steady(const System& system, const kreisel::SceneFile& scene,
+[[nodiscard]] Steady find_steady(const StudySystem& system, const SceneFile& scene,
                                  const Eigen::VectorXd& start, const Equilibria& equilibria);
-[[nodiscard]] Steady find_steady(const System& system, const kreisel::SceneFile& scene,
+[[nodiscard]] Steady find_steady(const StudySystem& system, const SceneFile& scene,
                                  const Eigen::VectorXd& start);
 
 }  // namespace steady_motion
+
+}  // namespace kreisel

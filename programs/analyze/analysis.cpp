@@ -10,10 +10,11 @@
 #include <utility>
 
 #include <dynamics/decompositions.hpp>
+#include <dynamics/file/joints.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
 
-#include "../shared/joints.hpp"
+using namespace kreisel;
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 using kreisel::GyroscopicMode;
@@ -35,7 +36,7 @@ Verdict verdict(const Modes& modes, bool all_directions, const Growth& growth) {
 
 /// From where a mode about a steady motion is seen. Attitudes vary by angles on the body's own axes,
 /// which in a steady motion may turn; single coordinates vary against the parent.
-std::string frame_of(const System& system, const VectorXd& state) {
+std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) {
   const kreisel::BodyTree& tree = system.tree();
   std::string carriers;
   for (const auto& link : tree.links()) {
@@ -53,8 +54,8 @@ std::string frame_of(const System& system, const VectorXd& state) {
   return "against the parent of each body; '" + carriers + "' turns against the guide";
 }
 
-Linear linear_about(const System& system, const VectorXd& state) {
-  const Linearisation there = linearized(system, 0, state);
+Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
+  const kreisel::steady_motion::Linearisation there = linearized(system, 0, state);
   const Directions directions(system);
   const Places out = directions.without_roots(there.A);
   const std::vector<int> kept = list(out, false);
@@ -93,7 +94,7 @@ bool is_steady(const kreisel::SceneFile& scene) {
 /// Whether no force on the bodies at rest gives energy without end: all of it is gravity on guide
 /// axes or that of the earth the guide is on, springs, constant joint forces, loads with a
 /// potential, and dampers.
-bool has_potential(const System& system, const kreisel::SceneFile& scene) {
+bool has_potential(const kreisel::StudySystem& system, const kreisel::SceneFile& scene) {
   const bool stands_still =
       std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity);
   if (!is_steady(scene) || (stands_still && !scene.rests())) return false;
@@ -111,8 +112,8 @@ bool has_potential(const System& system, const kreisel::SceneFile& scene) {
 /// that turns displacements into accelerations is minus mass^-1 stiffness.
 ///
 /// Source : Lagrange and Dirichlet; gyroscopic forces and dampers do not spoil it
-bool is_lowest(const System& system, const Equilibrium& equilibrium) {
-  const Linearisation there = linearized(system, 0, equilibrium.state);
+bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibrium) {
+  const kreisel::steady_motion::Linearisation there = linearized(system, 0, equilibrium.state);
   const Directions directions(system);
   const Places fixed =
       joined(directions.held,
@@ -130,7 +131,7 @@ bool is_lowest(const System& system, const Equilibrium& equilibrium) {
          std::count_if(values.begin(), values.end(), falls) + equilibrium.neutral == values.size();
 }
 
-std::vector<Rest> rests(const System& system, const kreisel::SceneFile& scene,
+std::vector<Rest> rests(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
                         const Equilibria& equilibria, const VectorXd& start) {
   const bool conserves = has_potential(system, scene);
   std::vector<Rest> result;
@@ -185,7 +186,7 @@ void connect(std::vector<Curve>& curves, std::vector<GyroscopicMode> modes) {
 }
 
 /// The place of the speed of a body among the state's components.
-Eigen::Index speed_of(const System& system, const std::string& name) {
+Eigen::Index speed_of(const kreisel::StudySystem& system, const std::string& name) {
   const kreisel::BodyTree& tree = system.tree();
   const auto& bodies = tree.bodies();
   const auto is = [&name](const auto& body) { return body.name == name; };
@@ -204,7 +205,8 @@ Eigen::Index speed_of(const System& system, const std::string& name) {
   return tree.coordinates() + tree.place(body).v;
 }
 
-Campbell sweep(const System& system, const Sweep& asked, VectorXd guess, double t_end) {
+Campbell sweep(const kreisel::StudySystem& system, const Sweep& asked, VectorXd guess,
+               double t_end) {
   const Eigen::Index speed = speed_of(system, asked.body);
   Campbell campbell{asked.body, asked.speeds, !system.tree().rotors().empty(), {}};
   for (const double now : asked.speeds) {
@@ -250,7 +252,7 @@ std::optional<double> period_of(const kreisel::SceneFile& scene, const Request& 
 }
 
 /// By how much the field is another one after a period, relative.
-double field_misses(const System& system, const VectorXd& start, double period) {
+double field_misses(const kreisel::StudySystem& system, const VectorXd& start, double period) {
   const Directions directions(system);
   const kreisel::Tangent tangent = tangent_of(system, start);
   double worst = 0;
@@ -272,7 +274,8 @@ double field_misses(const System& system, const VectorXd& start, double period) 
   return worst;
 }
 
-Floquet multipliers(const System& system, const VectorXd& start, double period, double t_of_guide) {
+Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, double period,
+                    double t_of_guide) {
   constexpr double most_evaluations = 2e5;  // of one period: seconds, and 20 periods at the most
   Floquet floquet;
   floquet.period = period;
@@ -306,7 +309,7 @@ Floquet multipliers(const System& system, const VectorXd& start, double period, 
 }
 
 /// A ball that turns at the start but in no equilibrium: what was meant was another motion.
-bool lost_spin(const System& system, const VectorXd& start, const Steady& steady) {
+bool lost_spin(const kreisel::StudySystem& system, const VectorXd& start, const Steady& steady) {
   if (steady.kind == Steady::Kind::start) return false;
   const int q = system.tree().coordinates();
   const auto attitudes = Directions(system).attitudes;
@@ -325,7 +328,8 @@ kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& re
   return scene;
 }
 
-Analysis analyze(const System& system, const kreisel::SceneFile& scene, const Request& request) {
+Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
+                 const Request& request) {
   const auto [coordinates, rates] = start_of(scene);
   VectorXd start(coordinates.size() + rates.size());
   start << coordinates, rates;

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/steady_motions.hpp>
+#include <dynamics/file/study_system.hpp>
 #include <dynamics/study/spectrum.hpp>
 
 #include "request.hpp"
-#include "steady.hpp"
-#include "system.hpp"
 
 enum class Verdict { stable, marginal, unstable };
 
@@ -47,7 +47,7 @@ struct Floquet {
 
 /// An equilibrium and the linear equations about it.
 struct Rest {
-  steady_motion::Equilibrium equilibrium;
+  kreisel::steady_motion::Equilibrium equilibrium;
   Linear linear;
 
   /// By the roots; where they do not decide stable if the potential energy is least there.
@@ -58,11 +58,11 @@ struct Rest {
 struct Analysis {
   std::vector<Rest> equilibria;  ///< stable ones first, then by their distance from the start
   int starts = 0;                ///< states from which they were searched
-  Steady steady;
+  kreisel::Steady steady;
   std::optional<Linear> linear;
   std::optional<Campbell> campbell;
   std::optional<Floquet> floquet;
-  PrecessionCheck precession;
+  kreisel::PrecessionCheck precession;
   std::vector<std::string> notes;  ///< on what is beyond this program
 };
 
@@ -72,5 +72,5 @@ struct Analysis {
 
 /// Throws : kreisel::InvalidInput for what is asked of a body or period that does not fit the
 ///          scene; kreisel::ComputationFailed where a sweep finds no steady motion
-[[nodiscard]] Analysis analyze(const System& system, const kreisel::SceneFile& scene,
+[[nodiscard]] Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
                                const Request& request);

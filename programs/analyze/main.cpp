@@ -6,11 +6,13 @@
 #include "../shared/exit_status.hpp"
 #include "output.hpp"
 
+using namespace kreisel;
+
 namespace {
 
 int run(const Request& request) {
   const kreisel::SceneFile scene = kreisel::read_scene(request.scene);
-  const System system(with_longer_guide(scene, request));
+  const kreisel::StudySystem system(with_longer_guide(scene, request));
   const Analysis analysis = analyze(system, scene, request);
   const Result result{scene, system, analysis};
   if (request.plot) draw(result, *request.plot);

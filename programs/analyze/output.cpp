@@ -9,6 +9,8 @@
 
 #include "../shared/joint_tables.hpp"
 
+using namespace kreisel;
+
 using kreisel::GyroscopicMode;
 using nlohmann::ordered_json;
 
@@ -40,21 +42,23 @@ std::string mostly(const GyroscopicMode& mode, const std::vector<std::string>& n
   return names[static_cast<std::size_t>(most)];
 }
 
-JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
+kreisel::JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
   const kreisel::BodyTree& tree = result.system.tree();
   return {state.head(tree.coordinates()), state.tail(tree.rates())};
 }
 
 /// Sizes by a state and by what the joints carry there.
-Scale scale_of(const Result& result, const Eigen::VectorXd& state) {
-  Scale scale = ::scale_of(result.scene, result.system.tree(), {joints_of(result, state)});
+kreisel::SceneScale scale_of(const Result& result, const Eigen::VectorXd& state) {
+  kreisel::SceneScale scale =
+      ::scale_of(result.scene, result.system.tree(), {joints_of(result, state)});
   scale.hold(result.system.reactions(0, state));
   return scale;
 }
 
 ordered_json joints_json(const Result& result, const Eigen::VectorXd& state,
-                         const kreisel::JointReactions& reactions, const Scale& scale) {
-  const JointState joints = joints_of(result, state);
+                         const kreisel::JointReactions& reactions,
+                         const kreisel::SceneScale& scale) {
+  const kreisel::JointState joints = joints_of(result, state);
   const kreisel::BodyTree& tree = result.system.tree();
   ordered_json table = ordered_json::object();
   for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
@@ -64,7 +68,7 @@ ordered_json joints_json(const Result& result, const Eigen::VectorXd& state,
 }
 
 ordered_json reactions_json(const Result& result, const kreisel::JointReactions& reactions,
-                            const Scale& scale) {
+                            const kreisel::SceneScale& scale) {
   ordered_json table = ordered_json::object();
   for (std::size_t i = 0; i < reactions.on_body.size(); ++i) {
     table[result.system.tree().bodies()[i].name] = json(reactions.on_body[i].value, scale);
@@ -86,7 +90,8 @@ ordered_json json(const GyroscopicMode& mode, bool has_rotors) {
   return result;
 }
 
-ordered_json json(const Steady& steady, const Result& result, const Scale& scale = {}) {
+ordered_json json(const Steady& steady, const Result& result,
+                  const kreisel::SceneScale& scale = {}) {
   if (!steady.exists()) return {{"found", "none"}, {"reason", steady.reason}};
   const kreisel::JointReactions reactions = result.system.reactions(0, steady.state);
   return {{"found", steady.kind == Steady::Kind::start ? "start" : "from the start"},
@@ -113,7 +118,7 @@ ordered_json json(const Linear& linear) {
           {"left_out", linear.left_out}};
 }
 
-ordered_json json(const Rest& rest, const Result& result, const Scale& scale = {}) {
+ordered_json json(const Rest& rest, const Result& result, const kreisel::SceneScale& scale = {}) {
   const Eigen::VectorXd& state = rest.equilibrium.state;
   return {{"stability", name(rest.stability)},
           {"distance", rest.distance},
@@ -136,7 +141,8 @@ ordered_json json(const Campbell& campbell) {
   return {{"body", campbell.body}, {"speeds", campbell.speeds}, {"curves", curves}};
 }
 
-ordered_json json(const Floquet& floquet, const Result& result, const Scale& scale = {}) {
+ordered_json json(const Floquet& floquet, const Result& result,
+                  const kreisel::SceneScale& scale = {}) {
   if (!floquet.reason.empty()) return {{"period", floquet.period}, {"reason", floquet.reason}};
   ordered_json multipliers = ordered_json::array();
   for (const kreisel::Mode& m : floquet.multipliers) {
@@ -153,7 +159,7 @@ ordered_json json(const Floquet& floquet, const Result& result, const Scale& sca
           {"start", joints_json(result, floquet.start, reactions, scale)}};
 }
 
-ordered_json json(const PrecessionCheck& check) {
+ordered_json json(const kreisel::PrecessionCheck& check) {
   if (!check.beyond.empty()) return {{"reason", check.beyond}};
   ordered_json result{{"velocities", check.velocities}};
   if (check.not_tested.empty()) {
@@ -295,7 +301,7 @@ void print(const Floquet& floquet, const Result& result) {
                       json(floquet, result, scale_of(result, floquet.start))["start"]);
 }
 
-void print(const PrecessionCheck& check, double t_end) {
+void print(const kreisel::PrecessionCheck& check, double t_end) {
   fmt::print("\nprecession equations: ");
   if (!check.beyond.empty()) {
     fmt::print("none, {}\n", check.beyond);

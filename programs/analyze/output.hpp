@@ -7,7 +7,7 @@
 /// An analysis that came to its end, and of what.
 struct Result {
   const kreisel::SceneFile& scene;
-  const System& system;
+  const kreisel::StudySystem& system;
   const Analysis& analysis;
 };
 

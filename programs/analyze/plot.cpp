@@ -11,6 +11,8 @@
 #include "../shared/gnuplot.hpp"
 #include "output.hpp"
 
+using namespace kreisel;
+
 using gnuplot::quoted;
 using kreisel::GyroscopicMode;
 

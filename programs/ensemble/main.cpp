@@ -14,6 +14,7 @@
 
 #include <dynamics/ensemble/workers.hpp>
 #include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/columns.hpp>
 #include <dynamics/file/csv.hpp>
 #include <dynamics/file/printable.hpp>
 #include <dynamics/file/scene_numbers.hpp>
@@ -23,8 +24,9 @@
 #include "../shared/exit_status.hpp"
 #include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
-#include "../simulate/columns.hpp"
 #include "request.hpp"
+
+using namespace kreisel;
 
 namespace {
 
@@ -87,7 +89,7 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     task.method = file.method;
     const auto ends = [&stop] { return stop || signals::caught() != 0; };
     const auto run = model->solve(
-        task, start_of(file), [&](double, const JointState&) { return !ends(); }, ends);
+        task, start_of(file), [&](double, const kreisel::JointState&) { return !ends(); }, ends);
     if (ends() && run.report.status != RunStatus::complete) return member;
     member.status = run.report.status;
     member.message = run.report.message;

@@ -7,6 +7,8 @@
 #include "../shared/command_line.hpp"
 #include "../shared/exit_status.hpp"
 
+using namespace kreisel;
+
 using kreisel::InvalidInput;
 
 namespace {

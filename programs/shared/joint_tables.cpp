@@ -7,6 +7,8 @@
 
 #include <dynamics/file/printable.hpp>
 
+using namespace kreisel;
+
 using kreisel::JointKind;
 using nlohmann::ordered_json;
 
@@ -25,13 +27,13 @@ ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 ordered_json json(double x) { return std::isfinite(x) ? ordered_json(x) : ordered_json(); }
 
-ordered_json json(const kreisel::Motor<>& force, const Scale& scale) {
+ordered_json json(const kreisel::Motor<>& force, const kreisel::SceneScale& scale) {
   return {{"force", json(shown(force.resultant, scale.force))},
           {"torque", json(shown(force.moment, scale.torque))}};
 }
 
-ordered_json joint(const kreisel::BodyTree& tree, int body, const JointState& state,
-                   const kreisel::JointReactions& reactions, const Scale& scale) {
+ordered_json joint(const kreisel::BodyTree& tree, int body, const kreisel::JointState& state,
+                   const kreisel::JointReactions& reactions, const kreisel::SceneScale& scale) {
   const auto [q, q_count, v, v_count] = tree.place(body);
   const auto pair = [](const Eigen::VectorXd& x, int begin, double size) {
     return ordered_json{shown(x[begin], size), shown(x[begin + 1], size)};

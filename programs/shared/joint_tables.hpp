@@ -5,10 +5,9 @@
 
 #include <string>
 
+#include <dynamics/file/joints.hpp>
+#include <dynamics/file/scale.hpp>
 #include <motor/motor.hpp>
-
-#include "joints.hpp"
-#include "scale.hpp"
 
 /// Joints and what they carry, for people and for machines. A scale hides what is rounding.
 namespace joint_tables {
@@ -18,13 +17,14 @@ namespace joint_tables {
 /// What JSON has no number for is null.
 [[nodiscard]] nlohmann::ordered_json json(double x);
 
-[[nodiscard]] nlohmann::ordered_json json(const kreisel::Motor<>& force, const Scale& scale = {});
+[[nodiscard]] nlohmann::ordered_json json(const kreisel::Motor<>& force,
+                                          const kreisel::SceneScale& scale = {});
 
 /// Coordinates and rates of a joint and the torque of its drive, by their names in scene files.
 [[nodiscard]] nlohmann::ordered_json joint(const kreisel::BodyTree& tree, int body,
-                                           const JointState& state,
+                                           const kreisel::JointState& state,
                                            const kreisel::JointReactions& reactions,
-                                           const Scale& scale = {});
+                                           const kreisel::SceneScale& scale = {});
 
 /// A number, or a list of them in brackets, with 15 digits.
 [[nodiscard]] std::string text(const nlohmann::ordered_json& numbers);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/columns.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
 
@@ -18,11 +19,12 @@
 #include "../shared/gnuplot.hpp"
 #include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
-#include "columns.hpp"
 #include "output.hpp"
 #include "request.hpp"
 #include "resume_file.hpp"
 #include "row_file.hpp"
+
+using namespace kreisel;
 
 namespace {
 
@@ -33,7 +35,7 @@ constexpr double before_all = -std::numeric_limits<double>::infinity();
 /// Where a run begins, or goes on.
 struct Begin {
   kreisel::Task task;
-  JointState state;
+  kreisel::JointState state;
   double latest = before_all;                  ///< time of the rows that are there
   std::vector<std::vector<double>> rows = {};  ///< those that are kept
 };
@@ -50,7 +52,7 @@ Begin from_the_start(const kreisel::SceneFile& scene) {
 }
 
 /// A run that begins with the state of a row.
-Begin from_row(const Model& model, const kreisel::SceneFile& scene,
+Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scene,
                const std::vector<double>& row) {
   Begin begin = from_the_start(scene);
   begin.latest = row.front();
@@ -64,7 +66,7 @@ Begin from_row(const Model& model, const kreisel::SceneFile& scene,
 /// The rows and the checkpoint of a run, both kept while it is computed.
 struct Record {
   Record(const Request& request, const std::string& scene_text, const kreisel::SceneFile& scene,
-         const Model& model)
+         const kreisel::SceneSolver& model)
       : rows(*request.csv, columns(model.tree(), scene.reactions)),
         resume(*request.csv, identity(scene_text, scene)) {}
 
@@ -113,7 +115,8 @@ const RowFile::Row* row_at(const std::vector<RowFile::Row>& rows, double t) {
 }
 
 /// Goes on where a checkpoint was taken; nothing where the rows are not those that it stands for.
-std::optional<Begin> from_checkpoint(const Model& model, const kreisel::SceneFile& scene,
+std::optional<Begin> from_checkpoint(const kreisel::SceneSolver& model,
+                                     const kreisel::SceneFile& scene,
                                      const std::vector<RowFile::Row>& rows, RowFile& file,
                                      Checkpoint& checkpoint) {
   const RowFile::Row* const last = row_at(rows, checkpoint.t);
@@ -131,7 +134,8 @@ std::optional<Begin> from_checkpoint(const Model& model, const kreisel::SceneFil
 /// Goes on with the rows of a file, from the checkpoint if there is one of them.
 ///
 /// Throws : kreisel::InvalidInput where the file's rows are not of this scene
-Begin from_rows(const Model& model, Record& record, const kreisel::SceneFile& scene) {
+Begin from_rows(const kreisel::SceneSolver& model, Record& record,
+                const kreisel::SceneFile& scene) {
   const std::vector<RowFile::Row> rows = record.rows.read_rows();
   Begin begin = from_the_start(scene);
   if (rows.empty()) return begin;
@@ -169,10 +173,10 @@ Begin from_rows(const Model& model, Record& record, const kreisel::SceneFile& sc
 }
 
 /// The states of rows before those of a run that went on with them.
-void put_before(kreisel::Trajectory<JointState>& run, const Model& model,
+void put_before(kreisel::Trajectory<kreisel::JointState>& run, const kreisel::SceneSolver& model,
                 const std::vector<std::vector<double>>& rows) {
   std::vector<double> times;
-  std::vector<JointState> states;
+  std::vector<kreisel::JointState> states;
   for (const auto& row : rows) {
     if (row.front() >= run.times.front()) break;
     times.push_back(row.front());
@@ -186,16 +190,16 @@ void put_before(kreisel::Trajectory<JointState>& run, const Model& model,
 
 /// Computes the run and writes its rows. After a signal it ends early, and `latest` is the time that
 /// was reached.
-kreisel::Trajectory<JointState> compute(const kreisel::SceneFile& scene, const Model& model,
-                                        Begin& begin, std::optional<Record>& record,
-                                        double& latest) {
+kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene,
+                                                 const kreisel::SceneSolver& model, Begin& begin,
+                                                 std::optional<Record>& record, double& latest) {
   kreisel::Task& task = begin.task;
   const bool end_is_a_row = !scene.output_times.empty() && scene.output_times.back() == scene.t_end;
   if (record) {
     task.offer_bookmark = [&](const auto& take) { record->offer(task.begin, latest, take); };
   }
   Progress progress;
-  const auto listener = [&](double t, const JointState& state) {
+  const auto listener = [&](double t, const kreisel::JointState& state) {
     if (record && t <= latest) record->begin_again(task.begin);
     latest = t;
     const bool is_there = task.begin > 0 && t == task.begin;  // the end of a run that was complete
@@ -212,7 +216,7 @@ kreisel::Trajectory<JointState> compute(const kreisel::SceneFile& scene, const M
     return run;
   } catch (const std::exception&) {
     if (signals::caught() == 0) throw;
-    kreisel::Trajectory<JointState> none;  // the signal is the reason
+    kreisel::Trajectory<kreisel::JointState> none;  // the signal is the reason
     none.report.status = RunStatus::cancelled;
     return none;
   }
@@ -236,7 +240,7 @@ int run(const Request& request) {
     throw kreisel::InvalidInput("--resume: an approximation is computed as a whole");
   }
   if (request.plot) gnuplot::require_installed();
-  const std::unique_ptr<Model> model = make_model(scene);
+  const std::unique_ptr<kreisel::SceneSolver> model = make_model(scene);
   std::optional<Record> record;
   if (request.csv) {
     const auto inputs = files_read(request.scene, scene);
@@ -247,7 +251,8 @@ int run(const Request& request) {
   }
   Begin begin = request.resume ? from_rows(*model, *record, scene) : from_the_start(scene);
   double latest = begin.latest;
-  kreisel::Trajectory<JointState> trajectory = compute(scene, *model, begin, record, latest);
+  kreisel::Trajectory<kreisel::JointState> trajectory =
+      compute(scene, *model, begin, record, latest);
   const kreisel::RunReport& report = trajectory.report;
   const double reached = trajectory.times.empty() ? std::max(0.0, latest) : trajectory.times.back();
   const bool complete = reached == scene.t_end && report.status == RunStatus::complete;

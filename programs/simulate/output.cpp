@@ -13,6 +13,8 @@
 
 #include "../shared/joint_tables.hpp"
 
+using namespace kreisel;
+
 using nlohmann::ordered_json;
 
 namespace {
@@ -34,16 +36,16 @@ std::string gravity_name(const kreisel::SceneFile& scene) {
   return names[scene.gravity.index()];
 }
 
-ordered_json json(const std::vector<Term>& terms) {
+ordered_json json(const std::vector<TermLine>& terms) {
   ordered_json list = ordered_json::array();
-  for (const Term& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
+  for (const TermLine& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
   return list;
 }
 
 /// The terms that the equation of motion holds, or those that it does not. Gravity is told apart, by
 /// the kind that the scene has: that of a place enters the equation as a load on each body.
-std::vector<Term> equation_terms(const Result& result, bool kept) {
-  std::vector<Term> terms;
+std::vector<TermLine> equation_terms(const Result& result, bool kept) {
+  std::vector<TermLine> terms;
   for (const kreisel::Term& term : result.model.equation_terms()) {
     const bool is_told_apart = term.part == "load" && term.name == "gravity";
     if (is_told_apart && result.scene.gravity.index() != 0) continue;
@@ -73,7 +75,7 @@ double whole_error(const Result& result) {
 ordered_json log_errors(const Result& result) {
   ordered_json table = ordered_json::object();
   for (std::size_t i = 0; i < result.log_error.joints.size(); ++i) {
-    const LogError::Joint& off = result.log_error.joints[i];
+    const kreisel::LogError::Joint& off = result.log_error.joints[i];
     ordered_json& entry = table[result.scene.bodies[i].name];
     entry = ordered_json::object();
     if (!off.coordinates.empty()) {
@@ -88,9 +90,9 @@ ordered_json log_errors(const Result& result) {
   return table;
 }
 
-ordered_json final_state(const Result& result, const Scale& scale = {}) {
+ordered_json final_state(const Result& result, const kreisel::SceneScale& scale = {}) {
   const double t = result.run.times.back();
-  const JointState& state = result.run.states.back();
+  const kreisel::JointState& state = result.run.states.back();
   const kreisel::JointReactions reactions = result.model.reactions(t, state);
   ordered_json joints = ordered_json::object();
   ordered_json carried = ordered_json::object();
@@ -112,30 +114,30 @@ ordered_json final_state(const Result& result, const Scale& scale = {}) {
   return final;
 }
 
-void print_terms(const char* title, const std::vector<Term>& terms) {
+void print_terms(const char* title, const std::vector<TermLine>& terms) {
   fmt::print("\n{}\n", title);
-  for (const Term& term : terms) fmt::print("  {:56} {}\n", term.name, term.reason);
+  for (const TermLine& term : terms) fmt::print("  {:56} {}\n", term.name, term.reason);
 }
 
 }  // namespace
 
-Scale scale_of(const Result& result) {
-  Scale scale = scale_of(result.scene, result.model.tree(), result.run.states);
+kreisel::SceneScale scale_of(const Result& result) {
+  kreisel::SceneScale scale = scale_of(result.scene, result.model.tree(), result.run.states);
   for (const std::size_t i : {std::size_t(0), result.run.states.size() - 1}) {
     scale.hold(result.model.reactions(result.run.times[i], result.run.states[i]));
   }
   return scale;
 }
 
-std::vector<Term> terms_kept(const Result& result) {
-  std::vector<Term> terms = equation_terms(result, true);
+std::vector<TermLine> terms_kept(const Result& result) {
+  std::vector<TermLine> terms = equation_terms(result, true);
   if (result.scene.gravity.index() != 0) terms.push_back({"gravity", gravity_name(result.scene)});
   return terms;
 }
 
-std::vector<Term> terms_dropped(const Result& result) {
+std::vector<TermLine> terms_dropped(const Result& result) {
   const kreisel::SceneFile& scene = result.scene;
-  std::vector<Term> terms = equation_terms(result, false);
+  std::vector<TermLine> terms = equation_terms(result, false);
   if (scene.model == kreisel::SceneModel::linear) {
     terms.push_back(
         {"what is not linear", "in the departure from the steady motion next to the start"});
@@ -212,7 +214,7 @@ std::optional<std::string> path_to_null(const ordered_json& value) {
 
 void require_finite(const Result& result) {
   for (std::size_t i = 0; i < result.run.states.size(); ++i) {
-    const JointState& state = result.run.states[i];
+    const kreisel::JointState& state = result.run.states[i];
     if (state.coordinates.allFinite() && state.rates.allFinite()) continue;
     throw kreisel::ComputationFailed(
         fmt::format("the state at t = {:.9g} s is not finite", result.run.times[i]));

@@ -4,31 +4,31 @@
 #include <string>
 #include <vector>
 
-#include "../shared/scale.hpp"
-#include "log_error.hpp"
-#include "model.hpp"
+#include <dynamics/file/log_error.hpp>
+#include <dynamics/file/model.hpp>
+#include <dynamics/file/scale.hpp>
 
 /// A run that came to its end.
 struct Result {
   const kreisel::SceneFile& scene;
-  const Model& model;
-  const kreisel::Trajectory<JointState>& run;
+  const kreisel::SceneSolver& model;
+  const kreisel::Trajectory<kreisel::JointState>& run;
   bool reactions;
   bool terms;
-  LogError log_error = {};
+  kreisel::LogError log_error = {};
 };
 
 /// Sizes by all states of a run, and by what the joints carry in the first and the last.
-Scale scale_of(const Result& result);
+kreisel::SceneScale scale_of(const Result& result);
 
 /// A thing that the equations hold, or leave out, and why.
-struct Term {
+struct TermLine {
   std::string name;
   std::string reason;
 };
 
-std::vector<Term> terms_kept(const Result& result);
-std::vector<Term> terms_dropped(const Result& result);
+std::vector<TermLine> terms_kept(const Result& result);
+std::vector<TermLine> terms_dropped(const Result& result);
 
 /// Throws : kreisel::ComputationFailed naming the first number of the report or of the states that
 ///          is not finite

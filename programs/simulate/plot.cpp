@@ -6,12 +6,15 @@
 #include <sstream>
 #include <string>
 
+#include <dynamics/file/columns.hpp>
+
 #include "../shared/gnuplot.hpp"
-#include "columns.hpp"
 #include "output.hpp"
 #include "samples.hpp"
 #include "shape.hpp"
 #include "view.hpp"
+
+using namespace kreisel;
 
 using gnuplot::quoted;
 using kreisel::JointKind;
@@ -105,8 +108,9 @@ Panels panels(const Result& result, const std::vector<std::vector<double>>& rows
 
 std::vector<Panel> drifts(const Result& result, const Samples& samples) {
   std::vector<Panel> panels;
-  const auto values = samples.all(
-      [&result](double t, const JointState& state) { return result.model.conserved(t, state); });
+  const auto values = samples.all([&result](double t, const kreisel::JointState& state) {
+    return result.model.conserved(t, state);
+  });
   for (std::size_t k = 0; k < values.front().size(); ++k) {
     const std::string& name = values.front()[k].first;
     Panel panel{name + ", change since the start", "", {{"", {}}}};
@@ -202,7 +206,7 @@ std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, 
   const int last = static_cast<int>(result.scene.bodies.size()) - 1;
   const auto& body = result.scene.bodies.back();
   const auto directions = [&](const Eigen::Vector3d& on_body) {
-    return samples.all([&](double t, const JointState& state) {
+    return samples.all([&](double t, const kreisel::JointState& state) {
       return Eigen::Vector3d(result.model.pose(t, state, last).rotation * on_body);
     });
   };
@@ -333,9 +337,9 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   gnuplot::open_folder(folder);
   write_view(result, folder / "view.html");
   const Samples samples(result, most_points);
-  const Series times = samples.all([](double t, const JointState&) { return t; });
-  const Scale scale = scale_of(result);
-  const auto rows = samples.all([&](double t, const JointState& state) {
+  const Series times = samples.all([](double t, const kreisel::JointState&) { return t; });
+  const kreisel::SceneScale scale = scale_of(result);
+  const auto rows = samples.all([&](double t, const kreisel::JointState& state) {
     return shown_row(result.model.tree(), row(result.model, t, state, result.reactions), scale);
   });
   const std::string& title = result.scene.title;

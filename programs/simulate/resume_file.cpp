@@ -14,6 +14,8 @@
 #include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
 
+using namespace kreisel;
+
 namespace {
 
 constexpr std::size_t largest_checkpoint = std::size_t(1) << 30U;

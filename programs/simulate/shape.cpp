@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+using namespace kreisel;
+
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using kreisel::BodyDescription;

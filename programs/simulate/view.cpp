@@ -10,10 +10,12 @@
 #include <vector>
 
 #include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/columns.hpp>
 
-#include "columns.hpp"
 #include "samples.hpp"
 #include "shape.hpp"
+
+using namespace kreisel;
 
 using kreisel::JointKind;
 using nlohmann::ordered_json;
@@ -101,8 +103,8 @@ ordered_json bodies(const kreisel::BodyTree& tree) {
 }
 
 /// Relative, guide and Coriolis part of each body, force and torque.
-std::vector<double> terms_row(const Result& result, double t, const JointState& state,
-                              const Scale& scale) {
+std::vector<double> terms_row(const Result& result, double t, const kreisel::JointState& state,
+                              const kreisel::SceneScale& scale) {
   std::vector<double> values;
   for (int i = 0; i < static_cast<int>(result.scene.bodies.size()); ++i) {
     const auto parts = result.model.terms(t, state, i);
@@ -126,18 +128,18 @@ std::string text(const ordered_json& values) {
 
 void write_view(const Result& result, const std::filesystem::path& place) {
   const Samples samples(result, most_frames);
-  const Scale scale = scale_of(result);
+  const kreisel::SceneScale scale = scale_of(result);
   const kreisel::BodyTree& tree = result.model.tree();
   ordered_json run{{"title", result.scene.title},
                    {"up", numbers(up(result.scene))},
                    {"bodies", bodies(tree)},
                    {"columns", columns(tree, false)},
-                   {"rows", samples.all([&](double t, const JointState& state) {
+                   {"rows", samples.all([&](double t, const kreisel::JointState& state) {
                       return rounded(shown_row(tree, row(result.model, t, state, false), scale),
                                      row_digits);
                     })}};
   if (result.terms) {
-    run["terms"] = samples.all([&](double t, const JointState& state) {
+    run["terms"] = samples.all([&](double t, const kreisel::JointState& state) {
       return rounded(terms_row(result, t, state, scale), arrow_digits);
     });
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <regex>
 
+using namespace kreisel;
+
 namespace differential {
 
 namespace {

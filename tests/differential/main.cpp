@@ -17,9 +17,9 @@
 #include <chrono>
 #include <csignal>
 #include <ctime>
-#include <programs/shared/progress.hpp>
 #include <fstream>
 #include <map>
+#include <programs/shared/progress.hpp>
 #include <set>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -29,6 +29,8 @@
 #include "examine.hpp"
 #include "generate.hpp"
 #include "shrink.hpp"
+
+using namespace kreisel;
 
 namespace {
 

@@ -6,6 +6,8 @@
 
 #include "reference_tree.hpp"
 
+using namespace kreisel;
+
 namespace differential {
 
 namespace {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+using namespace kreisel;
+
 namespace differential::reference {
 
 namespace {

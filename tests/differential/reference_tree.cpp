@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+using namespace kreisel;
+
 namespace differential::reference {
 
 namespace {

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <ctime>
-#include <dynamics/file/model.hpp>
 #include <exception>
 #include <fstream>
 #include <memory>
 #include <set>
 
+#include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <motor/error.hpp>
+
+using namespace kreisel;
 
 namespace differential {
 
@@ -20,7 +22,8 @@ double processor_seconds() {
 }
 
 /// The joints' values in the order of JointValues.
-JointValues values(const kreisel::BodyTree& tree, const Scene& scene, const JointState& state) {
+JointValues values(const kreisel::BodyTree& tree, const Scene& scene,
+                   const kreisel::JointState& state) {
   static constexpr int coordinates[] = {0, 1, 1, 2, 4, 7};
   static constexpr int rates[] = {0, 1, 1, 2, 3, 6};
   JointValues result;
@@ -37,7 +40,7 @@ JointValues values(const kreisel::BodyTree& tree, const Scene& scene, const Join
   return result;
 }
 
-Answer run_by(const Model& model, const Scene& scene, const kreisel::SceneFile& file,
+Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreisel::SceneFile& file,
               const std::string& method, const Limits& limits) {
   Answer answer{.asked = method};
   kreisel::Task task;
@@ -54,7 +57,7 @@ Answer run_by(const Model& model, const Scene& scene, const kreisel::SceneFile& 
   };
   try {
     const auto run = model.solve(
-        task, start_of(file), [](double, const JointState&) { return true; }, too_long);
+        task, start_of(file), [](double, const kreisel::JointState&) { return true; }, too_long);
     const kreisel::RunReport& report = run.report;
     answer.answered = report.status == kreisel::RunStatus::complete;
     answer.message = report.message;
@@ -64,7 +67,7 @@ Answer run_by(const Model& model, const Scene& scene, const kreisel::SceneFile& 
     answer.kept = report.tolerance_kept;
     answer.evaluations = report.all_evaluations;
     answer.times = run.times;
-    for (const JointState& state : run.states) {
+    for (const kreisel::JointState& state : run.states) {
       answer.states.push_back(values(model.tree(), scene, state));
     }
     for (const auto& [name, start, largest] : report.invariants) {
@@ -124,7 +127,7 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
       std::ofstream(folder / log_name(i)) << scene.guide[i].log.csv(scene.t_end);
     }
     const kreisel::SceneFile file = kreisel::parse_scene(to_toml(scene), folder / "scene.toml");
-    const std::unique_ptr<Model> model = make_model(file);
+    const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
     answers.contradictions = contradictions(model->equation_terms());
     for (const std::string& method : methods) {
       begin(method);

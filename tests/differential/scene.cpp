@@ -8,6 +8,8 @@
 #include <cmath>
 #include <iterator>
 
+using namespace kreisel;
+
 namespace differential {
 
 namespace {

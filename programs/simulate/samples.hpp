@@ -19,7 +19,7 @@ class Samples {
   /// What `value` gives of each time and state.
   template <class Value>
   [[nodiscard]] auto all(const Value& value) const {
-    std::vector<decltype(value(0.0, JointState{}))> list;
+    std::vector<decltype(value(0.0, kreisel::JointState{}))> list;
     for (const std::size_t i : chosen_) {
       list.push_back(value(result_.run.times[i], result_.run.states[i]));
     }

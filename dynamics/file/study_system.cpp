@@ -1,22 +1,20 @@
-#include "system.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>
 
 #include <dynamics/file/scene_system.hpp>
+#include <dynamics/file/study_system.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/precession_admissibility.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
 
-using kreisel::KeptAccelerations;
-using kreisel::Obstacle;
+namespace kreisel {
 
 /// A guide at rest too is one that a file has named: nothing here is called often enough to gain by
 /// a second type.
-class System::Bodies : public kreisel::BodySystem<kreisel::SceneGuide> {
+class StudySystem::Bodies : public BodySystem<SceneGuide> {
  public:
   using BodySystem::BodySystem;
 };
@@ -39,47 +37,50 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 
 }  // namespace
 
-System::System(const kreisel::SceneFile& scene) {
-  auto [bodies, gravity] = kreisel::bodies_in_gravity(scene);
-  bodies_ = std::make_unique<const Bodies>(kreisel::make_guide(scene), std::move(bodies), gravity);
+StudySystem::StudySystem(const SceneFile& scene) {
+  auto [bodies, gravity] = bodies_in_gravity(scene);
+  bodies_ = std::make_unique<const Bodies>(make_guide(scene), std::move(bodies), gravity);
 }
 
-System::~System() = default;
+StudySystem::~StudySystem() = default;
 
-const kreisel::BodyTree& System::tree() const { return bodies_->tree(); }
+const BodyTree& StudySystem::tree() const { return bodies_->tree(); }
 
-System::Vector System::rates(double t, const Vector& y) const { return bodies_->rates(t, y); }
+StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {
+  return bodies_->rates(t, y);
+}
 
 template <class Dual>
-requires(!std::same_as<Dual, double>) System::Numbers<Dual> System::rates(const Dual& t,
-                                                                          const Numbers<Dual>& y)
+requires(!std::same_as<Dual, double>)
+    StudySystem::Numbers<Dual> StudySystem::rates(const Dual& t, const Numbers<Dual>& y)
 const { return bodies_->rates(t, y); }
 
-using Duals = kreisel::detail::Duals<kreisel::detail::directions<System>>;
-template Eigen::Matrix<Duals, Eigen::Dynamic, 1> System::rates(
+using Duals = detail::Duals<detail::directions<StudySystem>>;
+template Eigen::Matrix<Duals, Eigen::Dynamic, 1> StudySystem::rates(
     const Duals&, const Eigen::Matrix<Duals, Eigen::Dynamic, 1>&) const;
 
-kreisel::JointReactions System::reactions(double t, const Vector& y) const {
-  kreisel::JointReactions result;
-  kreisel::BodyWorkspace w = bodies_->workspace();
+JointReactions StudySystem::reactions(double t, const Vector& y) const {
+  JointReactions result;
+  BodyWorkspace w = bodies_->workspace();
   bodies_->reactions(t, y, result, w);
   return result;
 }
 
-Eigen::MatrixXd System::momenta_slope(double t, const Vector& y) const {
-  kreisel::BodyWorkspace w = bodies_->workspace();
-  return kreisel::momenta_slope<kreisel::SceneGuide>(*bodies_, t, y, w);
+Eigen::MatrixXd StudySystem::momenta_slope(double t, const Vector& y) const {
+  BodyWorkspace w = bodies_->workspace();
+  return kreisel::momenta_slope<SceneGuide>(*bodies_, t, y, w);
 }
 
-PrecessionCheck System::precession(const Vector& start, const Vector& rest, double t_end) const {
+PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
+                                        double t_end) const {
   PrecessionCheck check;
   if (tree().rotors().empty()) {
     check.beyond = "there is no rotor among the bodies";
     return check;
   }
-  kreisel::TechnicalOptions options;
+  TechnicalOptions options;
   try {
-    const kreisel::TechnicalBodies<kreisel::SceneGuide> model(*bodies_);
+    const TechnicalBodies<SceneGuide> model(*bodies_);
     const auto [place, u] = model.start(0, start);
     check.velocities = static_cast<int>(u.size());
     if (rest.size() == 0) {
@@ -87,17 +88,17 @@ PrecessionCheck System::precession(const Vector& start, const Vector& rest, doub
     } else if (const auto [middle, still] = model.start(0, rest); !at_rest(still)) {
       check.not_tested = "the carriers turn in the steady motion; the test is for a rest";
     } else {
-      const auto a = admissibility(model.forces(0, middle), kreisel::stiffness(model, 0, middle));
+      const auto a = admissibility(model.forces(0, middle), stiffness(model, 0, middle));
       check.rank = a.rank;
       check.test = {a.admissible(), reason(a.obstacle), a.greatest_shift, {}};
-      for (const kreisel::SlowRoot& root : a.slow) {
+      for (const SlowRoot& root : a.slow) {
         check.test.slow.push_back({root.technical, root.exact});
       }
       options.kept = a.kept;
     }
     try {
       const auto motion = technical_motion(model, 0, place, u, t_end, options);
-      const kreisel::TechnicalSample& last = motion.samples.back();
+      const TechnicalSample& last = motion.samples.back();
       check.kept = motion.kept;
       check.motion = {last.t, last.bound, 0, motion.valid_until, motion.slow};
       for (const auto& sample : motion.samples) {
@@ -105,20 +106,20 @@ PrecessionCheck System::precession(const Vector& start, const Vector& rest, doub
         check.motion.nutation =
             std::max(check.motion.nutation, sample.nutation.cwiseAbs().maxCoeff());
       }
-    } catch (const kreisel::ComputationFailed& error) {
+    } catch (const ComputationFailed& error) {
       check.no_motion = error.what();
     }
-  } catch (const kreisel::InvalidInput& error) {
+  } catch (const InvalidInput& error) {
     check.beyond = error.what();
   }
   return check;
 }
 
-std::vector<System::Vector> System::technical(const Vector& start,
-                                              const std::vector<double>& times) const {
-  const kreisel::TechnicalBodies<kreisel::SceneGuide> model(*bodies_);
+std::vector<StudySystem::Vector> StudySystem::technical(const Vector& start,
+                                                        const std::vector<double>& times) const {
+  const TechnicalBodies<SceneGuide> model(*bodies_);
   const auto [place, u] = model.start(0, start);
-  kreisel::TechnicalOptions options;
+  TechnicalOptions options;
   options.times = times;
   const auto motion = technical_motion(model, 0, place, u, times.back(), options);
   std::vector<Vector> states;
@@ -127,3 +128,5 @@ std::vector<System::Vector> System::technical(const Vector& start,
   }
   return states;
 }
+
+}  // namespace kreisel

@@ -1,17 +1,15 @@
-#include "scale.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <variant>
 
-using kreisel::BodyDescription;
-using kreisel::BodyTree;
-using kreisel::JointKind;
+#include <dynamics/file/scale.hpp>
+
+namespace kreisel {
 
 namespace {
 
-double gravity_of(const kreisel::SceneFile& scene) {
+double gravity_of(const SceneFile& scene) {
   return std::visit(
       [](const auto& field) {
         using Field = std::decay_t<decltype(field)>;
@@ -20,7 +18,7 @@ double gravity_of(const kreisel::SceneFile& scene) {
         } else if constexpr (requires { field.magnitude; }) {
           return double(field.magnitude);
         } else {
-          return std::is_same_v<Field, kreisel::scene_gravity::Ellipsoid> ? 9.8 : 0.0;
+          return std::is_same_v<Field, scene_gravity::Ellipsoid> ? 9.8 : 0.0;
         }
       },
       scene.gravity);
@@ -58,7 +56,7 @@ Motion motion_of(const BodyTree& tree, int body, const std::vector<JointState>& 
 
 }  // namespace
 
-double Scale::of(const std::string& unit) const {
+double SceneScale::of(const std::string& unit) const {
   if (unit == "rad" || unit == "1") return angle;
   if (unit == "m") return length;
   if (unit == "rad/s") return turning;
@@ -68,7 +66,7 @@ double Scale::of(const std::string& unit) const {
   return 0;
 }
 
-void Scale::hold(const kreisel::JointReactions& reactions) {
+void SceneScale::hold(const JointReactions& reactions) {
   for (const auto& on_body : reactions.on_body) {
     force = std::max(force, on_body.value.resultant.norm());
     torque = std::max(torque, on_body.value.moment.norm());
@@ -82,9 +80,9 @@ Eigen::Vector3d shown(const Eigen::Vector3d& v, double size) {
   return v.unaryExpr([size](double x) { return shown(x, size); });
 }
 
-Scale scale_of(const kreisel::SceneFile& scene, const BodyTree& tree,
-               const std::vector<JointState>& states) {
-  Scale scale;
+SceneScale scale_of(const SceneFile& scene, const BodyTree& tree,
+                    const std::vector<JointState>& states) {
+  SceneScale scale;
   scale.angle = 1;
   scale.turning = scene.t_end > 0 ? 1 / scene.t_end : 0;
   double mass = 0;
@@ -104,3 +102,5 @@ Scale scale_of(const kreisel::SceneFile& scene, const BodyTree& tree,
   scale.torque = std::max(scale.force * scale.length, momentum * scale.turning);
   return scale;
 }
+
+}  // namespace kreisel

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/scene_file.hpp>
 #include <dynamics/tree/reaction.hpp>
 #include <dynamics/tree/tree.hpp>
-#include <dynamics/file/scene_file.hpp>
+
+namespace kreisel {
 
 /// What precession equations are good for in a scene.
 struct PrecessionCheck {
@@ -48,7 +50,7 @@ struct PrecessionCheck {
 
 /// The bodies of a scene on their guide, as studies take a system. BodySystem and what is a
 /// template on it are compiled in system.cpp alone.
-class System {
+class StudySystem {
   template <class N>
   using Numbers = Eigen::Matrix<N, Eigen::Dynamic, 1>;
 
@@ -56,12 +58,12 @@ class System {
   using Vector = Eigen::VectorXd;
 
   /// The guide is known from 0 to the scene's t_end.
-  explicit System(const kreisel::SceneFile& scene);
-  System(const System&) = delete;
-  System& operator=(const System&) = delete;
-  ~System();
+  explicit StudySystem(const SceneFile& scene);
+  StudySystem(const StudySystem&) = delete;
+  StudySystem& operator=(const StudySystem&) = delete;
+  ~StudySystem();
 
-  [[nodiscard]] const kreisel::BodyTree& tree() const;
+  [[nodiscard]] const BodyTree& tree() const;
   [[nodiscard]] std::vector<int> blocks() const { return tree().blocks(); }
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
@@ -71,7 +73,7 @@ class System {
   requires(!std::same_as<Dual, double>)
       [[nodiscard]] Numbers<Dual> rates(const Dual& t, const Numbers<Dual>& y) const;
 
-  [[nodiscard]] kreisel::JointReactions reactions(double t, const Vector& y) const;
+  [[nodiscard]] JointReactions reactions(double t, const Vector& y) const;
 
   /// How the state matrix changes with ln of all rotors' momenta.
   [[nodiscard]] Eigen::MatrixXd momenta_slope(double t, const Vector& y) const;
@@ -83,7 +85,7 @@ class System {
   /// States by the precession equations at times in order, as far as they go: until the motion is
   /// no longer slow. Angles of rotors stay what they are.
   ///
-  /// Throws : kreisel::InvalidInput where there are no such equations; kreisel::ComputationFailed
+  /// Throws : InvalidInput where there are no such equations; ComputationFailed
   [[nodiscard]] std::vector<Vector> technical(const Vector& start,
                                               const std::vector<double>& times) const;
 
@@ -91,3 +93,5 @@ class System {
   class Bodies;
   std::unique_ptr<const Bodies> bodies_;
 };
+
+}  // namespace kreisel
