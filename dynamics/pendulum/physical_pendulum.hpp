@@ -23,7 +23,8 @@ namespace kreisel {
 namespace detail {
 
 /// How far a SteadyPendulumMotion is off at output times that are asked for in turn, by the measure of
-/// RunReport::error_estimate: in proportion to the greatest angle and rate so far.
+/// RunReport::error_estimate: in proportion to the greatest angle and rate so far, at outputs and on the
+/// way of the first period.
 template <class S>
 class SteadyPendulumMotionError {
  public:
@@ -33,9 +34,10 @@ class SteadyPendulumMotionError {
 
   [[nodiscard]] double operator()(double t, double smallest) {
     const S time = S(t) - begin_;
-    const auto point = motion_.at(time);
-    angle_ = std::max({angle_, smallest, std::abs(double(point.angle))});
-    rate_ = std::max({rate_, smallest, std::abs(double(point.rate))});
+    angle_ = std::max(angle_, smallest);
+    rate_ = std::max(rate_, smallest);
+    note_way(time);
+    note(time);
     constexpr double u = std::numeric_limits<double>::epsilon() / 2;
     const double off = double(motion_.phase_error(time) + inputs_ * motion_.phase(time));
     return 2 * u + off * double(std::max(motion_.angle_per_phase() / angle_,
@@ -43,9 +45,28 @@ class SteadyPendulumMotionError {
   }
 
  private:
+  void note(const S& time) {
+    const auto point = motion_.at(time);
+    angle_ = std::max(angle_, std::abs(double(point.angle)));
+    rate_ = std::max(rate_, std::abs(double(point.rate)));
+  }
+
+  /// Beyond the first period only angles of whole turns grow, which are greatest at the end.
+  void note_way(const S& time) {
+    using std::abs;
+    constexpr int parts = 32;  // of a period, within which sizes change by 1 %
+    const S part = motion_.period() / parts;
+    for (; noted_ <= parts; ++noted_) {
+      const S on_the_way = noted_ * part;
+      if (!(on_the_way < S(abs(time)))) return;
+      note(time < 0 ? S(-on_the_way) : on_the_way);
+    }
+  }
+
   SteadyPendulumMotion<S> motion_;
   double begin_;
   double inputs_;
+  int noted_ = 0;     ///< parts of a period
   double angle_ = 0;  ///< the greatest so far
   double rate_ = 0;
 };

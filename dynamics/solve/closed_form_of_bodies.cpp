@@ -125,9 +125,9 @@ class FlightError {
 
   [[nodiscard]] double operator()(Real time, double smallest) {
     constexpr double u = std::numeric_limits<double>::epsilon() / 2;
-    const auto place = flight_.place(time), velocity = flight_.velocity_after(time);
-    place_ = std::max({place_, smallest, double(place.cwiseAbs().maxCoeff())});
-    velocity_ = std::max({velocity_, smallest, double(velocity.cwiseAbs().maxCoeff())});
+    place_ = std::max(place_, smallest);
+    velocity_ = std::max(velocity_, smallest);
+    note_way(time);
     const Real fall = std::abs(time) * flight_.gravity.norm();
     const Real speed = flight_.velocity.norm() + fall;
     const Real way = flight_.start.norm() + std::abs(time) * speed;
@@ -137,6 +137,21 @@ class FlightError {
   }
 
  private:
+  void note(Real time) {
+    place_ = std::max(place_, double(flight_.place(time).cwiseAbs().maxCoeff()));
+    velocity_ = std::max(velocity_, double(flight_.velocity_after(time).cwiseAbs().maxCoeff()));
+  }
+
+  /// A component is greatest at the start, at the time or where it turns back between.
+  void note_way(Real time) {
+    note(0);
+    note(time);
+    for (int i = 0; i < 3; ++i) {
+      const Real top = -flight_.velocity[i] / flight_.gravity[i];
+      if (top / time > 0 && top / time < 1) note(top);
+    }
+  }
+
   Flight<Real> flight_;
   double place_ = 0;  ///< the greatest so far
   double velocity_ = 0;
