@@ -61,6 +61,7 @@ class Judge {
     if (faults_.empty()) judge_pairs();
     judge_reach();
     judge_cost();
+    judge_outputs();
     return faults_;
   }
 
@@ -211,6 +212,38 @@ class Judge {
                       answer.tolerance));
       return;
     }
+  }
+
+  /// That a report is the same whichever outputs are asked for: the sizes by which errors count, and
+  /// what is told of the end, as far as the same steps lead there.
+  void judge_outputs() {
+    const Answer& many = answers_.way;
+    const Answer& one = answers_.end;
+    if (!many.answered || !one.answered || !finite(many) || !finite(one)) return;
+    constexpr double most = 1.5;
+    for (std::size_t i = 0; i < std::min(many.sizes.size(), one.sizes.size()); ++i) {
+      const auto [less, more] = std::minmax(one.sizes[i], many.sizes[i]);
+      if (more <= most * less) continue;
+      add("report: sizes depend on the outputs asked for",
+          fmt::format("part {}: {:.3g} for the end alone, {:.3g} for {} outputs", i, one.sizes[i],
+                      many.sizes[i], many.states.size()));
+      return;
+    }
+    // What steps err by where they cross the knots of a spline depends on where that is.
+    if (scene_.has_log() || one.method != many.method || one.steps != many.steps) return;
+    const double told = std::max(one.estimate, many.estimate);
+    const double off = std::abs(one.end_error - many.end_error);
+    if (off <= (1 - 1 / most) * told + noise_of_pairs(one.steps)) return;
+    add("report: errors depend on the outputs asked for",
+        fmt::format("of the end {:.3g} for itself alone, {:.3g} for {} outputs, {:.3g} at most",
+                    one.end_error, many.end_error, many.states.size(), told));
+  }
+
+  /// What rounding alone makes of the difference of two errors that are told: each is 1.55 times the
+  /// distance of two runs, and each of these four walks by 2.5 units of 2^-53 a step at random. Three
+  /// times their standard deviation.
+  [[nodiscard]] static double noise_of_pairs(double steps) {
+    return 3 * 1.55 * 2.5 * 0x1p-53 * std::sqrt(4 * steps);
   }
 
   /// A spring without a damper oscillates for ever, and who asks has to resolve it: that radau13

@@ -62,10 +62,14 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
     answer.answered = report.status == kreisel::RunStatus::complete;
     answer.message = report.message;
     answer.method = report.method;
+    answer.changes = report.changes;
+    answer.sizes = report.sizes;
     answer.estimate = report.error_estimate;
     answer.tolerance = report.tolerance;
     answer.kept = report.tolerance_kept;
     answer.evaluations = report.all_evaluations;
+    answer.steps = report.effort.steps;
+    if (!run.errors.empty()) answer.end_error = run.errors.back();
     answer.times = run.times;
     for (const kreisel::JointState& state : run.states) {
       answer.states.push_back(values(model.tree(), scene, state));
@@ -82,15 +86,25 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
   return answer;
 }
 
+/// The same scene, computed no finer than to 1e-6.
+kreisel::SceneFile roughly(kreisel::SceneFile file) {
+  file.tolerance = std::max(file.tolerance, 1e-6);
+  return file;
+}
+
 /// The same scene at 300 times between its outputs, and at more and more before the first of them.
 kreisel::SceneFile with_many_outputs(kreisel::SceneFile file) {
-  constexpr int many = 300;
-  file.tolerance = std::max(file.tolerance, 1e-6);
+  constexpr int many = 320;
   file.output_times = {0};
   for (double part = 1e-8; part < 1; part *= 1.5) {
     file.output_times.push_back(part * (file.t_end / many));
   }
   for (int i = 1; i <= many; ++i) file.output_times.push_back(i * (file.t_end / many));
+  return file;
+}
+
+kreisel::SceneFile with_one_output(kreisel::SceneFile file) {
+  file.output_times = {file.t_end};
   return file;
 }
 
@@ -134,7 +148,9 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
       answers.by_method.push_back(run_by(*model, scene, file, method, limits));
     }
     begin("sizes");
-    answers.way = run_by(*model, scene, with_many_outputs(file), "auto", limits);
+    answers.way = run_by(*model, scene, with_many_outputs(roughly(file)), "auto", limits);
+    begin("the end alone");
+    answers.end = run_by(*model, scene, with_one_output(roughly(file)), "auto", limits);
   } catch (const std::exception& error) {
     answers.refused = error.what();
   }

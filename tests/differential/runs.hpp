@@ -29,14 +29,18 @@ struct Answer {
   bool answered = false;  ///< else `message` says why not
   bool out_of_budget = false;
   std::string message = {};
-  std::string method = {};  ///< that was taken
+  std::string method = {};   ///< that was taken
+  std::string changes = {};  ///< of it on the way
   double estimate = 0;
   double tolerance = 0;
   bool kept = false;
   double evaluations = 0;
+  double steps = 0;      ///< of the motion that is given
+  double end_error = 0;  ///< what is told of the last state
   std::vector<double> times = {};
   std::vector<JointValues> states = {};
   std::vector<Drift> drifts = {};
+  std::vector<double> sizes = {};  ///< of blocks, as RunReport::sizes has them
 };
 
 /// The same scene by several methods.
@@ -44,6 +48,7 @@ struct Answers {
   std::string refused = {};  ///< by the reader or when the system was made
   std::vector<Answer> by_method = {};
   Answer way = {};  ///< at many times and roughly, for the sizes that errors are measured by
+  Answer end = {};  ///< as roughly, with the end as its only output
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
 };
 
