@@ -354,6 +354,10 @@ class SceneReader {
     try {
       RatesLog log = read_rates_log(place->file, place->options);
       check_covers_run(guide, place->name, place->options, log.times);
+      if (gravity && log.accelerations.empty()) {
+        guide.refuse("gravity",
+                     "is what logged accelerations lack, and this log has none; leave it out");
+      }
       if (felt && !log.accelerations.empty() && !guide.has("gravity")) {
         rates_without_gravity_ = guide;
       }

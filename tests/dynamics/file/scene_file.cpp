@@ -149,6 +149,21 @@ BOOST_AUTO_TEST_CASE(integrate_logged_rates) {
   BOOST_CHECK_THROW((void)read("gravity = [0, 0, 1]\nsigma = -1\n"), SceneMistakes);
 }
 
+// A frame without logged accelerations is not accelerated, and does not fall either.
+BOOST_AUTO_TEST_CASE(rates_without_accelerations_do_not_fall) {
+  const test::Scratch folder;
+  (void)folder.write("log.csv", "t,wx,wy,wz\n0,0,0,1\n2,0,0,1\n4,0,0,1\n6,0,0,1\n");
+  const auto read = [&](const std::string& keys, const std::string& more = "") {
+    const std::string text =
+        "[guide]\nkind = \"rates\"\nfile = \"log.csv\"\n" + keys + more + body + run;
+    return parse_scene(text, folder.path() / "scene.toml");
+  };
+  const SceneFile scene = read("", "[gravity]\nkind = \"inertial\"\nvector = [0, 0, -9.81]\n");
+  const auto& rates = std::get<scene_guide::Rates>(scene.guide.front());
+  BOOST_TEST(rates.start.gravity.isZero(0));
+  BOOST_CHECK_THROW((void)read("gravity = [0, 0, -9.81]\n"), SceneMistakes);
+}
+
 BOOST_AUTO_TEST_CASE(chain_as_the_library_has_it) {
   struct Earth;
   struct Ship;
