@@ -12,8 +12,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-using namespace kreisel;
-
 namespace differential {
 
 namespace {

@@ -17,7 +17,7 @@ struct Verdict {
 };
 
 struct Examination {
-  std::vector<std::string> methods = {"auto", "verner98", "radau13", "taylor"};
+  std::vector<std::string> methods = {"auto", "verner98", "radau13", "taylor", "gauss16"};
   Limits limits = {};
   std::filesystem::path folder = {};  ///< for logs
 };

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace kreisel;
-
 namespace differential {
 
 namespace {
@@ -74,10 +72,16 @@ Angle angle(Random& r) {
   return {rounded(r.between(-3, 3), 2), false};
 }
 
-double rate(Random& r) {
+double speed(Random& r) {
   if (r.chance(0.5)) return 0;
   if (r.chance(0.08)) return sign(r) * r.pick({1e-12, 1e-6, 1e3});
   return sign(r) * plain(r, 0.01, 30);
+}
+
+/// An angular rate; most people write radian.
+Angle rate(Random& r, bool degrees = false) {
+  if (degrees) return {r.pick({0.0, 1.0, 10.0, 90.0, -360.0, 720.0}), true};
+  return {speed(r), false};
 }
 
 /// Oscillations, often of one frequency.
@@ -87,14 +91,26 @@ Series series(Random& r, double size, double frequency) {
   const int terms = r.below(3) + (s.constant.isZero(0) ? 1 : 0);
   for (int i = 0; i < terms; ++i) {
     const double w = r.chance(0.6) ? frequency : plain(r, 0.1, 10);
-    s.terms.push_back({size * plain(r, 0.1, 3) * direction(r), w, phase(r)});
+    const bool degrees = r.chance(0.1);
+    const Angle turning{degrees ? rounded(w / 0.0174533, 3) : w, degrees};
+    s.terms.push_back({size * plain(r, 0.1, 3) * direction(r), turning, phase(r)});
   }
   return s;
 }
 
+/// Where a frame that moves by its rates begins.
+void add_frame_start(Random& r, Link& link) {
+  if (r.chance(0.75)) return;
+  if (r.chance(0.7)) link.attitude = attitude(r);
+  if (r.chance(0.3)) link.origin_position = vector(r, 0.1, 10);
+  if (r.chance(0.5)) link.origin_velocity = vector(r, 0.1, 10);
+}
+
 Link rotating(Random& r) {
   Link link{.kind = LinkKind::rotating};
-  link.angular_velocity = vector(r, 0.01, 30);
+  link.turns_in_degrees = r.chance(0.15);
+  link.angular_velocity = link.turns_in_degrees ? Vector(vector(r, 1, 100)) : vector(r, 0.01, 30);
+  add_frame_start(r, link);
   if (r.chance(0.3)) link.origin_acceleration = vector(r, 0.1, 20);
   return link;
 }
@@ -103,7 +119,10 @@ Link harmonic(Random& r) {
   Link link{.kind = LinkKind::harmonic};
   const double frequency = plain(r, 0.1, 10);
   const bool turns = r.chance(0.8);
-  if (turns) link.turning = series(r, r.pick({0.1, 0.157, 1.0}), frequency);
+  link.turns_in_degrees = turns && r.chance(0.15);
+  const double size = r.pick({0.1, 0.157, 1.0});
+  if (turns) link.turning = series(r, link.turns_in_degrees ? 50 * size : size, frequency);
+  add_frame_start(r, link);
   if (!turns || r.chance(0.3)) link.pushing = series(r, 1, frequency);
   return link;
 }
@@ -114,33 +133,67 @@ Link earth(Random& r) {
       r.chance(0.5) ? r.pick({0.0, 30.0, 45.0, 50.0, 90.0, -90.0}) : rounded(r.between(-90, 90), 3);
   link.azimuth = r.chance(0.7) ? 90.0 * r.below(4) : rounded(r.between(0, 360), 3);
   link.height = r.chance(0.7) ? 0 : r.pick({100.0, 1000.0, 10000.0});
-  if (r.chance(0.1)) link.rate = r.pick({0.0, 1e-4, 1e-3});
+  if (r.chance(0.15)) {
+    link.rate = r.pick<Angle>({{0}, {1e-4}, {1e-3}, {0.00417807, true}, {0.01, true}});
+  }
   link.gravity = r.pick<const char*>({"\"normal\"", "\"normal\"", "9.81", "\"none\"", ""});
   return link;
 }
 
-/// Another way to write a log down than the plainest.
-Spelling spelling(Random& r) {
-  Spelling result;
-  result.separator = r.pick({',', ';', '\t', ' '});
-  result.decimal_comma = result.separator != ',' && r.chance(0.5);
-  result.time_unit = r.pick<std::string>({"s", "ms", "us"});
-  result.lines_before = r.pick({0, 0, 1, 3});
-  result.header_is_comment = r.chance(0.3);
-  result.scalar_comes_last = r.chance(0.5);
-  result.ends_with_cr = r.chance(0.3);
-  return result;
+/// The header and the columns.
+void spell_columns(Random& r, Spelling& how, bool of_rates) {
+  how.header = r.pick(
+      {LogHeader::usual, LogHeader::usual, LogHeader::named, LogHeader::numbered, LogHeader::none});
+  how.header_is_comment = how.header != LogHeader::none && r.chance(0.3);
+  if (how.header != LogHeader::none && r.chance(0.2)) how.lines_after = r.pick({1, 2});
+  how.lines_before = r.pick({0, 0, 1, 3});
+  how.columns_reversed = r.chance(0.4);
+  how.has_other_column = r.chance(0.2);
+  how.has_angles = !of_rates && r.chance(0.3);
+  how.in_degrees = (of_rates || how.has_angles) && r.chance(0.4);
 }
 
-Link table(Random& r) {
-  Link link{.kind = LinkKind::table};
+/// The time; whole nanoseconds since 1970 now and then.
+void spell_time(Random& r, Spelling& how) {
+  how.time_unit = r.pick<std::string>({"s", "ms", "us", "ns"});
+  if (r.chance(0.4)) how.time_zero = r.chance(0.5) ? 1'311'868'163'869'712'345 : 100'000'000'000;
+  how.begins_at_zero = r.chance(0.2);
+  how.has_window = r.chance(0.2) && !how.begins_at_zero;
+  if (r.chance(0.2)) {
+    how.longest_gap = r.chance(0.5) ? "\"any\"" : "1";
+  }
+  if (r.chance(0.2)) how.duplicates = r.pick<std::string>({"first", "last", "mean"});
+}
+
+/// Another way to write a log down than the plainest.
+void spell(Random& r, Log& log, bool of_rates) {
+  Spelling& how = log.spelling;
+  how.separator = r.pick({',', ';', '\t', ' '});
+  how.says_separator = r.chance(0.3);
+  how.decimal_comma = how.separator != ',' && r.chance(0.5);
+  how.ends_with_cr = r.chance(0.3);
+  spell_columns(r, how, of_rates);
+  spell_time(r, how);
+  if (r.chance(0.2)) how.sigma = r.pick<std::string>({"0", "[0, 0]", "1e-12", "[1e-12, 1e-11]"});
+}
+
+Link logged(Random& r, LinkKind kind) {
+  Link link{.kind = kind};
   link.log.axis = unit(r);
   link.log.amplitude = r.pick({0.05, 0.1, 0.2});
   link.log.frequency = plain(r, 0.3, 3);
   link.log.phase = phase(r).radian();
   if (r.chance(0.5)) link.log.shift = vector(r, 0.1, 2);
   link.log.step = 0.01 / link.log.frequency;
-  if (r.chance(0.5)) link.log.spelling = spelling(r);
+  if (r.chance(0.5)) spell(r, link.log, kind == LinkKind::rates);
+  // Angles are those of any attitude, but beside the lock of the gimbals.
+  if (!link.log.spelling.has_angles && r.chance(0.3)) link.log.from = attitude(r);
+  return link;
+}
+
+Link rates(Random& r) {
+  Link link = logged(r, LinkKind::rates);
+  link.log.is_kinematic = r.chance(0.3);
   return link;
 }
 
@@ -149,14 +202,26 @@ Link any_link(Random& r, bool first) {
   if (u < 0.25) return rotating(r);
   if (u < 0.55) return harmonic(r);
   if (u < 0.75 && first) return earth(r);
-  if (u < 0.85) return table(r);
-  return u < 0.9 ? Link{} : rotating(r);
+  if (u < 0.83) return logged(r, LinkKind::table);
+  if (u < 0.9 && first) return rates(r);
+  return u < 0.93 ? Link{} : rotating(r);
 }
 
 void add_guide(Random& r, Scene& scene) {
   if (r.chance(0.3)) return;
   scene.guide.push_back(any_link(r, true));
   while (scene.guide.size() < 3 && r.chance(0.15)) scene.guide.push_back(any_link(r, false));
+  scene.chain_in_chain = scene.guide.size() > 1 && r.chance(0.3);
+}
+
+/// What accelerometers lack.
+void add_gravity_of_log(Random& r, Scene& scene) {
+  if (scene.guide.empty() || scene.guide.front().kind != LinkKind::rates) return;
+  Log& log = scene.guide.front().log;
+  if (log.is_kinematic) return;
+  log.says_gravity =
+      !log.shift.isZero(0) && (scene.gravity != GravityKind::inertial || r.chance(0.3));
+  log.gravity = log.says_gravity ? Vector(9.81 * direction(r)) : scene.gravity_vector;
 }
 
 void add_gravity(Random& r, Scene& scene) {
@@ -215,6 +280,7 @@ void add_initial(Random& r, Body& body) {
   if (r.chance(0.15)) return;
   const int n = single_coordinates(body.kind);
   const bool moves = r.chance(0.5);
+  const bool in_degrees = body.kind != JointKind::prismatic && r.chance(0.15);
   for (int i = 0; i < n; ++i) {
     if (body.kind == JointKind::prismatic) {
       body.displacement = r.chance(0.5) ? 0 : angle(r).radian();
@@ -222,14 +288,15 @@ void add_initial(Random& r, Body& body) {
       body.angle.push_back(angle(r));
       body.angle.back().degrees = body.angle.front().degrees;
     }
-    if (moves) body.rate.push_back(rate(r));
+    if (moves) body.rate.push_back(rate(r, in_degrees));
   }
   if (n > 0 || body.kind == JointKind::fixed) return;
   if (r.chance(0.5)) body.attitude = attitude(r);
-  if (moves) body.angular_velocity = rate(r) * direction(r);
+  if (moves) body.angular_velocity = rate(r, in_degrees).value * direction(r);
+  body.turns_in_degrees = in_degrees;
   if (body.kind != JointKind::free) return;
   if (r.chance(0.5)) body.place = vector(r, 0.1, 3);
-  if (moves) body.velocity = rate(r) * direction(r);
+  if (moves) body.velocity = speed(r) * direction(r);
 }
 
 /// A number for each coordinate.
@@ -254,7 +321,9 @@ void add_joint_forces(Random& r, Body& body) {
         r.chance(0.7) ? plain(r, 0.1, 100) : r.pick({1e3, 1e4, 1e6, 1e8, 1e10});
     body.stiffness = for_each_coordinate(n, stiffness, r.chance(0.5) ? stiffness : 1);
     if (r.chance(0.3)) {
-      body.rest = for_each_coordinate(n, rounded(r.between(-1, 1), 1), 0);
+      const bool degrees = body.kind != JointKind::prismatic && r.chance(0.3);
+      body.rest = {{rounded(r.between(-1, 1), 1) * (degrees ? 50 : 1), degrees}};
+      if (n == 2) body.rest.push_back({0, degrees});
     }
   }
   const double damped = body.stiffness.empty() ? 0.2 : 0.6;
@@ -303,7 +372,9 @@ Body rotor(Random& r, int carrier) {
   body.inertia[static_cast<std::size_t>(along)] = about;
   Rotor rotor;
   rotor.mode = r.pick({RotorMode::free, RotorMode::regulated, RotorMode::torque});
-  rotor.speed = sign(r) * r.pick({1.0, 10.0, 50.0, 100.0, 300.0});
+  rotor.speed = {sign(r) * r.pick({1.0, 10.0, 50.0, 100.0, 300.0}), false};
+  if (r.chance(0.15)) rotor.speed = {sign(r) * r.pick({360.0, 3600.0}), true};
+  rotor.speed_is_initial = r.chance(0.15);
   if (rotor.mode == RotorMode::torque) rotor.torque = r.chance(0.5) ? 0 : sign(r) * about;
   if (rotor.mode != RotorMode::free && r.chance(0.2)) body.damping = {0.01 * about};
   body.rotor = rotor;
@@ -372,7 +443,7 @@ Link aligned_link(Random& r) {
     const double amplitude = r.pick({0.157, 0.1, 1.0});
     const Angle phase{90.0 * r.below(4), true};
     (r.chance(0.8) ? link.turning : link.pushing)
-        .terms.push_back({amplitude * unit(r), frequency, phase});
+        .terms.push_back({amplitude * unit(r), {frequency}, phase});
   }
   return link;
 }
@@ -439,6 +510,104 @@ void add_cardan_gyro(Random& r, Scene& scene) {
   scene.bodies.push_back(wheel);
 }
 
+/// A number of either sign that is not small against what it is for.
+double small(Random& r, double size) { return sign(r) * size * r.between(0.5, 1); }
+
+/// Rings that hardly move about a rotor, as the equations of the papers have it.
+void add_small_gimbals(Random& r, Scene& scene, bool symmetric) {
+  const int first = r.below(3);
+  const double size = r.pick({0.01, 0.03});
+  for (int i = 0; i < 2; ++i) {
+    Body ring;
+    ring.parent = i - 1;
+    ring.axis = Vector::Unit((first + i) % 3);
+    ring.mass = plain(r, 0.1, 2);
+    ring.inertia = {0.002, 0.002, 0.002};
+    for (double& moment : ring.inertia) moment = 0.002 * rounded(r.between(1, 1.5), 2);
+    ring.angle = {{small(r, size), false}};
+    if (r.chance(0.5)) ring.rate = {{small(r, size), false}};
+    if (r.chance(0.5)) ring.stiffness = {r.pick({0.01, 0.1, 0.5})};
+    if (r.chance(0.5)) ring.damping = {r.pick({1e-4, 1e-3})};
+    scene.bodies.push_back(ring);
+  }
+  Body wheel;
+  wheel.parent = 1;
+  const auto along = static_cast<std::size_t>((first + 2) % 3);
+  wheel.axis = Vector::Unit(static_cast<int>(along));
+  wheel.inertia = {0.005, 0.005, 0.005};
+  wheel.inertia[along] = 0.008;
+  if (!symmetric) wheel.inertia[static_cast<std::size_t>(first)] = 0.0055;
+  const double speed = sign(r) * r.pick({10.0, 30.0, 100.0});
+  if (symmetric) {
+    wheel.rotor =
+        Rotor{.mode = r.pick({RotorMode::free, RotorMode::regulated}), .speed = {speed, false}};
+  } else {
+    wheel.drive = true;
+    wheel.rate = {{speed, false}};
+    wheel.angle = {angle(r)};
+  }
+  scene.bodies.push_back(wheel);
+  scene.model = symmetric ? "foeppl" : "fuchs-weigand";
+}
+
+/// Pendulums that hardly swing about where they hang or stand, on a guide that may turn about the
+/// vertical.
+void add_small_pendulums(Random& r, Scene& scene) {
+  const int along = r.below(3);
+  const Vector down = sign(r) * Vector::Unit(along);
+  scene.gravity = r.pick({GravityKind::uniform, GravityKind::inertial});
+  scene.gravity_vector = 9.81 * down;
+  if (r.chance(0.6)) {
+    scene.guide = {Link{.kind = LinkKind::rotating}};
+    scene.guide.front().angular_velocity = r.pick({0.1, 1.0, 3.0}) * down;
+  }
+  const int bodies = 1 + r.below(3);
+  for (int i = 0; i < bodies; ++i) {
+    Body body;
+    body.parent = i - 1;
+    body.kind = r.chance(0.6) ? JointKind::revolute : JointKind::universal;
+    const int across = 1 + r.below(2);
+    body.axis = sign(r) * Vector::Unit((along + across) % 3);
+    body.second_axis = Vector::Unit((along + 3 - across) % 3);
+    body.mass = plain(r, 0.1, 10);
+    body.centre = plain(r, 0.2, 2) * down;
+    if (i > 0) body.position = plain(r, 0.2, 2) * down;
+    for (double& moment : body.inertia) moment = body.mass * rounded(r.between(0.1, 0.15), 2);
+    for (int k = 0; k < single_coordinates(body.kind); ++k) {
+      body.angle.push_back({small(r, 0.01), false});
+    }
+    if (r.chance(0.3)) add_damping(r, body, single_coordinates(body.kind));
+    scene.bodies.push_back(body);
+  }
+  scene.model = "linear";
+}
+
+/// A fast rotor in rings, the inner of which is heavy on one side.
+void add_fast_gyro(Random& r, Scene& scene) {
+  add_small_gimbals(r, scene, true);
+  for (Body& body : scene.bodies) body.stiffness.clear(), body.damping.clear(), body.rate.clear();
+  scene.bodies.back().rotor->mode = RotorMode::regulated;
+  scene.bodies.back().rotor->speed = {sign(r) * r.pick({1000.0, 2000.0}), false};
+  const auto axis = scene.bodies.back().axis;
+  scene.bodies[1].centre = 0.05 * axis;
+  scene.gravity = GravityKind::uniform;
+  scene.gravity_vector = 9.81 * scene.bodies[0].axis;
+  scene.model = "precession";
+}
+
+void add_approximation(Random& r, Scene& scene) {
+  scene.guide.clear();
+  const double u = r.uniform();
+  if (u < 0.4) {
+    add_small_pendulums(r, scene);
+  } else if (u < 0.85) {
+    add_small_gimbals(r, scene, r.chance(0.5));
+  } else {
+    add_fast_gyro(r, scene);
+  }
+  scene.t_end = r.pick({0.1, 0.5, 1.0});
+}
+
 void add_solve(Random& r, Scene& scene) {
   scene.tolerance = r.pick({1e-10, 1e-10, 1e-8, 1e-6, 1e-9, 1e-3, 1e-12});
   scene.t_end = r.chance(0.85) ? r.pick({0.1, 1.0, 2.0, 5.0, 10.0, 20.0})
@@ -449,6 +618,11 @@ void add_solve(Random& r, Scene& scene) {
   if (harmonic) scene.t_end = std::min(scene.t_end, 1e3);
   if (scene.has_log()) scene.t_end = std::min(scene.t_end, 10.0);
   scene.outputs = r.pick({1, 2, 20, 20, 20, 100});
+  scene.reports = r.chance(0.3);
+  if (r.chance(0.2)) {
+    scene.method = r.pick<std::string>({"auto", "automatic", "closed form", "taylor", "verner98",
+                                        "gauss16", "radau13", "splitting"});
+  }
 }
 
 }  // namespace
@@ -457,7 +631,14 @@ Scene generate(Random r) {
   Scene scene;
   add_guide(r, scene);
   add_gravity(r, scene);
+  add_gravity_of_log(r, scene);
+  if (r.chance(0.1)) scene.title = "Made by chance";
   const double u = r.uniform();
+  if (u < 0.06) {
+    add_approximation(r, scene);
+    scene.outputs = 20;
+    return scene;
+  }
   if (u < 0.2) {
     add_pendulums(r, scene);
   } else if (u < 0.35) {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <regex>
 
-using namespace kreisel;
-
 namespace differential {
 
 namespace {
@@ -50,6 +48,8 @@ class Judge {
     for (const std::string& term : answers_.contradictions) {
       add("report: a term is both kept and dropped", term);
     }
+    if (answers_.misread) add("reader: title, method or report is not what is written", "");
+    judge_reactions();
     for (const Answer& answer : answers_.by_method) {
       judge_failure(answer);
       if (!answer.answered) continue;
@@ -62,6 +62,7 @@ class Judge {
     judge_reach();
     judge_cost();
     judge_outputs();
+    judge_model();
     return faults_;
   }
 
@@ -107,6 +108,21 @@ class Judge {
     }
     if (answer.states.size() < scene_.times().size()) {
       add("report: complete, and outputs are missing", fmt::format("{}", answer.states.size()));
+    }
+  }
+
+  /// Forces that joints carry at the start, by the balance of each body.
+  void judge_reactions() {
+    if (answers_.reactions.empty()) return;
+    const std::vector<double> right = start_reactions(scene_);
+    double size = 1;
+    for (const double x : right) size = std::max(size, std::abs(x));
+    for (std::size_t i = 0; i < right.size(); ++i) {
+      const double off = std::abs(answers_.reactions[i] - right[i]);
+      if (off <= (1e-9 + unknown()) * size) continue;
+      add("reactions are wrong", fmt::format("number {} of body {}: {} instead of {}", i % 6, i / 6,
+                                             answers_.reactions[i], right[i]));
+      return;
     }
   }
 
@@ -212,6 +228,41 @@ class Judge {
                       answer.tolerance));
       return;
     }
+  }
+
+  /// That an approximation tells how far it is off, and comes nearer to the exact motion as fast as
+  /// its equations should: what is wrong in them at first order does so in proportion alone.
+  void judge_model() {
+    if (!answers_.approximate) return;
+    const auto& [answer, model_error, off, nearer_off] = *answers_.approximate;
+    if (!answer.answered) {
+      add("model " + scene_.model + " fails: " + without_numbers(answer.message), answer.message);
+      return;
+    }
+    judge_model_error(answer, model_error);
+    const bool is_small = model_error <= 0.1 && off > 1e4 * answer.tolerance;
+    // Halves of a third, and of a second order; the nutations fall with the square of the speed.
+    const double most = scene_.model == "linear" || scene_.model == "precession" ? 0.35 : 0.2;
+    if (!is_small || nearer_off <= most * off) return;
+    add("model " + scene_.model + " has another order",
+        fmt::format("off by {:.3g}, nearer by {:.3g}", off, nearer_off));
+  }
+
+  void judge_model_error(const Answer& answer, double model_error) {
+    if (!reference_.complete) return;
+    Distance distance(scene_);
+    note_way(distance, scene_.t_end);
+    for (const JointValues& truth : reference_.others) distance.note(truth);
+    double off = 0;
+    for (std::size_t i = 0; i < reference_.others.size(); ++i) {
+      const JointValues* const y = state_at(answer, reference_.times[i]);
+      if (y != nullptr) off = std::max(off, distance(*y, reference_.others[i]));
+    }
+    if (std::abs(off - model_error) <= 0.05 * std::max(off, model_error) + 10 * answer.tolerance) {
+      return;
+    }
+    add("model " + scene_.model + " tells another error",
+        fmt::format("{:.3g}, and is off by {:.3g}", model_error, off));
   }
 
   /// That a report is the same whichever outputs are asked for: the sizes by which errors count, and

@@ -2,6 +2,7 @@
 // its own; what differs is a fault, and its scene is shrunk and kept.
 //
 // generate.cpp  scenes over the whole language, weighted towards what people write
+// log.cpp       logs of guides, and the ways to write them down
 // runs.cpp      the library, through what simulate runs a scene file by
 // reference*    the independent integrator: no code of dynamics/
 // judge.cpp     what counts as a fault
@@ -29,8 +30,6 @@
 #include "examine.hpp"
 #include "generate.hpp"
 #include "shrink.hpp"
-
-using namespace kreisel;
 
 namespace {
 
@@ -130,10 +129,7 @@ void keep(const Request& request, const Number& number, const Scene& scene, cons
   const auto write = [&folder, &fault](const Scene& s, const char* name) {
     std::ofstream(folder / name) << "# " << fault.kind << "\n# " << fault.detail << "\n"
                                  << to_toml(s);
-    for (std::size_t i = 0; i < s.guide.size(); ++i) {
-      if (s.guide[i].kind != LinkKind::table) continue;
-      std::ofstream(folder / log_name(i)) << s.guide[i].log.csv(s.t_end);
-    }
+    write_logs(s, folder);
   };
   write(scene, fmt::format("seed-{}-{}.toml", number.seed, number.index).c_str());
   const auto fails = [&](const Scene& tried) {

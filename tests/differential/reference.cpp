@@ -6,8 +6,6 @@
 
 #include "reference_tree.hpp"
 
-using namespace kreisel;
-
 namespace differential {
 
 namespace {
@@ -96,7 +94,7 @@ Scene moved(Scene scene) {
   };
   for (Body& body : scene.bodies) {
     for (Angle& angle : body.angle) move(angle.value);
-    for (double& x : body.rate) move(x);
+    for (Angle& rate : body.rate) move(rate.value);
     move(body.displacement);
     for (Vector* const v : {&body.angular_velocity, &body.velocity}) {
       for (double& x : *v) move(x);
@@ -180,6 +178,12 @@ std::vector<int> blocks(const Scene& scene) {
     }
   }
   return result;
+}
+
+std::vector<double> start_reactions(const Scene& scene) {
+  Tree tree(scene);
+  const State start = tree.start();
+  return tree.reactions(0, start);
 }
 
 ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times, double work) {

@@ -33,6 +33,10 @@ struct ReferenceMotion {
   Sizes sizes = {};  ///< the greatest on the way
 };
 
+/// What each body's parent exerts on it at the start: three numbers of force and three of torque about
+/// the body's origin, on body axes.
+[[nodiscard]] std::vector<double> start_reactions(const Scene& scene);
+
 /// `work` is about the number of floating point operations that may be spent.
 [[nodiscard]] ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times,
                                         double work);

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-using namespace kreisel;
-
 namespace differential::reference {
 
 namespace {
@@ -20,13 +18,14 @@ struct Oscillation {
   Vec rate;
 };
 
-Oscillation at(const Series& s, Real t) {
-  Oscillation sum{wide(s.constant), Vec::Zero()};
+Oscillation at(const Series& s, Real t, bool degrees = false) {
+  Oscillation sum{wide(radian(s.constant, degrees)), Vec::Zero()};
   for (const Series::Term& term : s.terms) {
-    const auto w = Real(term.frequency);
+    const auto w = Real(term.frequency.radian());
     const Real angle = w * t + Real(term.phase.radian());
-    sum.value += std::sin(angle) * wide(term.amplitude);
-    sum.rate += w * std::cos(angle) * wide(term.amplitude);
+    const Vec amplitude = wide(radian(term.amplitude, degrees));
+    sum.value += std::sin(angle) * amplitude;
+    sum.rate += w * std::cos(angle) * amplitude;
   }
   return sum;
 }
@@ -49,7 +48,7 @@ std::pair<Real, Real> sine_cosine(double degrees) {
   return {s, c};
 }
 
-Real rate_of(const Link& link) { return link.rate ? Real(*link.rate) : earth_rate; }
+Real rate_of(const Link& link) { return link.rate ? Real(link.rate->radian()) : earth_rate; }
 
 bool has_number(const Link& link) { return !link.gravity.empty() && link.gravity.front() != '"'; }
 
@@ -101,15 +100,17 @@ Motion earth(const Link& link, Real t) {
   return motion;
 }
 
+/// About the axis on inertial axes, on which `from` has brought it.
 Motion logged(const Log& log, Real t) {
   const auto f = Real(log.frequency);
   const Real angle = f * t + Real(log.phase);
   const Real s = std::sin(angle);
   const Real ds = f * std::cos(angle);
   const Real dds = -f * f * s;
-  const Vec axis = wide(log.axis).normalized();
+  const Mat from = unit_quaternion(log.from).toRotationMatrix();
+  const Vec axis = from * wide(log.axis).normalized();
   const auto A = Real(log.amplitude);
-  return {Eigen::AngleAxis<Real>(A * s, axis).toRotationMatrix(),
+  return {Eigen::AngleAxis<Real>(A * s, axis).toRotationMatrix() * from,
           A * ds * axis,
           A * dds * axis,
           s * wide(log.shift),
@@ -134,6 +135,13 @@ Motion on(const Motion& base, const Motion& own) {
 }
 
 }  // namespace
+
+Quat unit_quaternion(const std::optional<Eigen::Vector4d>& q) {
+  if (!q) return Quat::Identity();
+  const Eigen::Quaterniond unit =
+      Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
+  return unit.cast<Real>().normalized();
+}
 
 Vec ellipsoid_gravitation(const Vec& place) {
   constexpr Real gm = 3.986004418e14L;
@@ -169,17 +177,24 @@ Guide::Guide(const Scene& scene) : scene_(scene) {
 }
 
 void Guide::start(State& y) const {
-  y.head(size_).setZero();
-  for (Eigen::Index i = 0; i < size_; i += 10) y[i + 3] = 1;  // quaternion x, y, z, w
+  Eigen::Index begin = 0;
+  for (const Link& link : scene_.guide) {
+    if (!has_state(link)) continue;
+    y.segment<4>(begin) = unit_quaternion(link.attitude).coeffs();
+    y.segment<3>(begin + 4) = wide(link.origin_position);
+    y.segment<3>(begin + 7) = wide(link.origin_velocity);
+    begin += 10;
+  }
 }
 
 Motion Guide::own(const Link& link, Real t, const Real* y, Real* rates) const {
   if (link.kind == LinkKind::earth) return earth(link, t);
-  if (link.kind == LinkKind::table) return logged(link.log, t);
+  if (link.is_logged()) return logged(link.log, t);
   if (link.kind == LinkKind::inertial) return {};
-  const Oscillation u = link.kind == LinkKind::harmonic
-                            ? differential::reference::at(link.turning, t)
-                            : Oscillation{wide(link.angular_velocity), Vec::Zero()};
+  const Oscillation u =
+      link.kind == LinkKind::harmonic
+          ? differential::reference::at(link.turning, t, link.turns_in_degrees)
+          : Oscillation{wide(radian(link.angular_velocity, link.turns_in_degrees)), Vec::Zero()};
   const Vec push = link.kind == LinkKind::harmonic
                        ? differential::reference::at(link.pushing, t).value
                        : wide(link.origin_acceleration);

@@ -50,6 +50,9 @@ class Guide {
   Eigen::Index size_ = 0;
 };
 
+/// A quaternion w, x, y, z of the file, as the library rounds it; no turn where there is none.
+[[nodiscard]] Quat unit_quaternion(const std::optional<Eigen::Vector4d>& q);
+
 /// The gravitation of the WGS84 ellipsoid, its rotation left out, at a place from the earth's
 /// centre, z to the pole.
 ///

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-using namespace kreisel;
-
 namespace differential::reference {
 
 namespace {
@@ -14,10 +12,7 @@ constexpr Real two_pi = 2 * 3.14159265358979323846264338327950288L;
 Vec wide(const Vector& v) { return v.cast<Real>(); }
 
 Mat turn_by(const std::optional<Eigen::Vector4d>& q) {
-  if (!q) return Mat::Identity();
-  const Eigen::Quaterniond unit =
-      Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
-  return unit.cast<Real>().normalized().toRotationMatrix();
+  return unit_quaternion(q).toRotationMatrix();
 }
 
 Mat about(const Vec& axis, Real angle) {
@@ -50,8 +45,12 @@ Real turn_between(const Vec& axis, const Vec& from, const Vec& to) {
   return std::atan2(axis.dot(a.cross(b)), a.dot(b));
 }
 
-Real at_or(const std::vector<double>& list, std::size_t i) {
-  return i < list.size() ? Real(list[i]) : Real(0);
+Real number(double x) { return Real(x); }
+Real number(const Angle& angle) { return Real(angle.radian()); }
+
+template <class T>
+Real at_or(const std::vector<T>& list, std::size_t i) {
+  return i < list.size() ? number(list[i]) : Real(0);
 }
 
 Real nearest_turn(Real measured, Real near) {
@@ -89,7 +88,7 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
     part.angles = size_;
     part.held = body.hold || body.kind == JointKind::fixed;
     part.driven = body.drive || (body.rotor && body.rotor->mode == RotorMode::regulated);
-    part.speed = body.rotor ? Real(body.rotor->speed) : at_or(body.rate, 0);
+    part.speed = body.rotor ? number(body.rotor->speed) : at_or(body.rate, 0);
     if (body.kind == JointKind::revolute) size_ += 1;
     if (body.kind == JointKind::universal) size_ += 2;
     rows += rows_of(body, part.held, part.driven);
@@ -155,7 +154,7 @@ void Tree::start_body(int body, State& y, std::vector<Pose>& poses) {
       [[fallthrough]];
     case JointKind::spherical:
       if (b.attitude) turn = turn_by(b.attitude);
-      w = turn * wide(b.angular_velocity);
+      w = turn * wide(radian(b.angular_velocity, b.turns_in_degrees));
       break;
     case JointKind::fixed: break;
   }
@@ -349,9 +348,7 @@ void Tree::add_joint_force(int body, const State& y) {
   if (b.stiffness.empty() && b.damping.empty() && b.force.empty() && !b.rotor) return;
   const Relative r = relative(body);
   const auto force = [&b](std::size_t i, Real q, Real rate) {
-    const auto one = [i](const std::vector<double>& list) {
-      return list.size() == 1 ? Real(list.front()) : at_or(list, i);
-    };
+    const auto one = [i](const auto& list) { return at_or(list, list.size() == 1 ? 0 : i); };
     return one(b.force) - one(b.stiffness) * (q - one(b.rest)) - one(b.damping) * rate;
   };
   if (b.kind == JointKind::spherical) {
@@ -516,6 +513,46 @@ Sizes Tree::sizes(Real t, const State& y) {
     }
   }
   return sum;
+}
+
+std::vector<double> Tree::reactions(Real t, const State& y) {
+  State rate(size_);
+  rates(t, y, rate);
+  const Motion guide = guide_.at(t, y, rate);
+  const auto n = static_cast<Eigen::Index>(poses_.size());
+  const State accelerations = solution_.head(6 * n);
+  // What is left of each body's balance without its joints, about its centre of mass.
+  right_.setZero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at_body = static_cast<std::size_t>(i);
+    const Part& part = parts_[at_body];
+    const Pose& b = poses_[at_body];
+    const Mat I = b.R * part.inertia * b.R.transpose();
+    if (part.mass > 0) {
+      right_.segment<3>(6 * i) = part.mass * (guide_.gravity(t, guide, b.x) - guide.a);
+    }
+    right_.segment<3>(6 * i) -= part.mass * accelerations.segment<3>(6 * i);
+    right_.segment<3>(6 * i + 3) -= I * accelerations.segment<3>(6 * i + 3) + b.w.cross(I * b.w);
+    for (const Load& load : scene_.bodies[at_body].loads) {
+      add_load(load, static_cast<int>(i), guide);
+    }
+  }
+  std::vector<double> result(static_cast<std::size_t>(6 * n));
+  for (Eigen::Index i = n; i-- > 0;) {
+    const Relative r = relative(static_cast<int>(i));
+    const Vec force = -right_.segment<3>(6 * i);
+    const Vec torque = -right_.segment<3>(6 * i + 3) - r.arm.cross(force);
+    const int parent = parents_[static_cast<std::size_t>(i)];
+    if (parent >= 0) {
+      right_.segment<3>(6 * parent) -= force;
+      right_.segment<3>(6 * parent + 3) -= torque + r.reach.cross(force);
+    }
+    const Mat to_body = poses_[static_cast<std::size_t>(i)].R.transpose();
+    const auto begin = result.begin() + 6 * i;
+    const Vec on_axes[] = {to_body * force, to_body * torque};
+    for (int k = 0; k < 6; ++k) *(begin + k) = static_cast<double>(on_axes[k / 3][k % 3]);
+  }
+  return result;
 }
 
 JointValues Tree::values(Real t, const State& y) {

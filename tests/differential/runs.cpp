@@ -1,10 +1,11 @@
 #include "runs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <exception>
-#include <fstream>
 #include <memory>
+#include <numeric>
 #include <set>
 
 #include <dynamics/file/model.hpp>
@@ -108,6 +109,70 @@ kreisel::SceneFile with_one_output(kreisel::SceneFile file) {
   return file;
 }
 
+/// The greatest difference of a number of the state, but for rotors, whose speed approximations leave
+/// as it is.
+double greatest_difference(Scene scene, const Answer& a, const Answer& b) {
+  while (scene.bodies.back().rotor) scene.bodies.pop_back();
+  const std::vector<int> carriers = blocks(scene);
+  const int count = std::accumulate(carriers.begin(), carriers.end(), 0);
+  double greatest = 0;
+  for (std::size_t i = 0; i < std::min(a.states.size(), b.states.size()); ++i) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      greatest = std::max(greatest, std::abs(a.states[i][k] - b.states[i][k]));
+    }
+  }
+  return greatest;
+}
+
+kreisel::SceneFile without_model(kreisel::SceneFile file) {
+  file.model = kreisel::SceneModel::exact;
+  return file;
+}
+
+/// By the model of the file, and how far that is off the exact motion.
+std::pair<Answer, double> run_approximation(const Scene& scene, const kreisel::SceneFile& file,
+                                            const kreisel::SceneSolver& model,
+                                            const Limits& limits) {
+  const auto exact_file = without_model(file);
+  const Answer exact = run_by(*make_model(exact_file), scene, exact_file, "auto", limits);
+  Answer answer = run_by(model, scene, file, "auto", limits);
+  const double off = greatest_difference(scene, answer, exact);
+  return {std::move(answer), off};
+}
+
+Approximate approximate(const Scene& scene, const kreisel::SceneFile& file, const Limits& limits) {
+  const auto model = make_model(file);
+  auto [answer, off] = run_approximation(scene, file, *model, limits);
+  const Scene near = nearer(scene);
+  const kreisel::SceneFile near_file = kreisel::parse_scene(to_toml(near), "nearer.toml");
+  const auto near_off = run_approximation(near, near_file, *make_model(near_file), limits).second;
+  return {std::move(answer), model->model_error(), off, near_off};
+}
+
+/// Whether equal steps are worth the time: a motion that is short, smooth and not stiff.
+bool suits_equal_steps(const Scene& scene, const Answer& automatic) {
+  return automatic.answered && automatic.method != "radau13" && automatic.evaluations < 1000 &&
+         !scene.has_log();
+}
+
+std::vector<double> reactions(const kreisel::SceneSolver& model, const kreisel::SceneFile& file) {
+  std::vector<double> result;
+  const kreisel::JointReactions carried = model.reactions(0, start_of(file));
+  for (const auto& on_body : carried.on_body) {
+    const auto& [force, torque] = on_body.value;
+    result.insert(result.end(), force.begin(), force.end());
+    result.insert(result.end(), torque.begin(), torque.end());
+  }
+  return result;
+}
+
+bool misread(const Scene& scene, const kreisel::SceneFile& file) {
+  const bool other_method =
+      !scene.method.empty() && file.method != kreisel::method_named(scene.method);
+  return other_method || file.title != scene.title || file.reactions != scene.reports ||
+         file.terms != scene.reports;
+}
+
 /// Terms that the report both keeps and drops.
 std::vector<std::string> contradictions(const kreisel::Terms& terms) {
   std::set<std::string> kept;
@@ -136,21 +201,32 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
   Answers answers;
   try {
     begin("reader");
-    for (std::size_t i = 0; i < scene.guide.size(); ++i) {
-      if (scene.guide[i].kind != LinkKind::table) continue;
-      std::ofstream(folder / log_name(i)) << scene.guide[i].log.csv(scene.t_end);
-    }
+    write_logs(scene, folder);
     const kreisel::SceneFile file = kreisel::parse_scene(to_toml(scene), folder / "scene.toml");
-    const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
+    const kreisel::SceneFile exact_file = without_model(file);
+    const std::unique_ptr<kreisel::SceneSolver> model = make_model(exact_file);
     answers.contradictions = contradictions(model->equation_terms());
+    answers.misread = misread(scene, file);
     for (const std::string& method : methods) {
+      const auto& before = answers.by_method;
+      if (method == "gauss16" && !before.empty() && !suits_equal_steps(scene, before.front())) {
+        continue;
+      }
       begin(method);
-      answers.by_method.push_back(run_by(*model, scene, file, method, limits));
+      answers.by_method.push_back(run_by(*model, scene, exact_file, method, limits));
+    }
+    if (file.reactions && answers.by_method.front().answered) {
+      begin("reactions");
+      answers.reactions = reactions(*model, file);
     }
     begin("sizes");
-    answers.way = run_by(*model, scene, with_many_outputs(roughly(file)), "auto", limits);
+    answers.way = run_by(*model, scene, with_many_outputs(roughly(exact_file)), "auto", limits);
     begin("the end alone");
-    answers.end = run_by(*model, scene, with_one_output(roughly(file)), "auto", limits);
+    answers.end = run_by(*model, scene, with_one_output(roughly(exact_file)), "auto", limits);
+    if (!scene.model.empty()) {
+      begin("model " + scene.model);
+      answers.approximate = approximate(scene, file, limits);
+    }
   } catch (const std::exception& error) {
     answers.refused = error.what();
   }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,13 +44,24 @@ struct Answer {
   std::vector<double> sizes = {};  ///< of blocks, as RunReport::sizes has them
 };
 
+/// What an approximation says of a scene.
+struct Approximate {
+  Answer answer = {};
+  double model_error = 0;  ///< that is told
+  double off = 0;  ///< from the exact motion: the greatest difference of a number of the state
+  double nearer_off = 0;  ///< the same of nearer()
+};
+
 /// The same scene by several methods.
 struct Answers {
   std::string refused = {};  ///< by the reader or when the system was made
   std::vector<Answer> by_method = {};
   Answer way = {};  ///< at many times and roughly, for the sizes that errors are measured by
   Answer end = {};  ///< as roughly, with the end as its only output
+  std::optional<Approximate> approximate = {};   ///< where the scene asks for a model
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
+  std::vector<double> reactions = {};            ///< at the start, as start_reactions() has them
+  bool misread = false;                          ///< what the file asks for beside the motion
 };
 
 /// Runs the scene's text by the library, by each method in turn. `folder` is where its logs lie;

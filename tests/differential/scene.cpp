@@ -4,31 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <iterator>
-
-using namespace kreisel;
+#include <fstream>
 
 namespace differential {
 
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
-
-/// The fewest digits that give the number back.
-std::string text(double x) {
-  char buffer[32];
-  const auto end = std::to_chars(std::begin(buffer), std::end(buffer), x).ptr;
-  return {std::begin(buffer), end};
-}
-
-template <class Numbers>
-std::string list(const Numbers& numbers) {
-  std::string result = "[";
-  for (const double x : numbers) result += (result.size() > 1 ? ", " : "") + text(x);
-  return result + "]";
-}
 
 /// A number where there is one, else a list.
 std::string one_or_list(const std::vector<double>& numbers) {
@@ -51,13 +33,16 @@ class Inline {
   std::string inside_;
 };
 
+/// The key of an angle, as the file has it.
+std::string angle_key(const std::string& key, bool degrees) { return degrees ? key + "_deg" : key; }
+
 void add_angles(Inline& table, const std::string& key, const std::vector<Angle>& angles) {
   if (angles.empty()) return;
   std::vector<double> values;
   for (const Angle& angle : angles) {
     values.push_back(angles.front().degrees == angle.degrees ? angle.value : angle.radian());
   }
-  table.add(angles.front().degrees ? key + "_deg" : key, one_or_list(values));
+  table.add(angle_key(key, angles.front().degrees), one_or_list(values));
 }
 
 std::string series(const Series& s) {
@@ -67,7 +52,7 @@ std::string series(const Series& s) {
   for (const Series::Term& term : s.terms) {
     Inline one;
     one.add("amplitude", list(term.amplitude));
-    one.add("frequency", text(term.frequency));
+    add_angles(one, "frequency", {term.frequency});
     add_angles(one, "phase", {term.phase});
     terms += (terms.empty() ? "" : ", ") + one.text();
   }
@@ -75,36 +60,41 @@ std::string series(const Series& s) {
   return table.text();
 }
 
-/// The keys of a guide frame, each with its value.
-std::vector<std::pair<std::string, std::string>> table_keys(const Spelling& spelling,
-                                                            std::size_t index) {
-  std::vector<std::pair<std::string, std::string>> result{{"kind", "\"table\""},
-                                                          {"file", "\"" + log_name(index) + "\""}};
-  if (spelling.time_unit != "s") result.emplace_back("time_unit", "\"" + spelling.time_unit + "\"");
-  if (spelling.decimal_comma) result.emplace_back("decimal", "\",\"");
-  if (spelling.lines_before > 0) result.emplace_back("skip", std::to_string(spelling.lines_before));
+std::string log_name(std::size_t link) { return fmt::format("log{}.csv", link); }
+
+/// Of a frame that moves by its rates.
+Keys moving_keys(const Link& link, const char* kind, const std::string& turning,
+                 const std::string& pushing) {
+  Keys result{{"kind", kind},
+              {angle_key("angular_velocity", link.turns_in_degrees), turning},
+              {"origin_acceleration", pushing}};
+  if (link.attitude) result.emplace_back("attitude", list(*link.attitude));
+  const auto add = [&result](const char* key, const Vector& v) {
+    if (!v.isZero(0)) result.emplace_back(key, list(v));
+  };
+  add("origin_position", link.origin_position);
+  add("origin_velocity", link.origin_velocity);
   return result;
 }
 
-std::vector<std::pair<std::string, std::string>> keys(const Link& link, std::size_t index) {
+/// The keys of a guide frame.
+Keys keys(const Link& link, std::size_t index, double t_end) {
   switch (link.kind) {
     case LinkKind::inertial: return {{"kind", "\"inertial\""}};
     case LinkKind::rotating:
-      return {{"kind", "\"rotating\""},
-              {"angular_velocity", list(link.angular_velocity)},
-              {"origin_acceleration", list(link.origin_acceleration)}};
+      return moving_keys(link, "\"rotating\"", list(link.angular_velocity),
+                         list(link.origin_acceleration));
     case LinkKind::harmonic:
-      return {{"kind", "\"harmonic\""},
-              {"angular_velocity", series(link.turning)},
-              {"origin_acceleration", series(link.pushing)}};
-    case LinkKind::table: return table_keys(link.log.spelling, index);
+      return moving_keys(link, "\"harmonic\"", series(link.turning), series(link.pushing));
+    case LinkKind::table: return link.log.keys(log_name(index), t_end, false);
+    case LinkKind::rates: return link.log.keys(log_name(index), t_end, true);
     case LinkKind::earth: break;
   }
-  std::vector<std::pair<std::string, std::string>> result{{"kind", "\"earth\""},
-                                                          {"latitude_deg", text(link.latitude)},
-                                                          {"height", text(link.height)},
-                                                          {"azimuth_deg", text(link.azimuth)}};
-  if (link.rate) result.emplace_back("rate", text(*link.rate));
+  Keys result{{"kind", "\"earth\""},
+              {"latitude_deg", text(link.latitude)},
+              {"height", text(link.height)},
+              {"azimuth_deg", text(link.azimuth)}};
+  if (link.rate) result.emplace_back(angle_key("rate", link.rate->degrees), text(link.rate->value));
   if (!link.gravity.empty()) result.emplace_back("gravity", link.gravity);
   return result;
 }
@@ -113,7 +103,7 @@ std::string guide(const Scene& scene) {
   if (scene.guide.empty()) return {};
   std::string result = "[guide]\n";
   if (scene.guide.size() == 1) {
-    for (const auto& [key, value] : keys(scene.guide.front(), 0)) {
+    for (const auto& [key, value] : keys(scene.guide.front(), 0, scene.t_end)) {
       result += key + " = " + value + "\n";
     }
     return result;
@@ -121,10 +111,11 @@ std::string guide(const Scene& scene) {
   result += "kind = \"chain\"\nlinks = [\n";
   for (std::size_t i = 0; i < scene.guide.size(); ++i) {
     Inline table;
-    for (const auto& [key, value] : keys(scene.guide[i], i)) table.add(key, value);
+    for (const auto& [key, value] : keys(scene.guide[i], i, scene.t_end)) table.add(key, value);
+    if (scene.chain_in_chain && i == 1) result += "  { kind = \"chain\", links = [\n";
     result += "  " + table.text() + ",\n";
   }
-  return result + "]\n";
+  return result + (scene.chain_in_chain ? "  ] },\n]\n" : "]\n");
 }
 
 std::string gravity(const Scene& scene) {
@@ -160,9 +151,10 @@ std::string initial(const Body& body) {
   } else {
     add_angles(table, "angle", body.angle);
   }
-  if (!body.rate.empty()) table.add("rate", one_or_list(body.rate));
+  add_angles(table, "rate", body.rate);
+  if (body.rotor && body.rotor->speed_is_initial) add_angles(table, "rate", {body.rotor->speed});
   if (body.attitude) table.add("attitude", list(*body.attitude));
-  table.add_vector("angular_velocity", body.angular_velocity);
+  table.add_vector(angle_key("angular_velocity", body.turns_in_degrees), body.angular_velocity);
   if (body.place) table.add("position", list(*body.place));
   table.add_vector("velocity", body.velocity);
   return table.empty() ? "" : "initial = " + table.text() + "\n";
@@ -173,7 +165,7 @@ std::string forces(const Body& body) {
   if (!body.stiffness.empty()) {
     Inline spring;
     spring.add("stiffness", one_or_list(body.stiffness));
-    if (!body.rest.empty()) spring.add("rest", one_or_list(body.rest));
+    add_angles(spring, "rest", body.rest);
     result += "spring = " + spring.text() + "\n";
   }
   if (!body.damping.empty()) result += "damping = " + one_or_list(body.damping) + "\n";
@@ -185,7 +177,7 @@ std::string rotor(const Rotor& rotor) {
   static const char* const modes[] = {"free", "regulated", "torque"};
   Inline table;
   table.add("mode", std::string("\"") + modes[static_cast<int>(rotor.mode)] + "\"");
-  table.add("speed", text(rotor.speed));
+  if (!rotor.speed_is_initial) add_angles(table, "speed", {rotor.speed});
   if (rotor.mode == RotorMode::torque) table.add("torque", text(rotor.torque));
   return "rotor = " + table.text() + "\n";
 }
@@ -224,52 +216,11 @@ std::string body(const Scene& scene, int index) {
 
 double Angle::radian() const { return degrees ? value * degree : value; }
 
-std::string Log::csv(double t_end) const {
-  const std::string end = spelling.ends_with_cr ? "\r\n" : "\n";
-  const double unit = spelling.time_unit == "us" ? 1e6 : spelling.time_unit == "ms" ? 1e3 : 1;
-  const auto line = [&](const std::vector<std::string>& fields) {
-    std::string all;
-    for (const std::string& field : fields) {
-      if (!all.empty()) all += spelling.separator;
-      all += field;
-    }
-    return all + end;
-  };
-  const auto number = [&](double x) {
-    std::string digits = text(x);
-    if (spelling.decimal_comma) std::replace(digits.begin(), digits.end(), '.', ',');
-    return digits;
-  };
-  std::string result;
-  for (int i = 0; i < spelling.lines_before; ++i) result += "a line before the header" + end;
-  if (spelling.header_is_comment) result += "# ";
-  result += line(spelling.scalar_comes_last
-                     ? std::vector<std::string>{"t", "x", "y", "z", "qx", "qy", "qz", "qw"}
-                     : std::vector<std::string>{"t", "qw", "qx", "qy", "qz", "x", "y", "z"});
-  const long before = 16;  // rows on either side, so that no end of the spline lies in the run
-  const long rows = static_cast<long>(std::ceil(t_end / step)) + 2 * before;
-  for (long i = 0; i <= rows; ++i) {
-    const double t = static_cast<double>(i - before) * step;
-    const double s = std::sin(frequency * t + phase);
-    const Eigen::Quaterniond q(Eigen::AngleAxisd(amplitude * s, axis.normalized()));
-    const Vector x = s * shift;
-    std::vector<double> values{q.w(), q.x(), q.y(), q.z(), x.x(), x.y(), x.z()};
-    if (spelling.scalar_comes_last) {
-      values = {x.x(), x.y(), x.z(), q.x(), q.y(), q.z(), q.w()};
-    }
-    std::vector<std::string> fields{number(t * unit)};
-    for (const double value : values) fields.push_back(number(value));
-    result += line(fields);
-  }
-  return result;
+bool Scene::has_log() const {
+  return std::any_of(guide.begin(), guide.end(), [](const Link& link) { return link.is_logged(); });
 }
 
-bool Scene::has_log() const {
-  for (const Link& link : guide) {
-    if (link.kind == LinkKind::table) return true;
-  }
-  return false;
-}
+Vector radian(const Vector& v, bool degrees) { return degrees ? Vector(v * degree) : v; }
 
 std::vector<double> Scene::times() const {
   std::vector<double> result;
@@ -283,17 +234,38 @@ int single_coordinates(JointKind kind) {
   return kind == JointKind::universal ? 2 : 0;
 }
 
-std::string log_name(std::size_t link) { return fmt::format("log{}.csv", link); }
+Scene nearer(Scene scene) {
+  const bool by_speed = scene.model == "precession";
+  for (Body& body : scene.bodies) {
+    if (body.rotor && by_speed) body.rotor->speed.value *= 2;
+    if (body.rotor || body.drive || by_speed) continue;
+    for (auto* const list : {&body.angle, &body.rate}) {
+      for (Angle& angle : *list) angle.value /= 2;
+    }
+  }
+  return scene;
+}
+
+void write_logs(const Scene& scene, const std::filesystem::path& folder) {
+  for (std::size_t i = 0; i < scene.guide.size(); ++i) {
+    const Link& link = scene.guide[i];
+    if (!link.is_logged()) continue;
+    std::ofstream(folder / log_name(i)) << link.log.csv(scene.t_end, link.kind == LinkKind::rates);
+  }
+}
 
 std::string to_toml(const Scene& scene) {
-  std::string result = guide(scene) + gravity(scene);
+  std::string result = scene.title.empty() ? "" : "title = \"" + scene.title + "\"\n";
+  result += guide(scene) + gravity(scene);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) result += body(scene, i);
   result +=
       "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) + "\n";
+  if (!scene.model.empty()) result += "model = \"" + scene.model + "\"\n";
+  if (!scene.method.empty()) result += "method = \"" + scene.method + "\"\n";
   return result +
          (scene.outputs < 3 ? "output_times = " + list(scene.times())
                             : "output_step = " + text(scene.t_end / scene.outputs)) +
-         "\n";
+         "\n" + (scene.reports ? "[report]\nreactions = true\nterms = true\n" : "");
 }
 
 }  // namespace differential

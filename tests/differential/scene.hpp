@@ -2,9 +2,12 @@
 
 #include <Eigen/Geometry>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "log.hpp"
 
 /// A scene as the generator makes it, the file's text of it, and what is left of a failing one.
 ///
@@ -13,8 +16,6 @@
 /// physics. shrink.cpp gets a line that takes it away.
 
 namespace differential {
-
-using Vector = Eigen::Vector3d;
 
 /// An angle as the file has it, in radian or in degrees.
 struct Angle {
@@ -28,39 +29,14 @@ struct Angle {
 struct Series {
   struct Term {
     Vector amplitude = Vector::Zero();
-    double frequency = 0;
+    Angle frequency = {};
     Angle phase = {};
   };
   Vector constant = Vector::Zero();
   std::vector<Term> terms = {};
 };
 
-enum class LinkKind { inertial, rotating, harmonic, earth, table };
-
-/// How a log is written down.
-struct Spelling {
-  char separator = ',';
-  bool decimal_comma = false;
-  std::string time_unit = "s";  ///< or ms, us
-  int lines_before = 0;         ///< the header
-  bool header_is_comment = false;
-  bool scalar_comes_last = false;  ///< of quaternions; and the origin before them
-  bool ends_with_cr = false;       ///< lines
-};
-
-/// A motion that is logged: a turn about a fixed axis by amplitude sin(frequency t + phase), and a
-/// shift of the origin by the same sine.
-struct Log {
-  Vector axis = Vector::UnitX();
-  double amplitude = 0;
-  Vector shift = Vector::Zero();
-  double frequency = 1;
-  double phase = 0;
-  double step = 0.02;  ///< s
-  Spelling spelling = {};
-
-  [[nodiscard]] std::string csv(double t_end) const;
-};
+enum class LinkKind { inertial, rotating, harmonic, earth, table, rates };
 
 struct Link {
   LinkKind kind = LinkKind::inertial;
@@ -68,12 +44,20 @@ struct Link {
   Vector origin_acceleration = Vector::Zero();
   Series turning = {};
   Series pushing = {};
+  bool turns_in_degrees = false;                 ///< angular_velocity, or turning
+  std::optional<Eigen::Vector4d> attitude = {};  ///< at t = 0: w, x, y, z
+  Vector origin_position = Vector::Zero();
+  Vector origin_velocity = Vector::Zero();
   double latitude = 0;  ///< degrees
   double height = 0;
   double azimuth = 0;  ///< degrees
-  std::optional<double> rate = {};
+  std::optional<Angle> rate = {};
   std::string gravity = {};  ///< of an earth, as in the file; empty: not given
   Log log = {};
+
+  [[nodiscard]] bool is_logged() const {
+    return kind == LinkKind::table || kind == LinkKind::rates;
+  }
 };
 
 enum class GravityKind { not_given, none, uniform, inertial, earth };
@@ -93,7 +77,8 @@ enum class RotorMode { free, regulated, torque };
 
 struct Rotor {
   RotorMode mode = RotorMode::free;
-  double speed = 0;
+  Angle speed = {};
+  bool speed_is_initial = false;  ///< as initial.rate
   double torque = 0;
 };
 
@@ -110,14 +95,15 @@ struct Body {
   // How it begins; lists of one number for each coordinate, or empty.
   std::vector<Angle> angle = {};
   double displacement = 0;
-  std::vector<double> rate = {};
+  std::vector<Angle> rate = {};
   std::optional<Eigen::Vector4d> attitude = {};
   Vector angular_velocity = Vector::Zero();
+  bool turns_in_degrees = false;  ///< angular_velocity
   std::optional<Vector> place = {};
   Vector velocity = Vector::Zero();
   // What acts in the joint; of a ball one number of damping.
   std::vector<double> stiffness = {};
-  std::vector<double> rest = {};
+  std::vector<Angle> rest = {};
   std::vector<double> damping = {};
   std::vector<double> force = {};
   std::optional<Rotor> rotor = {};
@@ -127,23 +113,37 @@ struct Body {
 };
 
 struct Scene {
+  std::string title = {};
   std::vector<Link> guide = {};  ///< more than one: a chain; none: not given
+  bool chain_in_chain = false;   ///< of all links but the first
   GravityKind gravity = GravityKind::not_given;
   Vector gravity_vector = Vector::Zero();
   std::vector<Body> bodies = {};
   double t_end = 1;
   double tolerance = 1e-10;
-  int outputs = 20;  ///< evenly spaced after t = 0; from three on by a step
+  std::string model = {};   ///< an approximation; empty: none
+  std::string method = {};  ///< as in the file; empty: not given
+  bool reports = false;     ///< reactions and terms
+  int outputs = 20;         ///< evenly spaced after t = 0; from three on by a step
 
   [[nodiscard]] bool has_log() const;
   [[nodiscard]] std::vector<double> times() const;
 };
 
+/// A vector as the file has it, in radian.
+[[nodiscard]] Vector radian(const Vector& v, bool degrees);
+
 /// The number of coordinates of a joint that have single numbers: 0, 1 or 2.
 [[nodiscard]] int single_coordinates(JointKind kind);
 
+/// The same nearer to where its model is exact: with half of what rotors carry moves by; for
+/// technical equations with twice the speed of rotors.
+[[nodiscard]] Scene nearer(Scene scene);
+
 /// The text of the scene's file. The logs that it names are log0.csv, log1.csv, .. by the links.
 [[nodiscard]] std::string to_toml(const Scene& scene);
-[[nodiscard]] std::string log_name(std::size_t link);
+
+/// Writes the logs that the file names.
+void write_logs(const Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace differential

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <vector>
 
-using namespace kreisel;
-
 namespace differential {
 
 namespace {
@@ -20,7 +18,7 @@ void for_each(Series& s, const std::function<void(double&)>& f) {
   for_each(s.constant, f);
   for (Series::Term& term : s.terms) {
     for_each(term.amplitude, f);
-    f(term.frequency);
+    f(term.frequency.value);
     f(term.phase.value);
   }
 }
@@ -32,13 +30,14 @@ void for_each(Body& body, const std::function<void(double&)>& f) {
   }
   f(body.mass);
   f(body.displacement);
-  for (auto* const list :
-       {&body.inertia, &body.rate, &body.stiffness, &body.rest, &body.damping, &body.force}) {
+  for (auto* const list : {&body.inertia, &body.stiffness, &body.damping, &body.force}) {
     for (double& x : *list) f(x);
   }
-  for (Angle& angle : body.angle) f(angle.value);
+  for (auto* const list : {&body.angle, &body.rate, &body.rest}) {
+    for (Angle& angle : *list) f(angle.value);
+  }
   if (body.place) for_each(*body.place, f);
-  if (body.rotor) f(body.rotor->speed);
+  if (body.rotor) f(body.rotor->speed.value);
   if (body.rotor) f(body.rotor->torque);
   for (Load& load : body.loads) {
     for (Vector* const v : {&load.force, &load.torque, &load.point}) for_each(*v, f);
@@ -52,6 +51,8 @@ void for_each_number(Scene& scene, const std::function<void(double&)>& f) {
     for_each(link.origin_acceleration, f);
     for_each(link.turning, f);
     for_each(link.pushing, f);
+    for_each(link.origin_position, f);
+    for_each(link.origin_velocity, f);
     f(link.latitude);
     f(link.height);
     f(link.azimuth);
@@ -80,6 +81,8 @@ void drop_body(Scene& scene, std::size_t index) {
 }
 
 void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
+  changes.emplace_back([](Scene& s) { s.title.clear(), s.chain_in_chain = false; });
+  changes.emplace_back([](Scene& s) { s.model.clear(), s.method.clear(), s.reports = false; });
   changes.emplace_back([](Scene& s) { s.guide.clear(); });
   changes.emplace_back([](Scene& s) { s.gravity = GravityKind::not_given; });
   for (std::size_t i = 0; i < scene.guide.size(); ++i) {
@@ -88,7 +91,11 @@ void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
     changes.emplace_back([i](Scene& s) { s.guide[i].turning = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].pushing = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].rate.reset(); });
+    changes.emplace_back([i](Scene& s) { s.guide[i].attitude.reset(); });
+    changes.emplace_back([i](Scene& s) { s.guide[i].turns_in_degrees = false; });
     changes.emplace_back([i](Scene& s) { s.guide[i].log.spelling = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].log.from.reset(); });
+    changes.emplace_back([i](Scene& s) { s.guide[i].log.shift.setZero(); });
     for (std::size_t k = 0; k < scene.guide[i].turning.terms.size(); ++k) {
       changes.emplace_back([i, k](Scene& s) {
         auto& terms = s.guide[i].turning.terms;
