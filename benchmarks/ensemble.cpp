@@ -28,7 +28,7 @@ using Gyro = CardanGyro<RestingFrame<>>;
 constexpr std::size_t members = 512;
 constexpr std::size_t checked = 64;
 constexpr int repetitions = 9;
-const Task task{.times = {2}, .tolerance = 1e-10};
+const SolveOptions options{.output_times = {2}, .tolerance = 1e-10};
 
 Member<EulerTop> scattered_top(std::size_t /*index*/, MemberRandom& random) {
   const double A = random.normal(0.002, 0.00002);
@@ -70,7 +70,7 @@ void measure(const char* name, const Make& make) {
   for (std::size_t i = 0; i < checked; ++i) {
     MemberRandom random(1, i);
     const auto [scene, start] = make(i, random);
-    truth.push_back(Advance(scene, 0, start, {1e-15}).to(task.times.back()));
+    truth.push_back(Integrator(scene, 0, start, {1e-15}).to(options.output_times.back()));
   }
   std::array<Way, 3> ways{Way{"one by one", {}, {}}, Way{"packs", {}, {}},
                           Way{"packs, 2 threads", {}, {}}};
@@ -81,7 +81,7 @@ void measure(const char* name, const Make& make) {
     way.processor.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
     way.wall.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    detail::ErrorMeasure<Scene> distance(task.smallest);
+    detail::ErrorMeasure<Scene> distance(options.absolute_scale);
     for (std::size_t i = 0; i < checked; ++i) {
       const auto y = Scene::to_vector(result.members[i].states.back());
       way.error = test::worst_of(way.error, distance(y, Scene::to_vector(truth[i])));
@@ -91,9 +91,9 @@ void measure(const char* name, const Make& make) {
   Sampling two = alone;
   two.threads = 2;
   for (int i = 0; i < repetitions; ++i) {  // by turns, so that all meet the same disturbances
-    run(ways[0], [&] { return ensemble<double>(alone, make, task); });
-    run(ways[1], [&] { return ensemble(alone, make, task); });
-    run(ways[2], [&] { return ensemble(two, make, task); });
+    run(ways[0], [&] { return ensemble<double>(alone, make, options); });
+    run(ways[1], [&] { return ensemble(alone, make, options); });
+    run(ways[2], [&] { return ensemble(two, make, options); });
   }
   const double first_processor = median(ways[0].processor);
   const double first_wall = median(ways[0].wall);
@@ -111,7 +111,7 @@ void measure(const char* name, const Make& make) {
 
 int main() {
   fmt::print("{} members, 2 s of motion, {:.0e} in a step, packs of {}; medians of {}\n\n", members,
-             task.tolerance / 10, Pack::lanes, repetitions);
+             options.tolerance / 10, Pack::lanes, repetitions);
   fmt::print("{:24}{:18}{:>14}{:>9}{:>16}{:>9}{:>12}\n", "", "", "members/s", "", "us of a core",
              "", "true error");
   measure("heavy top", scattered_top);

@@ -12,12 +12,12 @@
 #include <cstdlib>
 #include <string>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/pendulum/pendulum.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
-#include <dynamics/pendulum/pendulum.hpp>
 
 #include "hand_written_fields.hpp"
 
@@ -119,10 +119,11 @@ int main(int argc, char** argv) {
                                                       Matrix3<double>(ball_moments.asDiagonal()));
   const RotatingFrame<> ground{earth};
   const UniformGravity<Guide> down{{0, 0, -gravity}};
-  const HeldBody ball(body, V3::Zero(), ground, down);
-  const HeldBody hanging(body, V3::Zero(), ground, down, Without<ProductsOfInertia>{},
-                         Without<FirstMoment, Axis::x, Axis::y>{},
-                         Without<FeltGravity, Axis::x, Axis::y>{}, Without<GuideRate, Axis::y>{});
+  const FixedPointBody ball(body, V3::Zero(), ground, down);
+  const FixedPointBody hanging(body, V3::Zero(), ground, down, Without<ProductsOfInertia>{},
+                               Without<FirstMoment, Axis::x, Axis::y>{},
+                               Without<FeltGravity, Axis::x, Axis::y>{},
+                               Without<GuideRate, Axis::y>{});
   const PendulumField plane(rod, meridian);
   const CardanBearings bearings{{outer_stiffness, outer_damping}, {inner_stiffness, inner_damping}};
   const CardanGyro gyro(moments, bearings, RestingFrame<>{});

@@ -48,9 +48,9 @@ int main(int argc, char** argv) {
       "%.0e turns\n\n| policy | norm off by | attitude off by, rad | ns/turn "
       "|\n|---|---|---|---|\n",
       n);
-  measure("turned()", n, [](const auto& q) { return turned(q, turn); });
-  measure("turned(), norm set to 1 each turn", n,
-          [](const auto& q) { return turned(q, turn).normalized(); });
-  const Eigen::Quaterniond once = turned(Eigen::Quaterniond::Identity(), turn);
+  measure("rotated()", n, [](const auto& q) { return rotated(q, turn); });
+  measure("rotated(), norm set to 1 each turn", n,
+          [](const auto& q) { return rotated(q, turn).normalized(); });
+  const Eigen::Quaterniond once = rotated(Eigen::Quaterniond::Identity(), turn);
   measure("product with the rounded exponential", n, [&](const auto& q) { return q * once; });
 }

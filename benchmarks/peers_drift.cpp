@@ -34,10 +34,11 @@ Vector3<double> vector(const Triple& v) { return {v[0], v[1], v[2]}; }
 /// By solve(), to a tolerance.
 std::vector<Turning> ours(const Top& t, Method method, double tolerance) {
   const EulerTop body(vector(t.moments));
-  kreisel::Task task{.times = {}, .tolerance = tolerance, .method = method};
-  for (int i = 1; i <= count; ++i) task.times.push_back(end * i / count);
+  kreisel::SolveOptions options{.output_times = {}, .tolerance = tolerance, .method = method};
+  for (int i = 1; i <= count; ++i) options.output_times.push_back(end * i / count);
   std::vector<Turning> motion;
-  for (const auto& s : solve(body, {Eigen::Quaterniond::Identity(), vector(t.rate)}, task).states) {
+  for (const auto& s :
+       solve(body, {Eigen::Quaterniond::Identity(), vector(t.rate)}, options).states) {
     const Eigen::Quaterniond q = s.attitude.normalized();
     const Vector3<double> w = q * s.angular_velocity;
     motion.push_back({{q.w(), q.x(), q.y(), q.z()}, {w.x(), w.y(), w.z()}});

@@ -11,11 +11,11 @@
 #include <string>
 #include <variant>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/study/prune.hpp>
 
@@ -52,11 +52,11 @@ struct Cost {
 };
 
 template <class Scene>
-Cost cost(const Scene& scene, const typename Scene::State& start, const Pruning& task) {
+Cost cost(const Scene& scene, const typename Scene::State& start, const Pruning& options) {
   double evaluations = 0;
   const double seconds = least_seconds([&] {
-    const auto run =
-        solve(scene, start, {.times = {task.horizon}, .tolerance = task.tolerance / 10});
+    const auto run = solve(
+        scene, start, {.output_times = {options.horizon}, .tolerance = options.tolerance / 10});
     evaluations = run.report.all_evaluations;
   });
   return {field(scene, start), evaluations, seconds};
@@ -64,23 +64,23 @@ Cost cost(const Scene& scene, const typename Scene::State& start, const Pruning&
 
 template <class... Quantities, class Scene>
 void row(const char* name, const Scene& scene, const typename Scene::State& start,
-         const Pruning& task) {
-  const auto pruned = prune<Quantities...>(scene, start, task);
+         const Pruning& options) {
+  const auto pruned = prune<Quantities...>(scene, start, options);
   const double spent =
-      least_seconds([&] { static_cast<void>(prune<Quantities...>(scene, start, task)); });
+      least_seconds([&] { static_cast<void>(prune<Quantities...>(scene, start, options)); });
   std::string left_out;
   for (const PrunedTerm& term : pruned.terms) {
     if (term.kept) continue;
     if (!left_out.empty()) left_out += ", ";
     left_out += term.name;
   }
-  const Cost whole = cost(scene, start, task);
+  const Cost whole = cost(scene, start, options);
   const Cost less =
-      std::visit([&](const auto& kind) { return cost(kind, start, task); }, pruned.scene);
+      std::visit([&](const auto& kind) { return cost(kind, start, options); }, pruned.scene);
   fmt::print(
       "| {} | {} | {:.1e} of {:.0e} | {:.0f} / {:.0f} | {:.0f} / {:.0f} | {:.3g} / {:.3g} | "
       "{:.2f} | {:.3g} | {:.0f} |\n",
-      name, left_out, pruned.bound, task.tolerance, whole.field, less.field, whole.evaluations,
+      name, left_out, pruned.bound, options.tolerance, whole.field, less.field, whole.evaluations,
       less.evaluations, 1e3 * whole.seconds, 1e3 * less.seconds, whole.seconds / less.seconds,
       1e3 * spent, std::ceil(spent / (whole.seconds - less.seconds)));
 }
@@ -102,7 +102,7 @@ int main() {
   const Eigen::Quaterniond tilted(1, 0.1, 0, 0);
 
   row("top of 100 rad/s on the earth, 5 s",
-      HeldBody(body({0, 0, 0.1}, 1e-8), {0, 0, 0}, earth, plumb), {tilted, {0, 0, 100}},
+      FixedPointBody(body({0, 0, 0.1}, 1e-8), {0, 0, 0}, earth, plumb), {tilted, {0, 0, 100}},
       {.tolerance = 1e-2, .horizon = 5});
 
   const double swing = 1e-7;

@@ -28,9 +28,9 @@
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/study/precession_bodies.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 using namespace kreisel;
 
@@ -89,7 +89,7 @@ double clock_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_S
 
 Run run(const System& system, const System::State& from, double span, double tolerance) {
   const double begin = clock_seconds();
-  Advance steps(system, 0, from, {.relative = tolerance, .most_evaluations = 1e10});
+  Integrator steps(system, 0, from, {.relative = tolerance, .max_evaluations = 1e10});
   const System::State end = steps.to(span);
   return {end.coordinates.head<2>(), steps.effort().evaluations, clock_seconds() - begin};
 }
@@ -174,7 +174,7 @@ class Counted {
   mutable double count_ = 0;
 };
 
-struct Task {
+struct Measurement {
   std::string what;
   double weight;  ///< of its duration among the others'
   std::function<void(std::vector<Point>&)> work;
@@ -188,7 +188,7 @@ Point named(Point p, const char* curve, const char* row, double speed, double mo
   return p;
 }
 
-void add_spin(std::vector<Task>& tasks, double speed) {
+void add_spin(std::vector<Measurement>& tasks, double speed) {
   constexpr double momentum = 0.08, span = 3;  // s
   for (const auto& [row, mode] :
        {std::pair{"regulated", RotorMode::regulated}, std::pair{"free", RotorMode::free}}) {
@@ -210,7 +210,7 @@ void add_spin(std::vector<Task>& tasks, double speed) {
                    }});
 }
 
-void add_momentum(std::vector<Task>& tasks, double momentum, bool exactly) {
+void add_momentum(std::vector<Measurement>& tasks, double momentum, bool exactly) {
   constexpr double C = 1e-4, span = 1;  // s
   const double speed = momentum / C;
   const auto work = [=](std::vector<Point>& points) {
@@ -254,7 +254,7 @@ std::vector<double> decades(double from, double to, int in_a_decade) {
 }
 
 std::vector<Point> measure(bool quick) {
-  std::vector<Task> tasks;
+  std::vector<Measurement> tasks;
   for (const double speed : decades(1e2, quick ? 1e4 : 1e6, quick ? 1 : 2)) add_spin(tasks, speed);
   // The technical equations go on where the exact ones would take hours.
   const double last = quick ? 1 : 100;
@@ -262,10 +262,10 @@ std::vector<Point> measure(bool quick) {
     add_momentum(tasks, momentum, momentum < 1.01 * last);
   }
   double all = 0, done = 0;
-  for (const Task& task : tasks) all += task.weight;
+  for (const Measurement& task : tasks) all += task.weight;
   std::vector<Point> points;
   Progress progress;
-  for (const Task& task : tasks) {
+  for (const Measurement& task : tasks) {
     progress.report((done + 1e-3) / all, [&] { return task.what; });
     task.work(points);
     done += task.weight;

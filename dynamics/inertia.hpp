@@ -39,7 +39,7 @@ struct Symmetric3 {
   }
 
   /// R m R^t. Cost: 75 flops, of the six different numbers alone.
-  [[nodiscard]] Symmetric3 turned(const Matrix3<S>& R) const {
+  [[nodiscard]] Symmetric3 rotated(const Matrix3<S>& R) const {
     using detail::component;
     const Vector3<S> x = *this * Vector3<S>(R(0, 0), R(0, 1), R(0, 2));
     const Vector3<S> y = *this * Vector3<S>(R(1, 0), R(1, 1), R(1, 2));
@@ -145,7 +145,7 @@ struct Inertia {
     const Vector3<S>& x = X.translation;
     const S half = T.mass / S(2);
     return {T.mass, s + T.mass * x,
-            T.tensor.turned(X.rotation) + offset_product(x, Vector3<S>(s + half * x))};
+            T.tensor.rotated(X.rotation) + offset_product(x, Vector3<S>(s + half * x))};
   }
 };
 

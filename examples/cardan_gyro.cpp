@@ -6,7 +6,7 @@
 #include <string>
 
 #include <dynamics/gimbal/cardan_gyro_laws.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 
 // A free gyro in Cardan's suspension, tilted by 0.5 rad, gets a knock and nutates. Its rings have
 // mass, so it also drifts about the outer axis, with the square of the knock. Prints the drift by
@@ -28,7 +28,7 @@ void drift() {
   fmt::print("knock, rad/s   nutation, rad   drift, rad/s   by the law\n");
   for (const double knock : {0.25, 0.5, 1.0, 2.0, 4.0}) {
     const GimbalDrift law = gimbal_drift(moments, tilt, 0, knock, spin);
-    Advance run(gyro, 0, {.beta = tilt, .beta_rate = knock, .phi_rate = spin});
+    Integrator run(gyro, 0, {.beta = tilt, .beta_rate = knock, .phi_rate = spin});
     // Mean of alpha' over 60 nutations under a bell, so that it matters little where they end.
     double sum = 0, weights = 0;
     const double end = 60 * 2 * pi / law.nutation_frequency;
@@ -48,7 +48,7 @@ void draw(const std::string& picture) {
   for (const double knock : {2.0, 4.0, 8.0}) {
     out.print("$knock{} << END\n", knock);
     const double n = gimbal_drift(moments, tilt, 0, knock, spin).nutation_frequency;
-    Advance run(gyro, 0, {.beta = tilt, .beta_rate = knock, .phi_rate = spin});
+    Integrator run(gyro, 0, {.beta = tilt, .beta_rate = knock, .phi_rate = spin});
     for (int i = 0; i <= 900; ++i) {
       const auto s = run.to(15 * 2 * pi / n * i / 900);
       out.print("{} {}\n", s.alpha, s.beta);

@@ -7,7 +7,7 @@
 
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 
 // Euler's top turns about its middle axis, which is unstable: every 30 s it turns over and back
 // (Dzhanibekov's nut). Prints its rates and the steps' error against the closed form; with a file
@@ -23,7 +23,7 @@ const Vector3<double> start(1e-3, 2, 1e-3);
 void turn_over() {
   const EulerTop top(moments);
   const exact::FreeTop truth(moments, start, Eigen::Quaterniond::Identity());
-  Advance run(top, 0, {Eigen::Quaterniond::Identity(), start});
+  Integrator run(top, 0, {Eigen::Quaterniond::Identity(), start});
   fmt::print("    t        p          q          r     attitude off by, rad\n");
   for (int i = 0; i <= 12; ++i) {
     const auto [attitude, w] = run.to(2.5 * i);

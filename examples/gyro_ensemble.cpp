@@ -174,12 +174,12 @@ std::vector<std::string> compute(const Request& request, const MemberRange& rang
     report(share);
     return interrupted == 0;
   };
-  Task task{.times = {}, .tolerance = request.tolerance};
+  SolveOptions options{.output_times = {}, .tolerance = request.tolerance};
   constexpr int outputs = 128;
-  for (int i = 1; i <= outputs; ++i) task.times.push_back(request.t_end * i / outputs);
+  for (int i = 1; i <= outputs; ++i) options.output_times.push_back(request.t_end * i / outputs);
   const auto result = ensemble(
       sampling, [&](std::size_t /*index*/, MemberRandom& random) { return make(request, random); },
-      task);
+      options);
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < result.members.size(); ++i) {
     if (result.members[i].report.status == RunStatus::cancelled) continue;

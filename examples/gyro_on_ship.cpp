@@ -3,9 +3,9 @@
 #include <cmath>
 #include <exception>
 
-#include <dynamics/guide/harmonic.hpp>
 #include <dynamics/gimbal/cardan_gyro_laws.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/guide/harmonic.hpp>
+#include <dynamics/step/integrator.hpp>
 
 // A free gyro on a ship that rolls about x by 10 degrees, every 8 s, and yaws about z by 2 degrees,
 // every 20 s. Its outer axis is x, its spin axis stands 30 degrees out of the plane across x. The
@@ -39,8 +39,9 @@ void sail() {
   const CardanGyro gyro(heavy, {}, ship);
   const CardanGyro ideal(light, {}, ship);
   const Accuracy accuracy{.relative = 1e-12};
-  Advance run(gyro, 0, {s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate}, accuracy);
-  Advance ideal_run(ideal, 0, run.state(), accuracy);
+  Integrator run(gyro, 0, {s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate},
+                 accuracy);
+  Integrator ideal_run(ideal, 0, run.state(), accuracy);
   const Vector3<double> n = axis(0, start.alpha, start.beta);
   const auto off = [&](double t, double alpha, double beta) {
     const Vector3<double> now = axis(t, alpha, beta);

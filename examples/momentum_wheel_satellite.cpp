@@ -3,10 +3,10 @@
 #include <cmath>
 #include <exception>
 
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/spectrum.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 // A satellite with two momentum wheels in a V, 20 degrees either side of its axis y, nutates after a
 // knock and precesses under a torque across: with free wheels and with regulated ones.
@@ -42,10 +42,10 @@ void report(const char* name, RotorMode mode) {
   const auto linear = linearize<Guide, Body>(system, 0, system.to_vector(start));
   const double nutation = std::abs(spectrum(linear.A).back().root.imag());
   const auto pushed = satellite(mode, true);
-  const auto q = Advance(pushed, 0, start).to(hour).coordinates;
+  const auto q = Integrator(pushed, 0, start).to(hour).coordinates;
   const Vector3<double> axis = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).matrix().col(1);
   start.rates[2] = 1e-3;  // about z
-  Advance run(system, 0, start);
+  Integrator run(system, 0, start);
   BodyWorkspace w(system.tree());
   JointReactions r;
   double motor = 0, wheel = 0, last = 0, first = 0, before = 1e-3, turns = -1;

@@ -41,11 +41,11 @@ void swing() {
   // A rod of 1 m and 2 kg hangs down along its x axis, 4 m above the ship's axis of roll.
   const auto rod = InertiaTensor<Body>::about_centre(
       2, {0.5, 0, 0}, Matrix3<double>(Vector3<double>(1e-3, 1.0 / 6, 1.0 / 6).asDiagonal()));
-  const HeldBody pendulum(rod, {-4, 0, 0}, ship, EarthGravitation{}, ViscousDrag<>{0.02});
+  const FixedPointBody pendulum(rod, {-4, 0, 0}, ship, EarthGravitation{}, ViscousDrag<>{0.02});
 
-  const auto run = solve(pendulum, {}, {.times = {0, 5, 10}, .tolerance = 1e-10});
+  const auto run = solve(pendulum, {}, {.output_times = {0, 5, 10}, .tolerance = 1e-10});
   for (std::size_t i = 0; i < run.times.size(); ++i) {
-    const auto r = pendulum.read_out(run.times[i], run.states[i]);
+    const auto r = pendulum.body_outputs(run.times[i], run.states[i]);
     const Vector3<double> force = r.reaction.value.resultant;
     fmt::print("t = {:.0f} s, torque about the joint on the rod's axes, N m\n", run.times[i]);
     print("relative", r.parts.relative.value);

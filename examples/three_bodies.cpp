@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <dynamics/guide/posed.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/step/explicit.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <motor/attitude.hpp>
 
 // A crane on the deck of a rolling ship: a column that a motor turns steadily, a jib locked at an
@@ -58,7 +58,7 @@ int main() {
   start[2] = 0.3;   // the load straight below it
   start[4] = 0.1;   // rad/s, the column
   const auto field = [&](double t, const State& y) { return State(system.rates(t, y)); };
-  ExplicitSteps<State, decltype(field)> steps(field, 0, start, {.relative = 1e-12});
+  ExplicitRungeKutta<State, decltype(field)> steps(field, 0, start, {.relative = 1e-12});
   BodyWorkspace w = system.workspace();
   JointReactions reactions;
   std::vector<ReactionParts> parts;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <dynamics/guide/earth_frame.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/load/oblate_gravitation.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/attitude.hpp>
 
 // A brick falls from 30000 ft over the equator and tumbles, without air: check case 2 of NASA's
@@ -53,7 +53,7 @@ void run() {
 
   const Pose<double> site = earth.X.value;  // the guide on the axes of the earth
   fmt::print("t,yaw_deg,pitch_deg,roll_deg,p_deg_s,q_deg_s,r_deg_s\n");
-  Advance fall(body, 0, start);
+  Integrator fall(body, 0, start);
   for (int i = 0; i <= 300; ++i) {
     const double t = i / 10.0;
     const auto [attitude, position, velocity] = fall.to(t);

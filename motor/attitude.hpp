@@ -79,7 +79,7 @@ template <class S>
 ///
 /// Units  : radian
 template <class S>
-[[nodiscard]] Eigen::Quaternion<S> turned(const Eigen::Quaternion<S>& q, const Vector3<S>& w) {
+[[nodiscard]] Eigen::Quaternion<S> rotated(const Eigen::Quaternion<S>& q, const Vector3<S>& w) {
   using std::sin;
   using std::sqrt;
   const Vector3<S> half = w / S(2);

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <motor/absent.hpp>
 #include <motor/motor.hpp>
+#include <motor/static_zero.hpp>
 #include <motor/tensor.hpp>
 
 namespace kreisel {

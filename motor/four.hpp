@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <motor/absent.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
 
@@ -110,7 +110,7 @@ template <class N, class... X>
   return result;
 }
 
-/// Absent components come out as 0, and so does w.
+/// StaticZero components come out as 0, and so does w.
 template <class X, class Y, class Z>
 [[nodiscard]] Four four(const Components<X, Y, Z>& a) {
   return {0.0 + a.x, 0.0 + a.y, 0.0 + a.z, 0};

@@ -214,17 +214,17 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
                 const std::optional<std::vector<double>>& times, bool reactions) {
   const kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
-  kreisel::Task task;
-  task.times = file.output_times;
-  task.tolerance = file.tolerance;
-  task.method = file.method;
+  kreisel::SolveOptions options;
+  options.output_times = file.output_times;
+  options.tolerance = file.tolerance;
+  options.method = file.method;
   SignalWatch watch;
   kreisel::Trajectory<kreisel::JointState> run;
   std::vector<std::vector<double>> numbers;
   {
     const py::gil_scoped_release released;
     run = model->solve(
-        task, start_of(file),
+        options, start_of(file),
         [&watch](double /*t*/, const kreisel::JointState& /*state*/) { return !watch.stop(); },
         [&watch] { return watch.stop(); });
     for (std::size_t i = 0; i < run.states.size() && !watch.stop(); ++i) {

@@ -2,8 +2,8 @@
 
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/translating.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"
@@ -43,13 +43,13 @@ std::vector<Case> bodies() {
   return {
       {"held body in a lift",
        {form("general", held_start,
-             field(HeldBody(lopsided, point, any_guide(lift), any_load(weight)))),
-        form("pruned", held_start, field(HeldBody(lopsided, point, lift, weight))),
+             field(FixedPointBody(lopsided, point, any_guide(lift), any_load(weight)))),
+        form("pruned", held_start, field(FixedPointBody(lopsided, point, lift, weight))),
         form("by hand", held_start, [=](double t, const Top& y) { return lift_hand(t, y); })}},
       {"held body on a turntable with gravity at rest",
        {form("general", held_start,
-             field(HeldBody(lopsided, point, any_guide(table), any_load(gravitation)))),
-        form("pruned", held_start, field(HeldBody(lopsided, point, table, gravitation))),
+             field(FixedPointBody(lopsided, point, any_guide(table), any_load(gravitation)))),
+        form("pruned", held_start, field(FixedPointBody(lopsided, point, table, gravitation))),
         form("by hand", held_start, [=](double t, const Top& y) { return held_hand(t, y); })}},
       {"free body on a turntable with gravity on it",
        {form("general", free_start, field(FreeBody(centred, any_guide(table), any_load(weight)))),

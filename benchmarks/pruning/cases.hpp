@@ -81,7 +81,7 @@ template <class M>
 /// A load of which nothing is known but that it acts as L does.
 template <class L>
 [[nodiscard]] auto any_load(const L& load) {
-  return [load](const kreisel::Situation<>& s) { return load(s); };
+  return [load](const kreisel::LoadContext<>& s) { return load(s); };
 }
 
 /// The vector field of a scene.

@@ -1,8 +1,8 @@
 #include <string>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"

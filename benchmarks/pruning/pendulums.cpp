@@ -1,7 +1,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/pendulum/pendulum.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 
 #include "../hand_written_fields.hpp"
 #include "cases.hpp"
@@ -71,7 +71,8 @@ std::vector<Case> pendulums() {
   const Without<ProductsOfInertia> principal;
   const Without<FirstMoment, Axis::x, Axis::y> hanging;
   const Without<FeltGravity, Axis::x, Axis::y> plumb;
-  const auto general_ball = field(HeldBody(body, V3::Zero(), any_guide(ground), any_load(down)));
+  const auto general_ball =
+      field(FixedPointBody(body, V3::Zero(), any_guide(ground), any_load(down)));
   const auto by_hand_ball = [=](double, const Top& y) { return ball_hand.rates(y); };
   const auto unit_ball = [=](double, const Top& y) {
     return ball_hand.rates<by_hand::Norm::one>(y);
@@ -92,12 +93,12 @@ std::vector<Case> pendulums() {
       {"ball pendulum on the earth",
        {form("general", ball_start, general_ball),
         form("pruned", ball_start,
-             field(HeldBody(body, V3::Zero(), ground, down, principal, hanging, plumb,
-                            Without<GuideRate, Axis::y>{}))),
+             field(FixedPointBody(body, V3::Zero(), ground, down, principal, hanging, plumb,
+                                  Without<GuideRate, Axis::y>{}))),
         form("by hand", ball_start, by_hand_ball),
         form("by hand for norm 1", ball_start, unit_ball),
         form("pruned but nothing stated", ball_start,
-             field(HeldBody(body, V3::Zero(), ground, down)))}},
+             field(FixedPointBody(body, V3::Zero(), ground, down)))}},
   };
 }
 

@@ -48,34 +48,35 @@ std::vector<Case> tops() {
     return heavy_hand.rates<true, by_hand::Norm::one>(y);
   };
   const auto general_top = [=](double, const Top& y) { return general_hand(y); };
-  const auto general_free = field(HeldBody(light, V3::Zero(), rest));
-  const auto general_heavy = field(HeldBody(principal_heavy, V3::Zero(), rest, any_load(down)));
+  const auto general_free = field(FixedPointBody(light, V3::Zero(), rest));
+  const auto general_heavy =
+      field(FixedPointBody(principal_heavy, V3::Zero(), rest, any_load(down)));
   return {
       {"free top (EulerTop)",
        {form("general", start, general_free), form("pruned", start, field(EulerTop(moments))),
         form("by hand", start, free_top)}},
-      {"free top (HeldBody)",
+      {"free top (FixedPointBody)",
        {form("general", start, general_free),
         form("pruned", start,
-             field(HeldBody(light, V3::Zero(), RestingFrame<>{}, Without<FirstMoment>{},
-                            Without<ProductsOfInertia>{}))),
+             field(FixedPointBody(light, V3::Zero(), RestingFrame<>{}, Without<FirstMoment>{},
+                                  Without<ProductsOfInertia>{}))),
         form("by hand", start, free_top)}},
       {"heavy top (EulerTop)",
        {form("general", start, general_heavy),
         form("pruned", start, field(EulerTop(moments, weight_moment / 10))),
         form("by hand", start, heavy_top), form("by hand for norm 1", start, unit_top)}},
-      {"heavy top (HeldBody)",
+      {"heavy top (FixedPointBody)",
        {form("general", start, general_heavy),
         form("pruned", start,
-             field(HeldBody(principal_heavy, V3::Zero(), RestingFrame<>{}, down,
-                            Without<ProductsOfInertia>{},
-                            Without<FeltGravity, Axis::x, Axis::y>{}))),
+             field(FixedPointBody(principal_heavy, V3::Zero(), RestingFrame<>{}, down,
+                                  Without<ProductsOfInertia>{},
+                                  Without<FeltGravity, Axis::x, Axis::y>{}))),
         form("by hand", start, heavy_top), form("by hand for norm 1", start, unit_top)}},
       {"heavy top with products of inertia",
-       {form("general", start, field(HeldBody(heavy, V3::Zero(), rest, any_load(down)))),
+       {form("general", start, field(FixedPointBody(heavy, V3::Zero(), rest, any_load(down)))),
         form("pruned", start,
-             field(HeldBody(heavy, V3::Zero(), RestingFrame<>{}, down,
-                            Without<FeltGravity, Axis::x, Axis::y>{}))),
+             field(FixedPointBody(heavy, V3::Zero(), RestingFrame<>{}, down,
+                                  Without<FeltGravity, Axis::x, Axis::y>{}))),
         form("by hand", start, general_top)}},
   };
 }

@@ -21,10 +21,10 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "chains.hpp"
 #include "hand_written.hpp"

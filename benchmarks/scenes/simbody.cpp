@@ -60,7 +60,7 @@ class Simbody final : public Peer {
  private:
   static SimTK::MobilizedBody add(SimTK::MobilizedBody& parent, const Link& link) {
     const auto& [A, B, C] = link.moments;
-    const SimTK::Rotation turned(SimTK::UnitVec3(vector(link.axis)), SimTK::ZAxis);
+    const SimTK::Rotation rotated(SimTK::UnitVec3(vector(link.axis)), SimTK::ZAxis);
     const SimTK::Inertia about_origin =
         SimTK::Inertia(A, B, C).shiftFromMassCenter(vector(link.centre), link.mass);
     const SimTK::Body::Rigid body(

@@ -18,15 +18,15 @@ struct AnyGuide {
 };
 
 struct AnyLoad {
-  std::function<kreisel::Force<kreisel::Body>(const kreisel::Situation<>&)> force;
+  std::function<kreisel::Force<kreisel::Body>(const kreisel::LoadContext<>&)> force;
 
-  [[nodiscard]] kreisel::Force<kreisel::Body> operator()(const kreisel::Situation<>& s) const {
+  [[nodiscard]] kreisel::Force<kreisel::Body> operator()(const kreisel::LoadContext<>& s) const {
     return force(s);
   }
 };
 
 [[nodiscard]] inline AnyLoad no_load() {
-  return {[](const kreisel::Situation<>&) { return kreisel::Force<kreisel::Body>{}; }};
+  return {[](const kreisel::LoadContext<>&) { return kreisel::Force<kreisel::Body>{}; }};
 }
 
 }  // namespace stability

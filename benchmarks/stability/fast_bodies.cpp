@@ -34,7 +34,7 @@ void spins(const Recorder& out) {
         fmt::format("{:g} rad/s", spin),
         body,
         {tilted, {0, 0, spin}, 0},
-        {.times = every(end / 5, end), .tolerance = 1e-9},
+        {.output_times = every(end / 5, end), .tolerance = 1e-9},
         [&](double t) {
           const exact::TopMotion m = motion.at(t);
           const double angle = spin * t;

@@ -67,7 +67,7 @@ void thrown(const Recorder& out) {
     const Trial<Free> trial{fmt::format("guide turns with {:g} rad/s", rate),
                             body,
                             truth.at(0),
-                            {.times = every(end / 5, end), .tolerance = 1e-9},
+                            {.output_times = every(end / 5, end), .tolerance = 1e-9},
                             [&](double t) { return truth.at(t); },
                             rounding_of_angle * rate * end};
     attempt_all(out, trial, by_steps);
@@ -86,7 +86,7 @@ void far_origins(const Recorder& out) {
       Trial<Free> trial{what,
                         body,
                         truth.at(0),
-                        {.times = every(1, 5), .tolerance = 1e-9, .most_evaluations = 1e5},
+                        {.output_times = every(1, 5), .tolerance = 1e-9, .max_evaluations = 1e5},
                         [&](double t) { return truth.at(t); }};
       // Place and velocity of O' are rounded to 1e-16 of themselves at the start already; what the
       // tensor about O' has lost was lost before it was handed over.
@@ -107,7 +107,7 @@ void far_places(const Recorder& out) {
     Trial<Free> trial{fmt::format("{:g} m from the guide's origin", away),
                       body,
                       truth.at(0),
-                      {.times = every(1, 5), .tolerance = 1e-9},
+                      {.output_times = every(1, 5), .tolerance = 1e-9},
                       [&](double t) { return truth.at(t); }};
     attempt_all(out, trial, by_steps);
     // And carried round there.
@@ -116,7 +116,7 @@ void far_places(const Recorder& out) {
     const Trial<Free> round{fmt::format("{:g} m from the axis of a guide of 0.5 rad/s", away),
                             seen,
                             turned.at(0),
-                            {.times = every(1, 5), .tolerance = 1e-8},
+                            {.output_times = every(1, 5), .tolerance = 1e-8},
                             [&](double t) { return turned.at(t); }};
     attempt_all(out, round, {Method::automatic, Method::gauss16});
   }
@@ -131,7 +131,7 @@ void disappearing_mass(const Recorder& out) {
     const Trial<Free> trial{fmt::format("{:g} kg", mass),
                             body,
                             truth.at(0),
-                            {.times = every(1, 5), .tolerance = 1e-9},
+                            {.output_times = every(1, 5), .tolerance = 1e-9},
                             [&](double t) { return truth.at(t); }};
     attempt_all(out, trial, {Method::automatic, Method::radau13});
   }

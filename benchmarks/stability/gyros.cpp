@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include <dynamics/exact/free_top.hpp>
-#include <dynamics/guide/resting.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/guide/resting.hpp>
 
 #include "../work_precision/references.hpp"
 #include "trial.hpp"
@@ -41,7 +41,7 @@ void bearing(const Recorder& out, const std::string& name, const std::string& va
   const Trial<Gyro> trial{variant,
                           gyro,
                           {.alpha_rate = 0.5, .phi_rate = 500},
-                          {.times = all.times, .tolerance = 1e-9, .most_evaluations = budget},
+                          {.output_times = all.times, .tolerance = 1e-9, .max_evaluations = budget},
                           [&](double t) {
                             for (std::size_t i = 0; i < all.times.size(); ++i) {
                               if (all.times[i] != t) continue;
@@ -86,7 +86,7 @@ void unresolved_bearing(const Recorder& out, Methods methods) {
   Trial<Gyro> trial{"1e12 N m/rad without damping, a budget of 1e6",
                     gyro,
                     {.beta = 1e-6, .alpha_rate = 0.5, .phi_rate = 500},
-                    {.times = {2.0}, .tolerance = 1e-9, .most_evaluations = 1e6},
+                    {.output_times = {2.0}, .tolerance = 1e-9, .max_evaluations = 1e6},
                     [](double) { return State{}; }};
   trial.must_answer = false;
   attempt_all(out, trial, methods);
@@ -127,7 +127,7 @@ void through_gimbal_lock(const Recorder& out) {
       const Trial<Gyro> trial{name,
                               gyro,
                               start,
-                              {.times = times, .tolerance = 1e-9},
+                              {.output_times = times, .tolerance = 1e-9},
                               [&, at = std::size_t(0)](double) mutable { return states.at(++at); }};
       attempt(out, trial, method);
     }
@@ -139,9 +139,9 @@ State in_long_double(const Gyro& gyro, const State& start, double end) {
   const auto field = [&gyro](const long double& t, const LongVector& y) {
     return gyro.rates<long double>(t, y);
   };
-  ExplicitSteps<LongVector, decltype(field)> steps(
+  ExplicitRungeKutta<LongVector, decltype(field)> steps(
       field, 0.0L, Gyro::to_vector(start).cast<long double>(),
-      {.relative = 1e-16, .most_evaluations = 1e6}, Gyro::blocks);
+      {.relative = 1e-16, .max_evaluations = 1e6}, Gyro::blocks);
   return Gyro::from_vector(steps.advance_to(end).cast<double>());
 }
 
@@ -159,7 +159,7 @@ void near_gimbal_lock(const Recorder& out) {
           fmt::format("90 deg - {:g}, rings of {:g} of the mass", off, rings),
           gyro,
           start,
-          {.times = {end}, .tolerance = 1e-8, .most_evaluations = out.quick() ? 3e5 : 1e7},
+          {.output_times = {end}, .tolerance = 1e-8, .max_evaluations = out.quick() ? 3e5 : 1e7},
           [&](double t) { return in_long_double(gyro, start, t); }};
       trial.must_answer = rings >= 1e-4;
       // Near lock what the start's last digit is worth grows; two runs in 64 bits know by how much.
@@ -230,7 +230,7 @@ void massless_rings(const Recorder& out) {
     Trial<Gyro> trial{fmt::format("from beta = {:g}", beta),
                       gyro,
                       start,
-                      {.times = every(0.1, 1), .tolerance = 1e-8},
+                      {.output_times = every(0.1, 1), .tolerance = 1e-8},
                       truth};
     trial.truth_error = beta > 1.4 ? 1e-11 : 1e-13;  // of the angles, by 1/cos^2 beta
     attempt_all(out, trial, by_steps);
@@ -247,7 +247,7 @@ void massless_rings(const Recorder& out) {
   Trial<Gyro> into{"into 90 degrees",
                    gyro,
                    {.beta = 1.4, .beta_rate = 2},
-                   {.times = {1.0}, .tolerance = 1e-8, .most_evaluations = 1e6},
+                   {.output_times = {1.0}, .tolerance = 1e-8, .max_evaluations = 1e6},
                    [](double t) { return State{.beta = 1.4 + 2 * t, .beta_rate = 2}; }};
   into.must_answer = false;
   attempt_all(out, into, by_steps);
@@ -261,7 +261,7 @@ void fast_rotor(const Recorder& out) {
     Trial<Gyro> trial{fmt::format("{:g} rad/s", spin),
                       gyro,
                       start,
-                      {.times = {end}, .tolerance = 1e-9, .most_evaluations = 1e6},
+                      {.output_times = {end}, .tolerance = 1e-9, .max_evaluations = 1e6},
                       [&](double t) { return in_long_double(gyro, start, t); }};
     trial.truth_error = 1e-14;
     attempt_all(out, trial, by_steps);
@@ -277,7 +277,8 @@ void drift_of_gyro(const Recorder& out) {
   times.push_back(end);
   for (const Method method : {Method::verner98, Method::gauss16, Method::radau13}) {
     out.begin("conservative", name(method));
-    const auto run = solve(gyro, start, {.times = times, .tolerance = 1e-11, .method = method});
+    const auto run =
+        solve(gyro, start, {.output_times = times, .tolerance = 1e-11, .method = method});
     const double first = gyro.conserved(0, start).front().second;
     double worst = 0;
     for (std::size_t i = 0; i < run.times.size(); ++i) {

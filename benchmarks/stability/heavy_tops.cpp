@@ -31,16 +31,17 @@ constexpr double k = 0.1 * 9.81 * 0.05;
 
 /// Lagrange's top: the closed form against 50 digits, the steps against the closed form.
 void lagrange(const Recorder& out, const std::string& variant, double moment, const State& start,
-              kreisel::Task task, bool in_50_digits = true, const std::string& picture = "") {
+              kreisel::SolveOptions options, bool in_50_digits = true,
+              const std::string& picture = "") {
   const EulerTop top({A, A, C}, {0, 0, moment});
   const kreisel::exact::LagrangeTop motion(A, C, moment, start.angular_velocity, start.attitude);
-  Trial<EulerTop> trial{variant, top, start, task, [&](double t) {
-                          const auto m = motion.at(t - task.begin);
+  Trial<EulerTop> trial{variant, top, start, options, [&](double t) {
+                          const auto m = motion.at(t - options.begin);
                           return State{m.attitude, m.angular_velocity};
                         }};
   trial.picture = picture;
   if (in_50_digits) {
-    const auto states = top_in_50_digits(top, start, task.times);
+    const auto states = top_in_50_digits(top, start, options.output_times);
     Trial<EulerTop> closed = trial;
     closed.truth = [&, at = std::size_t(0)](double) mutable { return states.at(at++); };
     attempt(out, closed, Method::automatic);
@@ -55,7 +56,7 @@ void sleeping_top(const Recorder& out) {
       if (out.quick() && std::abs(off) == 1e-12 && tilt == 0) continue;
       lagrange(out, fmt::format("C^2 w^2/4Ak = 1 + {:g}, tilt {:g}", off, tilt), k,
                {tilted_by(tilt), {0, 0, limit * std::sqrt(1 + off)}},
-               {.times = every(0.1, 1), .tolerance = 1e-8});
+               {.output_times = every(0.1, 1), .tolerance = 1e-8});
     }
   }
 }
@@ -65,17 +66,17 @@ void through_the_vertical(const Recorder& out) {
   for (const double up : {1.0, 1.0 - 1e-14, 1.0 + 1e-14, 1.0 + 1e-6}) {
     const double rate = up * std::sqrt(2 * k * (1 - std::cos(2.0)) / A);  // just to the top
     lagrange(out, fmt::format("thrown from 2 rad with {:.15g} of what takes it up", up), k,
-             {tilted_by(2), {-rate, 0, 0}}, {.times = every(0.05, 0.5), .tolerance = 1e-8});
+             {tilted_by(2), {-rate, 0, 0}}, {.output_times = every(0.05, 0.5), .tolerance = 1e-8});
   }
   lagrange(out, "hanging, at rest", k, {tilted_by(std::acos(-1.0)), {0, 0, 0}},
-           {.times = every(0.1, 1), .tolerance = 1e-10}, false);
+           {.output_times = every(0.1, 1), .tolerance = 1e-10}, false);
 }
 
 void fast_lagrange(const Recorder& out) {
   for (const double spin : {1e3, 1e5, 1e6}) {
     const double end = out.quick() ? 100 / spin : 1e4 / spin;
     lagrange(out, fmt::format("{:g} rad/s", spin), k, {tilted_by(0.5), {0, 0, spin}},
-             {.times = every(end / 10, end), .tolerance = 1e-10});
+             {.output_times = every(end / 10, end), .tolerance = 1e-10});
   }
 }
 
@@ -86,7 +87,7 @@ void endless_splitting(const Recorder& out) {
   Trial<EulerTop> trial{"1e6 rad/s for 1e4 s with a budget of 1e6 evaluations",
                         top,
                         start,
-                        {.times = {1e4}, .tolerance = 1e-6, .most_evaluations = 1e6},
+                        {.output_times = {1e4}, .tolerance = 1e-6, .max_evaluations = 1e6},
                         [&](double) { return start; }};
   trial.must_answer = false;
   attempt(out, trial, Method::automatic);
@@ -102,12 +103,13 @@ void kovalevskaya(const Recorder& out) {
   const State start{tilted_by(0.7), {0.5, -0.4, 1.2}};
   // Components of a body vector (x, y, z) are (y, z, x) on the truth's axes.
   const auto cycled = [](const Vector3<double>& v) { return Vector3<double>(v.y(), v.z(), v.x()); };
-  const kreisel::Task task{.times = every(2, out.quick() ? 20 : 60), .tolerance = 1e-9};
+  const kreisel::SolveOptions options{.output_times = every(2, out.quick() ? 20 : 60),
+                                      .tolerance = 1e-9};
   const State start_of_same{start.attitude * p, cycled(start.angular_velocity)};
-  const auto states = top_in_50_digits(same, start_of_same, task.times);
+  const auto states = top_in_50_digits(same, start_of_same, options.output_times);
   for (const Method method :
        {Method::automatic, Method::verner98, Method::gauss16, Method::radau13, Method::splitting}) {
-    const Trial<EulerTop> trial{"A = B = 2C", top, start, task,
+    const Trial<EulerTop> trial{"A = B = 2C", top, start, options,
                                 [&, at = std::size_t(0)](double) mutable {
                                   const State& s = states.at(at++);
                                   const Vector3<double>& w = s.angular_velocity;
@@ -116,7 +118,8 @@ void kovalevskaya(const Recorder& out) {
     attempt(out, trial, method);
   }
   const auto run = kreisel::solve(
-      top, start, {.times = every(end / 100, end), .tolerance = 1e-12, .method = Method::gauss16});
+      top, start,
+      {.output_times = every(end / 100, end), .tolerance = 1e-12, .method = Method::gauss16});
   for (const auto& d : run.report.invariants) {
     expect_below(out, fmt::format("drift of {} over {:g} s", d.name, end), "gauss16",
                  d.largest / std::abs(d.start), 1e-11, run.report.message);
@@ -130,12 +133,12 @@ void gyrostat(const Recorder& out) {
       const EulerTop top({1, 2, 2.5}, {0, 0, 0}, along);
       const State start{tilted_by(0.5), {0.1, 2, 0.3}};
       const double end = 10 / std::max(1.0, rotor / 100);
-      const kreisel::Task task{.times = every(end / 10, end), .tolerance = 1e-9};
-      const auto states = top_in_50_digits(top, start, task.times);
+      const kreisel::SolveOptions options{.output_times = every(end / 10, end), .tolerance = 1e-9};
+      const auto states = top_in_50_digits(top, start, options.output_times);
       for (const Method method : {Method::automatic, Method::verner98, Method::gauss16}) {
         const Trial<EulerTop> trial{
             fmt::format("rotor {:g} N m s about axis {}", rotor, along.z() == 0 ? 2 : 3), top,
-            start, task, [&, at = std::size_t(0)](double) mutable { return states.at(at++); }};
+            start, options, [&, at = std::size_t(0)](double) mutable { return states.at(at++); }};
         attempt(out, trial, method);
       }
     }
@@ -145,14 +148,14 @@ void gyrostat(const Recorder& out) {
 void tight_and_loose(const Recorder& out) {
   for (int i = 2; i <= 15; i += out.quick() ? 4 : 1) {
     lagrange(out, fmt::format("tolerance 1e-{}", i), k, {tilted_by(0.5), {1, -2, 300}},
-             {.times = every(0.1, 1), .tolerance = std::pow(10.0, -i)});
+             {.output_times = every(0.1, 1), .tolerance = std::pow(10.0, -i)});
   }
 }
 
 void weak_weight(const Recorder& out) {
   for (const double weak : {1e-320, 1e-200, 1e-16, 1e-8}) {
     lagrange(out, fmt::format("{:g} N m", weak), weak, {tilted_by(0.5), {1, -2, 300}},
-             {.times = every(0.1, 1), .tolerance = 1e-10}, weak > 1e-30);
+             {.output_times = every(0.1, 1), .tolerance = 1e-10}, weak > 1e-30);
   }
 }
 
@@ -162,7 +165,7 @@ void long_heavy_run(const Recorder& out) {
   for (double t = 0.1; t < end; t *= 1.5) times.push_back(t);
   times.push_back(end);
   lagrange(out, fmt::format("{:g} s", end), k, {tilted_by(0.5), {1, -2, 300}},
-           {.times = times, .tolerance = 1e-12}, false, "Lagrange's top");
+           {.output_times = times, .tolerance = 1e-12}, false, "Lagrange's top");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A body held on guides that move in extreme ways, through HeldBody.
+// A body held on guides that move in extreme ways, through FixedPointBody.
 
 #include <Eigen/LU>
 #include <fmt/core.h>
@@ -21,7 +21,7 @@ namespace stability {
 namespace {
 
 using namespace kreisel;
-using Held = HeldBody<AnyGuide, AnyLoad>;
+using Held = FixedPointBody<AnyGuide, AnyLoad>;
 using State = Held::State;
 
 const Eigen::Quaterniond tilted(std::cos(0.25), std::sin(0.25), 0, 0);
@@ -62,7 +62,7 @@ void turning_guides(const Recorder& out) {
     const Trial<Held> trial{fmt::format("guide turns with {:g} rad/s", rate),
                             body,
                             seen(motion.at(0), Eigen::Quaterniond::Identity(), u),
-                            {.times = every(end / 10, end), .tolerance = 1e-9},
+                            {.output_times = every(end / 10, end), .tolerance = 1e-9},
                             [&](double t) { return seen(motion.at(t), about(u, t), u); },
                             rounding_of_angle * rate * end};
     attempt_all(out, trial, by_steps);
@@ -81,7 +81,7 @@ void turntables(const Recorder& out) {
     const Trial<Held> trial{fmt::format("turntable of {:g} rad/s", rate),
                             body,
                             seen(motion.at(0), Eigen::Quaterniond::Identity(), u),
-                            {.times = every(end / 10, end), .tolerance = 1e-9},
+                            {.output_times = every(end / 10, end), .tolerance = 1e-9},
                             [&](double t) { return seen(motion.at(t), about(u, t), u); },
                             rounding_of_angle * rate * end};
     attempt_all(out, trial, by_steps);
@@ -105,7 +105,7 @@ void jumps_of_the_rate(const Recorder& out) {
   const Trial<Held> trial{"a run from just behind the jump",
                           body,
                           seen(motion.at(jump), Eigen::Quaterniond::Identity(), u),
-                          {.begin = jump, .times = every(0.2, 2, jump), .tolerance = 1e-9},
+                          {.begin = jump, .output_times = every(0.2, 2, jump), .tolerance = 1e-9},
                           [&](double t) { return seen(motion.at(t), about(u, t - jump), u); }};
   attempt_all(out, trial, by_steps);
 }
@@ -127,7 +127,7 @@ void jumps_of_the_acceleration(const Recorder& out) {
   Trial<Held> trial{"declared",
                     body,
                     {tilted, w},
-                    {.times = every(0.2, 2), .jumps = {jump}, .tolerance = 1e-9},
+                    {.output_times = every(0.2, 2), .discontinuities = {jump}, .tolerance = 1e-9},
                     [&](double t) {
                       const exact::TopMotion m = t < jump ? before.at(t) : after.at(t - jump);
                       return State{m.attitude, m.angular_velocity};
@@ -135,11 +135,11 @@ void jumps_of_the_acceleration(const Recorder& out) {
   const Row declared = attempt(out, trial, Method::automatic);
   attempt_all(out, trial, {Method::verner98, Method::radau13});
   trial.variant = "not declared";
-  trial.task.jumps.clear();
+  trial.options.discontinuities.clear();
   attempt_all(out, trial, by_steps);
   trial.variant = "no jump";
-  trial.task.times = every(0.07, 0.7);
-  trial.task.begin = 0;
+  trial.options.output_times = every(0.07, 0.7);
+  trial.options.begin = 0;
   const Row smooth = attempt(out, trial, Method::verner98);
   expect_below(out, "evaluations per second, declared over smooth", "verner98",
                declared.evaluations / 2 / (smooth.evaluations / 0.7), 2.1,
@@ -150,7 +150,7 @@ void jumps_of_the_acceleration(const Recorder& out) {
 void pulse(const Recorder& out) {
   const double begin = 41.0371;
   const double end = begin + 1e-3;
-  const AnyLoad kick{[=](const Situation<>& s) {
+  const AnyLoad kick{[=](const LoadContext<>& s) {
     const bool on = s.t >= begin && s.t < end;
     return Force<Body>{{{0, 0, 0}, {0, 0, on ? 1e3 : 0.0}}};
   }};
@@ -162,11 +162,12 @@ void pulse(const Recorder& out) {
     const double angle = t + 0.5e3 * on * on + (t > end ? (t - end) * 1e3 * on : 0);
     return State{{std::cos(angle / 2), 0, 0, std::sin(angle / 2)}, {0, 0, rate}};
   };
-  Trial<Held> trial{"declared",
-                    body,
-                    {Eigen::Quaterniond::Identity(), {0, 0, 1}},
-                    {.times = every(10, 100), .jumps = {begin, end}, .tolerance = 1e-9},
-                    truth};
+  Trial<Held> trial{
+      "declared",
+      body,
+      {Eigen::Quaterniond::Identity(), {0, 0, 1}},
+      {.output_times = every(10, 100), .discontinuities = {begin, end}, .tolerance = 1e-9},
+      truth};
   // The times of the jumps are only known to an ulp, over which the torque is 1e3.
   trial.truth_error = 2e3 * 60 * 7e-15;
   attempt_all(out, trial, {Method::automatic, Method::verner98, Method::radau13});
@@ -189,7 +190,7 @@ void far_guides(const Recorder& out) {
                       away),
           *body,
           {tilted, w},
-          {.times = every(0.2, 2), .tolerance = 1e-9},
+          {.output_times = every(0.2, 2), .tolerance = 1e-9},
           [&](double t) {
             const exact::TopMotion m = motion.at(t);
             return State{m.attitude, m.angular_velocity};
@@ -205,7 +206,7 @@ void far_guides(const Recorder& out) {
     const Trial<Held> trial{fmt::format("carried round {:g} m away", away),
                             carried,
                             seen(free.at(0), Eigen::Quaterniond::Identity(), u),
-                            {.times = every(0.2, 2), .tolerance = 1e-9},
+                            {.output_times = every(0.2, 2), .tolerance = 1e-9},
                             [&](double t) { return seen(free.at(t), about(u, t), u); }};
     attempt_all(out, trial, {Method::automatic, Method::gauss16});
   }
@@ -225,9 +226,9 @@ State in_long_double(const Matrix3<double>& tensor, const State& start, double e
         inverse * Vector3<Real>(Theta * w).cross(w);
     return rate;
   };
-  ExplicitSteps<LongVector, decltype(field)> steps(field, 0.0L, Held::to_vector(start).cast<Real>(),
-                                                   {.relative = 1e-16, .most_evaluations = 1e6},
-                                                   Held::blocks);
+  ExplicitRungeKutta<LongVector, decltype(field)> steps(
+      field, 0.0L, Held::to_vector(start).cast<Real>(), {.relative = 1e-16, .max_evaluations = 1e6},
+      Held::blocks);
   return Held::from_vector(steps.advance_to(end).cast<double>());
 }
 
@@ -247,13 +248,13 @@ void nearly_singular(const Recorder& out) {
       Trial<Held> trial{what,
                         body,
                         start,
-                        {.times = every(0.2, 2), .tolerance = 1e-9, .most_evaluations = 1e5},
+                        {.output_times = every(0.2, 2), .tolerance = 1e-9, .max_evaluations = 1e5},
                         [&](double t) { return in_long_double(tensor, start, t); }};
       trial.truth_error = 1e-15 + 1e-18 / least;
       trial.must_answer = least >= 1e-8;
       attempt_all(out, trial, {Method::automatic, Method::gauss16, Method::radau13});
     } catch (const kreisel::Error& error) {
-      add_refusal(out, what, "HeldBody", error.what());
+      add_refusal(out, what, "FixedPointBody", error.what());
     }
   }
 }
@@ -263,7 +264,7 @@ void stiff_springs(const Recorder& out) {
   double evaluations = 0;
   for (const double stiffness : {1e3, 1e6, 1e9, 1e12}) {
     const double damping = 3e-3 * stiffness;
-    const AnyLoad spring{[=](const Situation<>& s) {
+    const AnyLoad spring{[=](const LoadContext<>& s) {
       const Matrix3<double>& R = s.X.value.rotation;
       const double angle = std::atan2(R(1, 0), R(0, 0));
       return Force<Body>{
@@ -300,7 +301,7 @@ void stiff_springs(const Recorder& out) {
         fmt::format("{:g} N m/rad, damped", stiffness),
         body,
         {{std::cos(0.15), 0, 0, std::sin(0.15)}, {0, 0, 0}},
-        {.times = every(0.001, 0.02), .tolerance = 1e-8, .most_evaluations = 1e6},
+        {.output_times = every(0.001, 0.02), .tolerance = 1e-8, .max_evaluations = 1e6},
         truth};
     const Row row = attempt(out, trial, Method::automatic);
     attempt(out, trial, Method::radau13);

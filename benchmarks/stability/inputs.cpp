@@ -12,14 +12,14 @@
 #include <dynamics/exact/gyrostat.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
 #include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/rigid/axisymmetric_body.hpp>
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/rigid/free_body.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/pendulum/pendulum_deviation.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include "top_trial.hpp"
 
@@ -47,7 +47,7 @@ void each(const Recorder& out, const std::string& scene, const std::vector<Input
   }
 }
 
-using Held = HeldBody<RestingFrame<>, UniformGravity<Guide>>;
+using Held = FixedPointBody<RestingFrame<>, UniformGravity<Guide>>;
 using Free = FreeBody<RestingFrame<>, UniformGravity<Guide>>;
 
 Inertia<double> inertia() { return {2, {0.1, 0.2, 0.3}, {3, 3, 3, 0, 0, 0}}; }
@@ -89,11 +89,11 @@ void scenes(const Recorder& out) {
         {"rotor momentum", [](double x) {
            EulerTop({1, 1, 1}, {0, 0, 0}, {0, 0, x});
          }}});
-  bodies<Held>(out, "HeldBody");
+  bodies<Held>(out, "FixedPointBody");
   bodies<Free>(out, "FreeBody");
-  each(out, "HeldBody", {{"point", [](double x) {
-                            Held({inertia()}, {0, x, 0}, {}, {{0, 0, -9.81}});
-                          }}});
+  each(out, "FixedPointBody", {{"point", [](double x) {
+                                  Held({inertia()}, {0, x, 0}, {}, {{0, 0, -9.81}});
+                                }}});
   using Axial = AxisymmetricBody<RestingFrame<>>;
   each(out, "AxisymmetricBody",
        {{"mass",
@@ -246,11 +246,11 @@ void closed_forms(const Recorder& out) {
 void tasks(const Recorder& out) {
   const EulerTop top({1, 2, 3}, {0.1, 0, 1});
   const EulerTop::State start{Eigen::Quaterniond::Identity(), {1, 2, 3}};
-  const auto solve_with = [&](const std::function<void(Task&, EulerTop::State&)>& spoil) {
-    Task task{.times = {0.1, 0.2}, .most_evaluations = 1e5};
+  const auto solve_with = [&](const std::function<void(SolveOptions&, EulerTop::State&)>& spoil) {
+    SolveOptions options{.output_times = {0.1, 0.2}, .max_evaluations = 1e5};
     EulerTop::State state = start;
-    spoil(task, state);
-    const auto found = solve(top, state, task);
+    spoil(options, state);
+    const auto found = solve(top, state, options);
     if (found.report.status == RunStatus::failed) throw ComputationFailed(found.report.message);
   };
   for (const Method method :
@@ -259,15 +259,21 @@ void tasks(const Recorder& out) {
         {"begin",
          [&](double x) { solve_with([&](auto& t, auto&) { t.method = method, t.begin = x; }); }},
         {"time",
-         [&](double x) { solve_with([&](auto& t, auto&) { t.method = method, t.times[0] = x; }); }},
+         [&](double x) {
+           solve_with([&](auto& t, auto&) { t.method = method, t.output_times[0] = x; });
+         }},
         {"end",
-         [&](double x) { solve_with([&](auto& t, auto&) { t.method = method, t.times[1] = x; }); }},
+         [&](double x) {
+           solve_with([&](auto& t, auto&) { t.method = method, t.output_times[1] = x; });
+         }},
         {"tolerance",
          [&](double x) {
            solve_with([&](auto& t, auto&) { t.method = method, t.tolerance = x; });
          }},
         {"smallest",
-         [&](double x) { solve_with([&](auto& t, auto&) { t.method = method, t.smallest = x; }); }},
+         [&](double x) {
+           solve_with([&](auto& t, auto&) { t.method = method, t.absolute_scale = x; });
+         }},
         {"attitude",
          [&](double x) {
            solve_with([&](auto& t, auto& s) { t.method = method, s.attitude.x() = x; });
@@ -277,7 +283,8 @@ void tasks(const Recorder& out) {
          }}};
     if (method != Method::gauss16) {
       inputs.push_back({"jump", [&](double x) {
-                          solve_with([&](auto& t, auto&) { t.method = method, t.jumps = {x}; });
+                          solve_with(
+                              [&](auto& t, auto&) { t.method = method, t.discontinuities = {x}; });
                         }});
     }
     each(out, name(method), inputs);
@@ -287,13 +294,13 @@ void tasks(const Recorder& out) {
                    [&] { solve_with([&](auto& t, auto&) { t.tolerance = tolerance; }); });
   }
   expect_refusal(out, "no times", "solve",
-                 [&] { solve_with([&](auto& t, auto&) { t.times.clear(); }); });
+                 [&] { solve_with([&](auto& t, auto&) { t.output_times.clear(); }); });
   expect_refusal(out, "times that turn round", "solve", [&] {
-    solve_with([&](auto& t, auto&) { t.times = {1, 0.5}; });
+    solve_with([&](auto& t, auto&) { t.output_times = {1, 0.5}; });
   });
   for (const double budget : {0.0, -1.0, nan}) {
-    expect_refusal(out, fmt::format("most_evaluations = {:g}", budget), "solve",
-                   [&] { solve_with([&](auto& t, auto&) { t.most_evaluations = budget; }); });
+    expect_refusal(out, fmt::format("max_evaluations = {:g}", budget), "solve",
+                   [&] { solve_with([&](auto& t, auto&) { t.max_evaluations = budget; }); });
   }
 }
 

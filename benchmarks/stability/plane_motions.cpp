@@ -43,10 +43,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const Plane pendulum{[](double, const Vector& y) { return Vector(y[1], -19.62 * std::sin(y[0])); }};
 
 void swing(const Recorder& out, const std::string& variant, double angle, double rate,
-           const kreisel::Task& task, const std::string& picture = "", bool must_answer = true) {
+           const kreisel::SolveOptions& options, const std::string& picture = "",
+           bool must_answer = true) {
   const kreisel::exact::PendulumMotion motion(19.62, angle, rate);
-  Trial<Plane> trial{variant, pendulum, {angle, rate}, task, [&](double t) {
-                       const auto m = motion.at(t - task.begin);
+  Trial<Plane> trial{variant, pendulum, {angle, rate}, options, [&](double t) {
+                       const auto m = motion.at(t - options.begin);
                        return State{m.angle, m.rate};
                      }};
   trial.picture = picture;
@@ -58,12 +59,12 @@ void near_the_top(const Recorder& out) {
   const double pi = std::acos(-1.0);
   for (const double off : {1e-2, 1e-8, 1e-14}) {
     swing(out, fmt::format("at rest {:g} rad from the upper point", off), pi - off, 0,
-          {.times = every(1, 10), .tolerance = 1e-8});
+          {.output_times = every(1, 10), .tolerance = 1e-8});
   }
   const double up = 2 * std::sqrt(19.62);
   for (const double part : {0.0, 1e-14, -1e-14, 1e-6}) {
     swing(out, fmt::format("thrown with 1 + {:g} of what takes it up", part), 0, up * (1 + part),
-          {.times = every(0.5, 5), .tolerance = 1e-8});
+          {.output_times = every(0.5, 5), .tolerance = 1e-8});
   }
 }
 
@@ -72,7 +73,7 @@ void small_swings(const Recorder& out) {
     for (const double smallest : {0.0, 1e-3}) {
       // solve() does not know that this field has no squares, which underflow below 1e-146.
       swing(out, fmt::format("amplitude {:g}, smallest = {:g}", angle, smallest), angle, 0,
-            {.times = every(1, 5), .tolerance = 1e-9, .smallest = smallest}, "",
+            {.output_times = every(1, 5), .tolerance = 1e-9, .absolute_scale = smallest}, "",
             angle > 1e-146 || smallest > 0);
     }
   }
@@ -86,7 +87,7 @@ void many_swings(const Recorder& out) {
   times.push_back(end);
   swing(out, fmt::format("{:.0g} periods", end / period), 0.1, 0,
         // Ten times what is spent at most by default: a hundred million do not get there.
-        {.times = times, .tolerance = 1e-9, .most_evaluations = 1e9}, "pendulum");
+        {.output_times = times, .tolerance = 1e-9, .max_evaluations = 1e9}, "pendulum");
 }
 
 /// y'' = -k (y - y0): 1e4 periods.
@@ -101,7 +102,7 @@ void undamped_spring(const Recorder& out) {
     Trial<Plane> trial{fmt::format("{:g} N m/rad", stiffness),
                        spring,
                        {0.1, 0},
-                       {.times = times, .tolerance = 1e-8},
+                       {.output_times = times, .tolerance = 1e-8},
                        [=](double t) {
                          return State{0.1 * std::cos(w * t), -0.1 * w * std::sin(w * t)};
                        }};
@@ -120,14 +121,15 @@ void stiff_relaxation(const Recorder& out) {
                     -k * (y[1] - std::sin(t)) + std::cos(t));
     }};
     for (const double off : {0.0, 1.0}) {
-      const Trial<Plane> trial{fmt::format("k = {:g}/s, begun {:g} off", k, off),
-                               field,
-                               {1 + off, -off},
-                               {.times = every(1, 10), .tolerance = 1e-9, .most_evaluations = 1e6},
-                               [=](double t) {
-                                 const double rest = off * std::exp(-k * t);
-                                 return State{std::cos(t) + rest, std::sin(t) - rest};
-                               }};
+      const Trial<Plane> trial{
+          fmt::format("k = {:g}/s, begun {:g} off", k, off),
+          field,
+          {1 + off, -off},
+          {.output_times = every(1, 10), .tolerance = 1e-9, .max_evaluations = 1e6},
+          [=](double t) {
+            const double rest = off * std::exp(-k * t);
+            return State{std::cos(t) + rest, std::sin(t) - rest};
+          }};
       const Row row = attempt(out, trial, Method::automatic);
       attempt_all(out, trial, {Method::verner98, Method::gauss16, Method::radau13});
       if (off != 0) continue;
@@ -145,7 +147,7 @@ void field_that_fails(const Recorder& out) {
     Trial<Plane> trial{fmt::format("{} from t = 1 on", bad),
                        field,
                        {0, 0},
-                       {.times = {0.5, 0.99, 2}, .tolerance = 1e-9, .most_evaluations = 1e4},
+                       {.output_times = {0.5, 0.99, 2}, .tolerance = 1e-9, .max_evaluations = 1e4},
                        [](double t) {
                          return State{t, 0};
                        }};
@@ -153,7 +155,8 @@ void field_that_fails(const Recorder& out) {
     attempt_all(out, trial, by_steps);
   }
   const Plane always{[](double, const Vector&) { return Vector(nan, nan); }};
-  Trial<Plane> trial{"NaN at once", always, {0, 0}, {.times = {1}}, [](double) { return State{}; }};
+  Trial<Plane> trial{
+      "NaN at once", always, {0, 0}, {.output_times = {1}}, [](double) { return State{}; }};
   trial.must_answer = false;
   attempt_all(out, trial, by_steps);
 }
@@ -165,14 +168,15 @@ void edge_of_the_domain(const Recorder& out) {
     const double left = 1 - t / 2;
     return State{1 - left * left, std::exp(-t)};
   };
-  Trial<Plane> trial{"up to the edge but for 1e-3",
-                     field,
-                     {0, 1},
-                     {.times = {0.5, 1, 1.5, 1.94}, .tolerance = 1e-9, .most_evaluations = 1e6},
-                     truth};
+  Trial<Plane> trial{
+      "up to the edge but for 1e-3",
+      field,
+      {0, 1},
+      {.output_times = {0.5, 1, 1.5, 1.94}, .tolerance = 1e-9, .max_evaluations = 1e6},
+      truth};
   attempt_all(out, trial, by_steps);
   trial.variant = "onto the edge";
-  trial.task.times = {1, 1.9, 2};
+  trial.options.output_times = {1, 1.9, 2};
   trial.must_answer = false;
   attempt_all(out, trial, by_steps);
 }
@@ -183,7 +187,7 @@ void blow_up(const Recorder& out) {
   Trial<Plane> trial{"asked for t = 2",
                      field,
                      {1, 0},
-                     {.times = {0.5, 0.9, 2}, .tolerance = 1e-9, .most_evaluations = 1e5},
+                     {.output_times = {0.5, 0.9, 2}, .tolerance = 1e-9, .max_evaluations = 1e5},
                      [](double t) {
                        return State{1 / (1 - t), 0};
                      }};
@@ -216,7 +220,7 @@ void dry_friction(const Recorder& out) {
   Trial<Plane> trial{"5 half swings",
                      field,
                      {1, 0},
-                     {.times = every(0.7, 9.8), .tolerance = 1e-6, .most_evaluations = 1e6},
+                     {.output_times = every(0.7, 9.8), .tolerance = 1e-6, .max_evaluations = 1e6},
                      truth};
   trial.must_answer = false;
   attempt_all(out, trial, by_steps);
@@ -235,11 +239,11 @@ void square_wave(const Recorder& out) {
   Trial<Plane> trial{"declared",
                      field,
                      {0, 0},
-                     {.times = every(0.7, 9.8), .jumps = jumps, .tolerance = 1e-9},
+                     {.output_times = every(0.7, 9.8), .discontinuities = jumps, .tolerance = 1e-9},
                      truth};
   attempt_all(out, trial, {Method::automatic, Method::verner98, Method::radau13});
   trial.variant = "not declared";
-  trial.task.jumps.clear();
+  trial.options.discontinuities.clear();
   trial.must_answer = false;
   attempt_all(out, trial, by_steps);
 }
@@ -254,27 +258,36 @@ void output_times(const Recorder& out) {
     return State{m.angle, m.rate};
   };
   const Trial<Plane> few{
-      "10 outputs", pendulum, {0.5, 0}, {.times = every(1, 10), .tolerance = 1e-9}, truth};
+      "10 outputs", pendulum, {0.5, 0}, {.output_times = every(1, 10), .tolerance = 1e-9}, truth};
   const Row sparse = attempt(out, few, Method::verner98);
-  const Trial<Plane> many{
-      fmt::format("{} outputs", n), pendulum, {0.5, 0}, {.times = dense, .tolerance = 1e-9}, truth};
+  const Trial<Plane> many{fmt::format("{} outputs", n),
+                          pendulum,
+                          {0.5, 0},
+                          {.output_times = dense, .tolerance = 1e-9},
+                          truth};
   const Row row = attempt(out, many, Method::verner98);
   expect_below(out, "steps with many outputs over steps with few", "verner98",
                row.steps / sparse.steps, 1.0);
   std::vector<double> tight;
   for (int i = 1; i <= 1000; ++i) tight.push_back(1e-12 * i);
   tight.push_back(1);
-  const Trial<Plane> close{
-      "output every 1e-12 s", pendulum, {0.5, 0}, {.times = tight, .tolerance = 1e-9}, truth};
+  const Trial<Plane> close{"output every 1e-12 s",
+                           pendulum,
+                           {0.5, 0},
+                           {.output_times = tight, .tolerance = 1e-9},
+                           truth};
   attempt_all(out, close, by_steps);
   const Trial<Plane> same{"the same time again and again",
                           pendulum,
                           {0.5, 0},
-                          {.times = {0, 0, 1, 1, 1, 2}, .tolerance = 1e-9},
+                          {.output_times = {0, 0, 1, 1, 1, 2}, .tolerance = 1e-9},
                           truth};
   attempt_all(out, same, by_steps);
-  const Trial<Plane> tiny{
-      "to 1e-300 s", pendulum, {0.5, 0}, {.times = {1e-310, 1e-300}, .tolerance = 1e-9}, truth};
+  const Trial<Plane> tiny{"to 1e-300 s",
+                          pendulum,
+                          {0.5, 0},
+                          {.output_times = {1e-310, 1e-300}, .tolerance = 1e-9},
+                          truth};
   attempt_all(out, tiny, by_steps);
 }
 
@@ -293,7 +306,7 @@ void field_that_throws(const Recorder& out) {
   Trial<Plane> trial{"ComputationFailed from t = 1 on",
                      ours,
                      {0, 0},
-                     {.times = {0.5, 0.9, 2}, .tolerance = 1e-9},
+                     {.output_times = {0.5, 0.9, 2}, .tolerance = 1e-9},
                      truth};
   trial.must_answer = false;
   attempt_all(out, trial, by_steps);
@@ -303,7 +316,7 @@ void field_that_throws(const Recorder& out) {
     row.method = name(method);
     out.begin(row.variant, row.method);
     try {
-      (void)kreisel::solve(foreign, {0, 0}, {.times = {0.5, 0.9, 2}, .method = method});
+      (void)kreisel::solve(foreign, {0, 0}, {.output_times = {0.5, 0.9, 2}, .method = method});
       row.note = "swallowed";
     } catch (const std::runtime_error& error) {
       row.note = error.what();

@@ -174,7 +174,7 @@ void unsymmetric_rotor(const Recorder& out) {
     out.begin(what, "Floquet");
     try {
       const UnsymmetricRotor<> gyro(moments, {{1}, {1}}, speed);
-      const auto verdict = paired_multipliers(gyro, {.most_evaluations = 1e5}).verdict();
+      const auto verdict = paired_multipliers(gyro, {.max_evaluations = 1e5}).verdict();
       // Without a spring to matter it is C = 0.5 < B: at any speed above the range it is stable.
       expect_below(out, what, "Floquet", verdict == Stability::unstable ? 1 : 0, 0.5);
     } catch (const kreisel::Error& error) {

@@ -36,7 +36,7 @@ struct Circle {
     return {y[1], -y[0]};
   }
 };
-using CircleSteps = ExplicitSteps<Eigen::Vector2d, Circle<double>>;
+using CircleSteps = ExplicitRungeKutta<Eigen::Vector2d, Circle<double>>;
 
 /// How often and when g changes its sign up to `end`.
 template <class G>
@@ -91,8 +91,8 @@ void events(const Recorder& out) {
   const auto pendulum = [](double, const Eigen::Vector2d& y) {
     return Eigen::Vector2d(y[1], -std::sin(y[0]));
   };
-  ExplicitSteps<Eigen::Vector2d, decltype(pendulum)> steps(pendulum, 0.0, {0, 2 * (1 - 1e-10)},
-                                                           {.relative = 1e-15});
+  ExplicitRungeKutta<Eigen::Vector2d, decltype(pendulum)> steps(pendulum, 0.0, {0, 2 * (1 - 1e-10)},
+                                                                {.relative = 1e-15});
   const auto turned = advance_to_event(
       steps, [](double, const Eigen::Vector2d& y) { return y[1]; }, 100.0);
   // A quarter of its period; the start's last digit moves it by 1e-16/1e-10 s.
@@ -110,11 +110,11 @@ void circle_in(const Recorder& out, const char* what, double accuracy, double bo
   out.begin(what, "verner98");
   Row row;
   row.variant = fmt::format("{}, accuracy {:g}", what, accuracy);
-  row.method = "ExplicitSteps";
+  row.method = "ExplicitRungeKutta";
   row.estimate = bound;
   try {
-    ExplicitSteps<Vector, Circle<S>> steps(Circle<S>{}, S(0), Vector(S(1), S(0)),
-                                           {.relative = accuracy, .most_evaluations = 1e6});
+    ExplicitRungeKutta<Vector, Circle<S>> steps(Circle<S>{}, S(0), Vector(S(1), S(0)),
+                                                {.relative = accuracy, .max_evaluations = 1e6});
     const Vector y = steps.advance_to(S(10));
     const double error = test::worst_of(std::abs(static_cast<double>(y[0]) - std::cos(10.0)),
                                         std::abs(static_cast<double>(y[1]) + std::sin(10.0)));
@@ -141,7 +141,7 @@ void number_types(const Recorder& out) {
   const Vector3<float> step(1e-3f, 2e-3f, -1e-3f);
   const int n = 1'000'000;
   out.begin("float, 1e6 turns", "turned");
-  for (int i = 0; i < n; ++i) q = turned(q, step);
+  for (int i = 0; i < n; ++i) q = rotated(q, step);
   const Vector3<double> all = step.cast<double>() * n;
   const double half = all.norm() / 2;
   const Vector3<double> along = all.normalized() * std::sin(half);
@@ -155,7 +155,7 @@ void many_attitudes(const Recorder& out) {
   const Vector3<double> step(1e-3, 2e-3, -1e-3);
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   out.begin(fmt::format("{} steps", n), "turned");
-  for (std::int64_t i = 0; i < n; ++i) q = turned(q, step);
+  for (std::int64_t i = 0; i < n; ++i) q = rotated(q, step);
   const Vector3<long double> all = step.cast<long double>() * static_cast<long double>(n);
   const long double half = all.norm() / 2;
   const Vector3<long double> along = all.normalized() * std::sin(half);
@@ -182,58 +182,59 @@ void refusals(const Recorder& out) {
     return Eigen::Vector2d(t > 1 ? nan : y[1], -y[0]);
   }};
   const Eigen::Vector2d start(1, 0);
-  using Explicit = ExplicitSteps<Eigen::Vector2d, AnyField>;
-  using Gauss = GaussSteps<Eigen::Vector2d, AnyField>;
+  using Explicit = ExplicitRungeKutta<Eigen::Vector2d, AnyField>;
+  using Gauss = GaussIRK<Eigen::Vector2d, AnyField>;
   const auto jacobian = difference_jacobian<2>(good);
   using Radau = RadauSteps<Eigen::Vector2d, AnyField, std::decay_t<decltype(jacobian)>>;
   static constexpr std::array<int, 1> blocks = {2};
 
   for (const double x : {nan, inf, -inf}) {
     const std::string what = fmt::format("{}", x);
-    expect_refusal(out, "start time " + what, "ExplicitSteps", [&] { Explicit(good, x, start); });
-    expect_refusal(out, "start time " + what, "GaussSteps",
+    expect_refusal(out, "start time " + what, "ExplicitRungeKutta",
+                   [&] { Explicit(good, x, start); });
+    expect_refusal(out, "start time " + what, "GaussIRK",
                    [&] { Gauss(good, x, start, 0.1, blocks); });
     expect_refusal(out, "start time " + what, "RadauSteps",
                    [&] { Radau(good, jacobian, x, start, {}, blocks); });
     const Eigen::Vector2d off(x, 0);
-    expect_refusal(out, "state " + what, "ExplicitSteps", [&] { Explicit(good, 0, off); });
-    expect_refusal(out, "state " + what, "GaussSteps", [&] { Gauss(good, 0, off, 0.1, blocks); });
+    expect_refusal(out, "state " + what, "ExplicitRungeKutta", [&] { Explicit(good, 0, off); });
+    expect_refusal(out, "state " + what, "GaussIRK", [&] { Gauss(good, 0, off, 0.1, blocks); });
     expect_refusal(out, "state " + what, "RadauSteps",
                    [&] { Radau(good, jacobian, 0, off, {}, blocks); });
-    expect_refusal(out, "end " + what, "ExplicitSteps",
+    expect_refusal(out, "end " + what, "ExplicitRungeKutta",
                    [&] { Explicit(good, 0, start).advance_to(x); });
-    expect_refusal(out, "end " + what, "GaussSteps",
+    expect_refusal(out, "end " + what, "GaussIRK",
                    [&] { Gauss(good, 0, start, 0.1, blocks).advance_to(x); });
     expect_refusal(out, "end " + what, "RadauSteps",
                    [&] { Radau(good, jacobian, 0, start, {}, blocks).advance_to(x); });
-    expect_refusal(out, "accuracy " + what, "ExplicitSteps",
+    expect_refusal(out, "accuracy " + what, "ExplicitRungeKutta",
                    [&] { Explicit(good, 0, start, {.relative = x}); });
     expect_refusal(out, "accuracy " + what, "RadauSteps",
                    [&] { Radau(good, jacobian, 0, start, {.relative = x}, blocks); });
     if (x != inf) {
-      expect_refusal(out, "smallest " + what, "ExplicitSteps",
-                     [&] { Explicit(good, 0, start, {.smallest = x}); });
-      expect_refusal(out, "budget " + what, "ExplicitSteps",
-                     [&] { Explicit(good, 0, start, {.most_evaluations = x}).advance_to(1); });
+      expect_refusal(out, "smallest " + what, "ExplicitRungeKutta",
+                     [&] { Explicit(good, 0, start, {.absolute_scale = x}); });
+      expect_refusal(out, "budget " + what, "ExplicitRungeKutta",
+                     [&] { Explicit(good, 0, start, {.max_evaluations = x}).advance_to(1); });
       expect_refusal(out, "budget " + what, "RadauSteps", [&] {
-        Radau(good, jacobian, 0, start, {.most_evaluations = x}, blocks).advance_to(1);
+        Radau(good, jacobian, 0, start, {.max_evaluations = x}, blocks).advance_to(1);
       });
     }
-    expect_refusal(out, "step " + what, "GaussSteps", [&] { Gauss(good, 0, start, x, blocks); });
+    expect_refusal(out, "step " + what, "GaussIRK", [&] { Gauss(good, 0, start, x, blocks); });
   }
   for (const double x : {0.0, -1.0, 1e-21, 1e-320, 0.5}) {
-    expect_refusal(out, fmt::format("accuracy {:g}", x), "ExplicitSteps",
+    expect_refusal(out, fmt::format("accuracy {:g}", x), "ExplicitRungeKutta",
                    [&] { Explicit(good, 0, start, {.relative = x}); });
   }
   for (const double x : {0.0, -0.1}) {
-    expect_refusal(out, fmt::format("step {:g}", x), "GaussSteps",
+    expect_refusal(out, fmt::format("step {:g}", x), "GaussIRK",
                    [&] { Gauss(good, 0, start, x, blocks); });
   }
-  expect_refusal(out, "step 1e-300", "GaussSteps",
+  expect_refusal(out, "step 1e-300", "GaussIRK",
                  [&] { Gauss(good, 1, start, 1e-300, blocks).advance_to(2); }, {"t = "});
-  expect_refusal(out, "NaN from t = 1 on", "ExplicitSteps",
+  expect_refusal(out, "NaN from t = 1 on", "ExplicitRungeKutta",
                  [&] { Explicit(bad, 0, start).advance_to(2); }, {"t = "});
-  expect_refusal(out, "NaN from t = 1 on", "GaussSteps",
+  expect_refusal(out, "NaN from t = 1 on", "GaussIRK",
                  [&] { Gauss(bad, 0, start, 0.1, blocks).advance_to(2); }, {"t = "});
   expect_refusal(out, "NaN from t = 1 on", "RadauSteps",
                  [&] {

@@ -46,7 +46,7 @@ void mass_ratios(const Recorder& out) {
     start.coordinates << 0.5, 0.2;
     const std::string what = fmt::format("a bob of {:g} on one of 1 kg", mass);
     out.begin(what, "verner98");
-    const auto run = solve(system, start, {.times = every(0.5, 5), .tolerance = 1e-9});
+    const auto run = solve(system, start, {.output_times = every(0.5, 5), .tolerance = 1e-9});
     double worst = 0;
     for (std::size_t i = 0; i < run.times.size(); ++i) {
       worst = test::worst_of(
@@ -69,9 +69,9 @@ void heavy_end(const Recorder& out) {
     const std::string what = fmt::format("{:g} kg on 1e-3 kg", mass);
     out.begin(what, "verner98");
     const auto a =
-        solve(system, start, {.times = {0.2}, .tolerance = 1e-6, .most_evaluations = 1e6});
+        solve(system, start, {.output_times = {0.2}, .tolerance = 1e-6, .max_evaluations = 1e6});
     const auto b =
-        solve(system, start, {.times = {0.2}, .tolerance = 1e-9, .most_evaluations = 1e6});
+        solve(system, start, {.output_times = {0.2}, .tolerance = 1e-9, .max_evaluations = 1e6});
     if (a.states.empty() || b.states.empty()) {
       add_refusal(out, what, "verner98", a.report.message);
       continue;
@@ -126,7 +126,7 @@ void singular_trees(const Recorder& out) {
   {
     const System system({}, {}, gravity);
     out.begin("no bodies", "BodySystem");
-    const auto run = solve(system, system.rest(), {.times = {1.0}});
+    const auto run = solve(system, system.rest(), {.output_times = {1.0}});
     expect_below(out, "no bodies", "verner98", double(run.states.size() == 1 ? 0 : 1), 0.5,
                  run.report.message);
   }
@@ -135,7 +135,7 @@ void singular_trees(const Recorder& out) {
     fixed.joint.kind = JointKind::fixed;
     const System system({}, {fixed}, gravity);
     out.begin("a body that cannot move", "BodySystem");
-    const auto run = solve(system, system.rest(), {.times = {1.0}});
+    const auto run = solve(system, system.rest(), {.output_times = {1.0}});
     expect_below(out, "a body that cannot move", "verner98", double(run.states.size() == 1 ? 0 : 1),
                  0.5, run.report.message);
   }
@@ -154,7 +154,7 @@ void rigid_limit(const Recorder& out) {
     const System system({}, bodies, gravity);
     State start = system.rest();
     start.coordinates << 0.5, 0;
-    return solve(system, start, {.times = {1.0}, .tolerance = 1e-9, .most_evaluations = 3e6});
+    return solve(system, start, {.output_times = {1.0}, .tolerance = 1e-9, .max_evaluations = 3e6});
   };
   out.begin("held", "verner98");
   const auto held = swing(0);
@@ -212,10 +212,10 @@ void platform_motions(const Recorder& out) {
     const auto run = [&](Method method) {
       out.begin(what, name(method));
       return solve(free, start,
-                   {.times = {std::min(300 / speed, 3.0)},
+                   {.output_times = {std::min(300 / speed, 3.0)},
                     .tolerance = 1e-9,
                     .method = method,
-                    .most_evaluations = 1e5});
+                    .max_evaluations = 1e5});
     };
     const auto a = run(Method::verner98);
     const auto b = run(Method::gauss16);

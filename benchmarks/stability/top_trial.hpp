@@ -9,7 +9,8 @@
 namespace kreisel {
 
 extern template Trajectory<EulerTop::State> solve(const EulerTop& scene,
-                                                  const EulerTop::State& start, const Task& task);
+                                                  const EulerTop::State& start,
+                                                  const SolveOptions& options);
 
 }  // namespace kreisel
 

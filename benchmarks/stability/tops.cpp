@@ -13,7 +13,7 @@
 namespace kreisel {
 
 template Trajectory<EulerTop::State> solve(const EulerTop& scene, const EulerTop::State& start,
-                                           const Task& task);
+                                           const SolveOptions& options);
 
 }  // namespace kreisel
 
@@ -33,18 +33,18 @@ const Eigen::Quaterniond tilted(std::cos(0.25), std::sin(0.25), 0, 0);
 
 /// A free top, its truth in 50 digits for the closed form and that closed form for the steps.
 void free_top(const Recorder& out, const std::string& variant, const Vector3<double>& moments,
-              const State& start, kreisel::Task task, bool in_50_digits = true,
+              const State& start, kreisel::SolveOptions options, bool in_50_digits = true,
               const std::string& picture = "") {
   const EulerTop top(moments);
   const kreisel::exact::FreeTop motion(moments, start.angular_velocity, start.attitude);
-  const double begin = task.begin;
-  Trial<EulerTop> trial{variant, top, start, task, [&](double t) {
+  const double begin = options.begin;
+  Trial<EulerTop> trial{variant, top, start, options, [&](double t) {
                           const auto m = motion.at(t - begin);
                           return State{m.attitude, m.angular_velocity};
                         }};
   trial.picture = picture;
   if (in_50_digits) {
-    const auto states = top_in_50_digits(top, start, task.times);
+    const auto states = top_in_50_digits(top, start, options.output_times);
     Trial<EulerTop> closed = trial;
     closed.truth = [&, at = std::size_t(0)](double) mutable { return states.at(at++); };
     attempt(out, closed, Method::automatic);
@@ -57,7 +57,7 @@ void dzhanibekov(const Recorder& out) {
     if (out.quick() && eps == 1e-5) continue;
     free_top(out, fmt::format("w = (eps, 2, eps), eps = {:g}", eps), {1, 2, 3},
              {Eigen::Quaterniond::Identity(), {eps, 2, eps}},
-             {.times = every(10, 100), .tolerance = eps == 1e-3 ? 1e-8 : 1e-6});
+             {.output_times = every(10, 100), .tolerance = eps == 1e-3 ? 1e-8 : 1e-6});
   }
 }
 
@@ -69,7 +69,7 @@ void separatrix(const Recorder& out) {
   const double off[] = {0, 1e-14, -1e-14, 1e-10};
   for (const double e : off) {
     free_top(out, fmt::format("L^2/2EB - 1 = {:g}", e), moments, {tilted, {root * (1 + e), 1.5, 1}},
-             {.times = every(2, 20), .tolerance = 1e-8});
+             {.output_times = every(2, 20), .tolerance = 1e-8});
   }
 }
 
@@ -78,18 +78,18 @@ void principal_axes(const Recorder& out) {
     State start{tilted, Vector3<double>::Zero()};
     start.angular_velocity[i] = 7;
     free_top(out, fmt::format("exactly about axis {}", i + 1), {1, 2, 3}, start,
-             {.times = every(10, 100), .tolerance = i == 1 ? 1e-8 : 1e-11}, i != 1);
+             {.output_times = every(10, 100), .tolerance = i == 1 ? 1e-8 : 1e-11}, i != 1);
   }
 }
 
 void equal_moments(const Recorder& out) {
   const State start{tilted, {0.3, -0.4, 2}};
-  const kreisel::Task task{.times = every(10, 100), .tolerance = 1e-11};
-  free_top(out, "I1 = I2", {2, 2, 3}, start, task);
-  free_top(out, "I1 = I2 (1 + 1e-15)", {2 * (1 + 1e-15), 2, 3}, start, task);
-  free_top(out, "I1 = I2 (1 - 1e-15)", {2 * (1 - 1e-15), 2, 3}, start, task);
-  free_top(out, "sphere", {2, 2, 2}, start, task);
-  free_top(out, "sphere but for 1e-15", {2, 2 * (1 + 1e-15), 2 * (1 - 1e-15)}, start, task);
+  const kreisel::SolveOptions options{.output_times = every(10, 100), .tolerance = 1e-11};
+  free_top(out, "I1 = I2", {2, 2, 3}, start, options);
+  free_top(out, "I1 = I2 (1 + 1e-15)", {2 * (1 + 1e-15), 2, 3}, start, options);
+  free_top(out, "I1 = I2 (1 - 1e-15)", {2 * (1 - 1e-15), 2, 3}, start, options);
+  free_top(out, "sphere", {2, 2, 2}, start, options);
+  free_top(out, "sphere but for 1e-15", {2, 2 * (1 + 1e-15), 2 * (1 - 1e-15)}, start, options);
   // The same answer from both branches.
   const kreisel::exact::FreeTop round({2, 2, 3}, start.angular_velocity, tilted);
   const kreisel::exact::FreeTop general({2 * (1 + 1e-15), 2, 3}, start.angular_velocity, tilted);
@@ -103,13 +103,13 @@ void inertia_ratios(const Recorder& out) {
     const Vector3<double> moments(1, 1.2, 1 / ratio + 0.2);
     const State start{tilted, {0.3, 0.2, 2}};
     const std::string what = fmt::format("1 : 1.2 : 0.2 + 1/{:g}, a disc or a plate", ratio);
-    free_top(out, what, moments, start, {.times = every(10, 100), .tolerance = 1e-10});
+    free_top(out, what, moments, start, {.output_times = every(10, 100), .tolerance = 1e-10});
     const EulerTop needle({1, 1 + 0.5 / ratio, 1 / ratio});
     const kreisel::exact::FreeTop motion(needle.moments(), start.angular_velocity, tilted);
     const Trial<EulerTop> trial{fmt::format("needle 1 : 1/{:g}", ratio),
                                 needle,
                                 start,
-                                {.times = every(10, 100), .tolerance = 1e-10},
+                                {.output_times = every(10, 100), .tolerance = 1e-10},
                                 [&](double t) {
                                   const auto m = motion.at(t);
                                   return State{m.attitude, m.angular_velocity};
@@ -141,12 +141,12 @@ void fast_spin(const Recorder& out) {
     Trial<EulerTop> trial{about_axis ? "about its axis, 1e10 rad" : "nutating, 1e10 rad",
                           top,
                           start,
-                          {.times = every(1e3, 1e4), .tolerance = 1e-9},
+                          {.output_times = every(1e3, 1e4), .tolerance = 1e-9},
                           [&](double t) { return symmetric_in_50_digits(top, start, t); }};
     trial.picture = about_axis ? "" : "spin 1e6 rad/s";
     attempt(out, trial, Method::automatic);
     trial.variant = about_axis ? "about its axis, 1e4 rad" : "nutating, 1e4 rad";
-    trial.task.times = every(1e-3, 1e-2);
+    trial.options.output_times = every(1e-3, 1e-2);
     trial.picture.clear();
     attempt_all(out, trial, {Method::verner98, Method::gauss16, Method::radau13});
   }
@@ -160,9 +160,9 @@ void horizons(const Recorder& out) {
     const Trial<EulerTop> trial{fmt::format("{:g} s", end),
                                 top,
                                 start,
-                                {.times = every(end / 10, end),
+                                {.output_times = every(end / 10, end),
                                  .tolerance = 1e-9,
-                                 .most_evaluations = out.quick() ? 1e6 : 1e8},
+                                 .max_evaluations = out.quick() ? 1e6 : 1e8},
                                 [&](double t) {
                                   const auto m = motion.at(t);
                                   return State{m.attitude, m.angular_velocity};
@@ -180,7 +180,7 @@ void endless(const Recorder& out) {
   const Trial<EulerTop> trial{"1e9 s with a budget of 1e6 evaluations",
                               top,
                               start,
-                              {.times = {1e9}, .tolerance = 1e-6, .most_evaluations = 1e6},
+                              {.output_times = {1e9}, .tolerance = 1e-6, .max_evaluations = 1e6},
                               [&](double t) {
                                 const auto m = motion.at(t);
                                 return State{m.attitude, m.angular_velocity};
@@ -190,12 +190,13 @@ void endless(const Recorder& out) {
 
 void far_from_zero(const Recorder& out) {
   for (const double begin : {1e9, -1e9, 1e12, 1e15, 1e16}) {
-    kreisel::Task task{.begin = begin, .times = every(1, 10, 0), .tolerance = 1e-9};
-    for (double& t : task.times) t += begin;
+    kreisel::SolveOptions options{
+        .begin = begin, .output_times = every(1, 10, 0), .tolerance = 1e-9};
+    for (double& t : options.output_times) t += begin;
     const EulerTop top({1, 2, 3});
     const State start{tilted, {0.5, 2, -0.3}};
     const kreisel::exact::FreeTop motion({1, 2, 3}, start.angular_velocity, tilted);
-    Trial<EulerTop> trial{fmt::format("t0 = {:g} s", begin), top, start, task, [&](double t) {
+    Trial<EulerTop> trial{fmt::format("t0 = {:g} s", begin), top, start, options, [&](double t) {
                             const auto m = motion.at(t - begin);
                             return State{m.attitude, m.angular_velocity};
                           }};
@@ -206,20 +207,20 @@ void far_from_zero(const Recorder& out) {
 
 void backwards(const Recorder& out) {
   free_top(out, "to t = -100 s", {1, 2, 3}, {tilted, {0.5, 2, -0.3}},
-           {.times = every(-10, -100), .tolerance = 1e-10}, false);
+           {.output_times = every(-10, -100), .tolerance = 1e-10}, false);
   const EulerTop top({1, 2, 3});
   const State start{tilted, {0.5, 2, -0.3}};
-  const auto there =
-      kreisel::solve(top, start, {.times = {50}, .tolerance = 1e-13, .method = Method::verner98});
-  const auto back =
-      kreisel::solve(top, there.states[0],
-                     {.begin = 50, .times = {0}, .tolerance = 1e-13, .method = Method::verner98});
+  const auto there = kreisel::solve(
+      top, start, {.output_times = {50}, .tolerance = 1e-13, .method = Method::verner98});
+  const auto back = kreisel::solve(
+      top, there.states[0],
+      {.begin = 50, .output_times = {0}, .tolerance = 1e-13, .method = Method::verner98});
   kreisel::detail::ErrorMeasure<EulerTop> distance(1e-3);
   expect_below(out, "there and back", "verner98",
                distance(EulerTop::to_vector(back.states[0]), EulerTop::to_vector(start)),
                // What the rate is off by at the turn leads the attitude astray on all the way back.
                3 * (there.report.error_estimate + back.report.error_estimate));
-  free_top(out, "t1 = t0", {1, 2, 3}, start, {.times = {0}}, false);
+  free_top(out, "t1 = t0", {1, 2, 3}, start, {.output_times = {0}}, false);
 }
 
 void denormal_and_huge_rates(const Recorder& out) {
@@ -227,12 +228,13 @@ void denormal_and_huge_rates(const Recorder& out) {
     const State start{tilted, rate * Vector3<double>(1, 2, 0.5)};
     const double unit = rate >= 1e-300 ? 1 / rate : 1;
     const EulerTop top({2, 2, 3});
-    Trial<EulerTop> trial{
-        fmt::format("{:g} rad/s", rate),
-        top,
-        start,
-        {.times = {unit, 2 * unit, 10 * unit}, .tolerance = 1e-9, .smallest = rate < 1 ? 0 : 1e-3},
-        [&](double t) { return symmetric_in_50_digits(top, start, t); }};
+    Trial<EulerTop> trial{fmt::format("{:g} rad/s", rate),
+                          top,
+                          start,
+                          {.output_times = {unit, 2 * unit, 10 * unit},
+                           .tolerance = 1e-9,
+                           .absolute_scale = rate < 1 ? 0 : 1e-3},
+                          [&](double t) { return symmetric_in_50_digits(top, start, t); }};
     trial.must_answer = rate <= 1e100 && rate > 1e-154;
     attempt_all(out, trial,
                 {Method::automatic, Method::verner98, Method::gauss16, Method::radau13});
@@ -247,7 +249,7 @@ void norms(const Recorder& out) {
     Trial<EulerTop> trial{fmt::format("|q| = {:g}", norm),
                           top,
                           start,
-                          {.times = every(1, 10), .tolerance = 1e-9},
+                          {.output_times = every(1, 10), .tolerance = 1e-9},
                           [&](double t) { return symmetric_in_50_digits(top, unit, t); }};
     trial.must_answer = norm >= 1e-100 && norm <= 1e100;
     attempt_all(out, trial,
@@ -258,10 +260,10 @@ void norms(const Recorder& out) {
 void tolerances(const Recorder& out) {
   for (int k = 2; k <= 15; k += out.quick() ? 4 : 1) {
     free_top(out, fmt::format("tolerance 1e-{}", k), {1, 2, 2.5}, {tilted, {1, -2, 3}},
-             {.times = every(1, 10), .tolerance = std::pow(10.0, -k)});
+             {.output_times = every(1, 10), .tolerance = std::pow(10.0, -k)});
   }
   free_top(out, "tolerance 1e-15", {1, 2, 2.5}, {tilted, {1, -2, 3}},
-           {.times = every(1, 10), .tolerance = 1e-15});
+           {.output_times = every(1, 10), .tolerance = 1e-15});
 }
 
 void long_free_run(const Recorder& out) {
@@ -270,7 +272,7 @@ void long_free_run(const Recorder& out) {
   for (double t = 1; t < end; t *= 1.5) times.push_back(t);
   times.push_back(end);
   free_top(out, fmt::format("{:g} s", end), {1, 2, 3}, {tilted, {0.5, 2, -0.3}},
-           {.times = times, .tolerance = 1e-12}, false, "free top");
+           {.output_times = times, .tolerance = 1e-12}, false, "free top");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Trial {
   std::string variant;
   const Scene& scene;
   typename Scene::State start;
-  kreisel::Task task;
+  kreisel::SolveOptions options;
   std::function<typename Scene::State(double)> truth;
   double truth_error = 0;    ///< how far that may itself be off
   bool must_answer = true;   ///< or may refuse: then with a clear error
@@ -63,7 +63,7 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
   row.evaluations = report.all_evaluations;
   row.drift = drift(report);
   row.error = 0;
-  kreisel::detail::ErrorMeasure<Scene> distance(trial.scene, trial.task.smallest);
+  kreisel::detail::ErrorMeasure<Scene> distance(trial.scene, trial.options.absolute_scale);
   distance.note_sizes(report.sizes);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     const auto y = trial.scene.to_vector(found.states[i]);
@@ -71,16 +71,16 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
                            ? distance(y, trial.scene.to_vector(trial.truth(found.times[i])))
                            : double(NAN);
     row.error = kreisel::test::worst_of(row.error, off);
-    if (!trial.picture.empty() && found.times[i] != trial.task.begin) {
-      out.drift(trial.picture + ", " + row.method, found.times[i] - trial.task.begin, off);
+    if (!trial.picture.empty() && found.times[i] != trial.options.begin) {
+      out.drift(trial.picture + ", " + row.method, found.times[i] - trial.options.begin, off);
     }
   }
   // The truth is rounded to doubles, too.
   const double allowed = trial.truth_error + 4e-16;
   const bool as_estimated = row.error <= row.estimate + allowed;
-  const bool as_promised = report.tolerance_kept && row.error <= trial.task.tolerance + allowed;
+  const bool as_promised = report.tolerance_kept && row.error <= trial.options.tolerance + allowed;
   const bool right = as_estimated || as_promised;
-  const bool whole = found.times.size() == trial.task.times.size();
+  const bool whole = found.times.size() == trial.options.output_times.size();
   if (!right) {
     row.note = std::isnan(row.error) ? "returned a NaN as success"
                                      : "beyond the estimate: a silently wrong number";
@@ -101,15 +101,15 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
 /// Solves by a method, if that applies to the scene.
 template <class Scene>
 Row attempt(const Recorder& out, const Trial<Scene>& trial, kreisel::Method method) {
-  kreisel::Task task = trial.task;
-  task.method = method;
+  kreisel::SolveOptions options = trial.options;
+  options.method = method;
   Row row;
   row.variant = trial.variant;
   row.method = name(method);
   out.begin(row.variant, row.method);
   const auto begin = std::chrono::steady_clock::now();
   try {
-    const auto found = kreisel::solve(trial.scene, trial.start, task);
+    const auto found = kreisel::solve(trial.scene, trial.start, options);
     row.seconds = seconds_since(begin);
     weigh(out, trial, found, row);
   } catch (const kreisel::Error& error) {

@@ -1,7 +1,7 @@
 // A Cardan gyro with massive rings, its inner bearing the stiffer the less it matters.
 
-#include <dynamics/guide/resting.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/guide/resting.hpp>
 
 #include "methods.hpp"
 #include "references.hpp"

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
 
 #include "methods.hpp"
 #include "scenes.hpp"

@@ -101,7 +101,7 @@ class Methods {
   void stiff(double explicit_part) {
     solved_by(kreisel::Method::radau13);
     if (explicit_part == 1) solved_by(kreisel::Method::verner98);
-    explicit_ones({explicit_part * thoroughness_.most_evaluations});
+    explicit_ones({explicit_part * thoroughness_.max_evaluations});
     radau<5>("Radau 9");
     radau<7>("Radau 13");
     stiff_gsl("GSL bsimp", kreisel::GslMethod::bsimp);
@@ -115,9 +115,11 @@ class Methods {
   void solved(const std::string& called, kreisel::Method method) {
     for (const double tolerance : thoroughness_.tolerances) {
       note(called, tolerance, [tolerance, method](const P& p) {
-        const auto result = kreisel::solve(
-            p.scene, Scene::from_vector(p.start),
-            {.times = p.times, .tolerance = tolerance, .method = method, .smallest = p.smallest});
+        const auto result = kreisel::solve(p.scene, Scene::from_vector(p.start),
+                                           {.output_times = p.times,
+                                            .tolerance = tolerance,
+                                            .method = method,
+                                            .absolute_scale = p.smallest});
         const kreisel::RunReport& report = result.report;
         if (report.status == kreisel::RunStatus::failed) throw std::runtime_error(report.message);
         double worst = 0;
@@ -137,18 +139,19 @@ class Methods {
 
   /// Copied into the runs, which outlive this object.
   struct Budget {
-    double most_evaluations;
+    double max_evaluations;
 
     [[nodiscard]] kreisel::Accuracy at(const P& p, double tolerance) const {
-      return {.relative = tolerance, .smallest = p.smallest, .most_evaluations = most_evaluations};
+      return {
+          .relative = tolerance, .absolute_scale = p.smallest, .max_evaluations = max_evaluations};
     }
   };
-  [[nodiscard]] Budget budget() const { return {thoroughness_.most_evaluations}; }
+  [[nodiscard]] Budget budget() const { return {thoroughness_.max_evaluations}; }
 
   void explicit_ones(Budget budget) {
     add("Verner98", thoroughness_.tolerances, [budget](const P& p, double tolerance) {
-      return kreisel::ExplicitSteps(Field{&p.scene}, 0.0, p.start, budget.at(p, tolerance),
-                                    Scene::blocks);
+      return kreisel::ExplicitRungeKutta(Field{&p.scene}, 0.0, p.start, budget.at(p, tolerance),
+                                         Scene::blocks);
     });
     gsl("GSL rkf45", kreisel::GslMethod::rkf45, budget);
     gsl("GSL rk8pd", kreisel::GslMethod::rk8pd, budget);
@@ -179,13 +182,13 @@ class Methods {
       steps.push_back(problem_->period / parts);
     }
     add("Gauss 16", steps, [](const P& p, double step) {
-      return kreisel::GaussSteps(Field{&p.scene}, 0.0, p.start, step, Scene::blocks);
+      return kreisel::GaussIRK(Field{&p.scene}, 0.0, p.start, step, Scene::blocks);
     });
   }
 
   /// The greatest error at the problem's times.
-  template <class Advance>
-  [[nodiscard]] static double follow(const P& p, const Advance& advance_to) {
+  template <class Integrator>
+  [[nodiscard]] static double follow(const P& p, const Integrator& advance_to) {
     double worst = 0;
     for (std::size_t i = 0; i < p.times.size(); ++i) {
       const double error = p.distance(i, advance_to(p.times[i]));
@@ -223,7 +226,7 @@ class Methods {
   template <class Make>
   void odeint(const std::string& name, Budget budget, const Make& make) {
     for (const double tolerance : thoroughness_.tolerances) {
-      note(name, tolerance, [make, tolerance, most = budget.most_evaluations](const P& p) {
+      note(name, tolerance, [make, tolerance, most = budget.max_evaluations](const P& p) {
         auto stepper = make(tolerance);
         Array y;
         std::copy(p.start.data(), p.start.data() + n, y.begin());
@@ -250,7 +253,7 @@ class Methods {
   void cvode() {
     using kreisel::CvodeMethod;
     // Evaluations are the least of what it costs.
-    const Budget few{thoroughness_.most_evaluations / 10};
+    const Budget few{thoroughness_.max_evaluations / 10};
     add("CVODE Adams", thoroughness_.tolerances, [few](const P& p, double tolerance) {
       return kreisel::CvodeSteps(CvodeMethod::adams, Field{&p.scene}, 0.0, p.start,
                                  few.at(p, tolerance), Scene::blocks);

@@ -9,8 +9,8 @@
 
 #include <dynamics/exact/pendulum_motion.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/pendulum/physical_pendulum.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 
 #include "methods.hpp"
 #include "references.hpp"
@@ -87,12 +87,12 @@ void earth_pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   add_closed_form(runs, problem, thoroughness);
 }
 
-/// The reference counts the rate absolute, HeldBody against the earth.
+/// The reference counts the rate absolute, FixedPointBody against the earth.
 void earth_ball(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   using kreisel::Body, kreisel::Guide;
   const double up = std::sqrt(0.5);
   const Vector3<double> earth(-earth_rate * up, 0, earth_rate * up);  // x south, z up, 45 degrees
-  const kreisel::HeldBody body(
+  const kreisel::FixedPointBody body(
       kreisel::InertiaTensor<Body>::about_origin(
           1, {0, 0, -0.45}, Vector3<double>(0.25, 0.25, 0.01).asDiagonal().toDenseMatrix()),
       Vector3<double>::Zero(), kreisel::RotatingFrame<>{earth},

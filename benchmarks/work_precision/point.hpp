@@ -55,7 +55,7 @@ inline const std::string not_tried = "not tried: too slow at the setting before"
 struct Thoroughness {
   bool quick;
   std::vector<double> tolerances;
-  double most_evaluations;       ///< of a run
+  double max_evaluations;        ///< of a run
   double patience;               ///< s; a method that took longer is not tried at a finer setting
   double time_enough;            ///< s of repetitions together
   std::size_t repetitions;       ///< as many at least,

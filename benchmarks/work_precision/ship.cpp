@@ -27,8 +27,8 @@ void ship(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   });
   Matrix3<double> theta;
   theta << 0.25, 0.004, 0.02, 0.004, 0.27, -0.01, 0.02, -0.01, 0.06;
-  const HeldBody body(InertiaTensor<Body>::about_origin(2, {0.05, -0.02, -0.3}, theta),
-                      {0.2, -0.1, 0.4}, guide, UniformGravity<Inertial>{{0, 0, -9.81}});
+  const FixedPointBody body(InertiaTensor<Body>::about_origin(2, {0.05, -0.02, -0.3}, theta),
+                            {0.2, -0.1, 0.4}, guide, UniformGravity<Inertial>{{0, 0, -9.81}});
   using HeldOnShip = std::remove_const_t<decltype(body)>;
   const Eigen::Quaterniond tilted(std::cos(0.25), std::sin(0.25), 0, 0);
   Problem<HeldOnShip> problem{"ship",
@@ -39,8 +39,8 @@ void ship(std::vector<Run>& runs, const Thoroughness& thoroughness) {
                               {Unit::attitude, Unit::relative},
                               1,
                               1e-3};
-  ExplicitSteps truth(FieldOf<HeldOnShip>{&body}, 0.0, problem.start, {.relative = 1e-16},
-                      HeldOnShip::blocks);
+  ExplicitRungeKutta truth(FieldOf<HeldOnShip>{&body}, 0.0, problem.start, {.relative = 1e-16},
+                           HeldOnShip::blocks);
   for (const double t : problem.times) problem.truth.push_back(truth.advance_to(t));
   Methods methods(runs, problem, thoroughness);
   methods.automatic();

@@ -23,7 +23,7 @@
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/report.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -77,7 +77,7 @@ template <class Run>
   return true;
 }
 
-/// What rounding grows to in each member, told as GrownRounding of solve() does.
+/// What rounding grows to in each member, told as RoundingGrowth of solve() does.
 template <class Scene, class N>
 class GrownRoundingOfMembers {
  public:
@@ -127,10 +127,10 @@ class GrownRoundingOfMembers {
 /// Throws : ComputationFailed where one of them stops; outputs before that are kept
 template <class N, class Scene>
 void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
-            const Task& task, bool estimates_errors, const std::atomic<bool>& stop,
+            const SolveOptions& options, bool estimates_errors, const std::atomic<bool>& stop,
             const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
-  const AdaptiveRuns runs(task);
-  const double end = task.times.back();
+  const AdaptiveRuns runs(options);
+  const double end = options.output_times.back();
   struct Beside {
     double end_of_a_step;  ///< lest a short run be one and the same step in all
     PackedAdvance<Scene, N> steps;
@@ -144,35 +144,35 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     const bool last_try = !estimates_errors || runs.last(setting);
     const auto run = [&](double relative, double digits, double shaken = 0) {
       auto from = starts;
-      for (auto& start : from) start = off_by_last_digits(scene, start, digits);
-      const Accuracy accuracy{relative, task.smallest, task.most_evaluations, shaken};
-      PackedAdvance<Scene, N> made(scene, task.begin, from, accuracy);
-      made.stop_at(task.jumps);
+      for (auto& start : from) start = perturbed_by_ulps(scene, start, digits);
+      const Accuracy accuracy{relative, options.absolute_scale, options.max_evaluations, shaken};
+      PackedAdvance<Scene, N> made(scene, options.begin, from, accuracy);
+      made.stop_at(options.discontinuities);
       return made;
     };
     auto coarse = run(setting, 0);
     std::vector<Beside> others;
     const auto put_beside = [&](double part, double relative, double digits) {
-      others.push_back({task.begin + part * (end - task.begin), run(relative, digits)});
+      others.push_back({options.begin + part * (end - options.begin), run(relative, digits)});
     };
-    if (estimates_errors) put_beside(1.0 / 2, runs.finer(setting), digits_off(task));
+    if (estimates_errors) put_beside(1.0 / 2, runs.finer(setting), digits_off(options));
     if (estimates_errors && last_try) {
       // Where rounding is all that is left, two runs may agree by chance.
-      put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(task));
-      put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(task));
+      put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(options));
+      put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(options));
     }
     std::optional<GrownRoundingOfMembers<Scene, N>> rounding;
     if (estimates_errors && runs.can_look_for_rounding(setting, missed.error > 0)) {
       const double accuracy = cheap.beside(runs, setting);
-      rounding.emplace(scene, task.smallest, run(accuracy, 0),
+      rounding.emplace(scene, options.absolute_scale, run(accuracy, 0),
                        run(accuracy, 0, AdaptiveRuns::shaken_digits));
     }
-    std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, task.smallest});
+    std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, options.absolute_scale});
     for (auto* member : members) {
       if (!member) continue;
       *member = {};
       member->report.method = name(Method::verner98);
-      member->report.tolerance = task.tolerance;
+      member->report.tolerance = options.tolerance;
       member->report.status = RunStatus::cancelled;
       if (!estimates_errors) {
         member->report.error_estimate = std::numeric_limits<double>::quiet_NaN();
@@ -183,38 +183,39 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     bool rounds_too_much = false;
     bool too_coarse = false;
     std::size_t output = 0;
-    for (const double t : task.times) {
+    for (const double t : options.output_times) {
       if (!go_on(coarse, t, end, stop)) return;
       const auto states = coarse.at(t);
       std::array<double, std::size_t(lanes_of<N>)> off{};
       for (auto& [end_of_a_step, steps] : others) {
-        const bool before = (t < end_of_a_step) == (end > task.begin);
+        const bool before = (t < end_of_a_step) == (end > options.begin);
         if (!go_on(steps, t, before ? end_of_a_step : end, stop)) return;
         const auto beside = steps.at(t);
         for (std::size_t k = 0; k < members.size(); ++k) {
           if (!members[k]) continue;
           const auto y = scene.to_vector(states[k]);
-          off[k] = worse(off[k], distance[k](y, scene.to_vector(beside[k])));
+          off[k] = max_or_nan(off[k], distance[k](y, scene.to_vector(beside[k])));
         }
       }
       if (rounding) {
         const auto grown = rounding->at(t, end, stop);
         for (std::size_t k = 0; k < grown.size(); ++k) {
-          if (members[k]) grown_to[k] = worse(grown_to[k], grown[k]);
+          if (members[k]) grown_to[k] = max_or_nan(grown_to[k], grown[k]);
         }
       }
       grown_most = *std::max_element(grown_to.begin(), grown_to.end());
       rounds_too_much = runs.may_round_too_much(grown_most);
       for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
         if (!members[k]) continue;
-        const double noise = worse(coarse.noise(), grown_to[k]);
+        const double noise = max_or_nan(coarse.noise(), grown_to[k]);
         double& estimate = members[k]->report.error_estimate;
-        estimate = worse(estimate, error_of_pair(off[k], runs.finer_by(setting), runs.rounding(),
-                                                 coarse.effort().steps, noise));
-        worst = worse(worst, estimate);
+        estimate =
+            max_or_nan(estimate, error_of_pair(off[k], runs.finer_by(setting), runs.rounding(),
+                                               coarse.effort().steps, noise));
+        worst = max_or_nan(worst, estimate);
       }
       missed.note(output, worst);
-      too_coarse = !last_try && (worst > task.tolerance || rounds_too_much);
+      too_coarse = !last_try && (worst > options.tolerance || rounds_too_much);
       if (too_coarse) break;
       ++output;
       for (std::size_t k = 0; k < members.size(); ++k) {
@@ -233,7 +234,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     if (too_coarse) {
       const bool stays = rounds_too_much || missed.stays(runs, setting);
       if (missed.error == 0) missed = {setting, output, worst};
-      setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (3 * worst));
+      setting = stays ? runs.finest() : runs.tightened(setting, options.tolerance / (3 * worst));
       continue;
     }
     for (auto* member : members) {
@@ -242,7 +243,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       report.status = RunStatus::complete;
       report.effort = coarse.effort();
       report.all_evaluations = spent;
-      report.tolerance_kept = report.error_estimate <= task.tolerance;
+      report.tolerance_kept = report.error_estimate <= options.tolerance;
     }
     return;
   }
@@ -326,7 +327,7 @@ void fail(Trajectory<State>& member, const std::exception& error) {
 
 /// Members of an ensemble from `index` on, as many as N has lanes and the ensemble still has.
 template <class N, class Group, class Make>
-void run_group(Group group, const Make& make, std::size_t index, const Task& task,
+void run_group(Group group, const Make& make, std::size_t index, const SolveOptions& options,
                const Sampling& sampling, const std::atomic<bool>& stop,
                std::span<Trajectory<typename Group::State>> members) {
   using State = typename Group::State;
@@ -350,7 +351,7 @@ void run_group(Group group, const Make& make, std::size_t index, const Task& tas
   const auto all_together = [&] {
     try {
       return group.together([&](const auto& scene, const auto& starts) {
-        follow<N>(scene, starts, task, sampling.estimates_errors, stop, made);
+        follow<N>(scene, starts, options, sampling.estimates_errors, stop, made);
       });
     } catch (const std::exception&) {
       return false;  // alone it will tell whom it was
@@ -361,7 +362,8 @@ void run_group(Group group, const Make& make, std::size_t index, const Task& tas
       if (!made[k]) continue;
       try {
         group.alone(k, [&](const auto& scene, const auto& starts) {
-          follow<double>(scene, starts, task, sampling.estimates_errors, stop, std::array{made[k]});
+          follow<double>(scene, starts, options, sampling.estimates_errors, stop,
+                         std::array{made[k]});
         });
       } catch (const std::exception& error) {
         fail(*made[k], error);
@@ -374,12 +376,12 @@ void run_group(Group group, const Make& make, std::size_t index, const Task& tas
   }
 }
 
-inline void check(const Sampling& sampling, const Task& task, int lanes) {
-  check(task);
-  if (task.method != Method::automatic && task.method != Method::verner98) {
-    refuse_task("an ensemble runs by verner98, not by ", name(task.method));
+inline void check(const Sampling& sampling, const SolveOptions& options, int lanes) {
+  check(options);
+  if (options.method != Method::automatic && options.method != Method::verner98) {
+    refuse_task("an ensemble runs by verner98, not by ", name(options.method));
   }
-  if (task.progress) refuse_task("an ensemble tells its progress by Sampling::progress");
+  if (options.progress) refuse_task("an ensemble tells its progress by Sampling::progress");
   if (sampling.threads < 0) refuse_task("threads = ", sampling.threads, " must be 0 or above");
   if (sampling.first % static_cast<std::size_t>(lanes) != 0) {
     refuse_task("the first member, ", sampling.first, ", begins no pack of ", lanes);
@@ -388,22 +390,22 @@ inline void check(const Sampling& sampling, const Task& task, int lanes) {
 
 template <class N, class Group, class Make>
 [[nodiscard]] Ensemble<typename Group::State> run_ensemble(const Group& group, const Make& make,
-                                                           const Task& task,
+                                                           const SolveOptions& options,
                                                            const Sampling& sampling) {
   constexpr std::size_t lanes{lanes_of<N>};
-  check(sampling, task, lanes_of<N>);
+  check(sampling, options, lanes_of<N>);
   const auto begin = std::chrono::steady_clock::now();
   Ensemble<typename Group::State> result;
   result.members.resize(sampling.count);
   for (auto& member : result.members) member.report.status = RunStatus::cancelled;
   const bool all_done =
-      share_out((sampling.count + lanes - 1) / lanes, sampling.threads, sampling.progress,
-                [&](std::size_t i, const std::atomic<bool>& stop) {
-                  const std::size_t from = i * lanes;
-                  const std::size_t count = std::min(lanes, sampling.count - from);
-                  run_group<N>(group, make, sampling.first + from, task, sampling, stop,
-                               std::span(result.members).subspan(from, count));
-                });
+      parallel_for((sampling.count + lanes - 1) / lanes, sampling.threads, sampling.progress,
+                   [&](std::size_t i, const std::atomic<bool>& stop) {
+                     const std::size_t from = i * lanes;
+                     const std::size_t count = std::min(lanes, sampling.count - from);
+                     run_group<N>(group, make, sampling.first + from, options, sampling, stop,
+                                  std::span(result.members).subspan(from, count));
+                   });
   if (!all_done) result.status = RunStatus::cancelled;
   for (const auto& member : result.members) {
     if (member.report.status == RunStatus::failed) ++result.failed;
@@ -419,7 +421,7 @@ template <class N, class Group, class Make>
 ///
 ///   const auto result = ensemble(top, {.count = 10000}, [](std::size_t, MemberRandom& random) {
 ///     return EulerTop::State{.angular_velocity = {random.normal(0, 0.01), 0, 100}};
-///   }, {.times = {60}});
+///   }, {.output_times = {60}});
 ///
 /// Members run side by side, as many as a pack has lanes, where the scene's rates calculate with
 /// packs: index / lanes says with whom. Results are therefore the same to the last bit for any
@@ -427,7 +429,7 @@ template <class N, class Group, class Make>
 /// packs changes them within the tolerance. A pack that one of its members stops is run again one
 /// by one, so that a member fails for reasons of its own only.
 ///
-/// Steps are explicit (ExplicitSteps): stiff members take many, and fail at task.most_evaluations.
+/// Steps are explicit (ExplicitRungeKutta): stiff members take many, and fail at task.max_evaluations.
 ///
 /// N      : the pack; or double, for members one by one
 /// make   : callable (index, MemberRandom&) -> State, from several threads at once; what it throws
@@ -436,9 +438,10 @@ template <class N, class Group, class Make>
 /// Throws : InvalidInput for a task or sampling that makes no sense; what sampling.progress throws
 template <class N = Pack, class Scene, class Make>
 [[nodiscard]] Ensemble<typename Scene::State> ensemble(const Scene& scene, const Sampling& sampling,
-                                                       const Make& make, const Task& task) {
+                                                       const Make& make,
+                                                       const SolveOptions& options) {
   using Taken = std::conditional_t<detail::takes_packs<Scene, N>, N, double>;
-  return detail::run_ensemble<Taken>(detail::GroupOfOneScene<Scene, Taken>(scene), make, task,
+  return detail::run_ensemble<Taken>(detail::GroupOfOneScene<Scene, Taken>(scene), make, options,
                                      sampling);
 }
 
@@ -450,11 +453,13 @@ template <class N = Pack, class Scene, class Make>
 ///
 /// make   : callable (index, MemberRandom&) -> Member<Scene>
 template <class N = Pack, class Make>
-[[nodiscard]] auto ensemble(const Sampling& sampling, const Make& make, const Task& task) {
+[[nodiscard]] auto ensemble(const Sampling& sampling, const Make& make,
+                            const SolveOptions& options) {
   using Made = std::invoke_result_t<const Make&, std::size_t, MemberRandom&>;
   using Scene = decltype(Made::scene);
   using Taken = std::conditional_t<detail::lies_side_by_side<Scene, N>, N, double>;
-  return detail::run_ensemble<Taken>(detail::GroupOfScenes<Scene, Taken>(), make, task, sampling);
+  return detail::run_ensemble<Taken>(detail::GroupOfScenes<Scene, Taken>(), make, options,
+                                     sampling);
 }
 
 }  // namespace kreisel

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <dynamics/ensemble/pack.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 
 namespace kreisel {
 
@@ -32,7 +32,7 @@ requires(is_pack<N>&& int(Scene::Vector::RowsAtCompileTime) >
 ///
 /// N      : a pack; or double, for one motion of any scene
 /// Cost   : no memory is asked for while steps go on
-/// Throws : as Advance does; ComputationFailed also where rounding in one's field keeps the accuracy
+/// Throws : as Integrator does; ComputationFailed also where rounding in one's field keeps the accuracy
 ///          from being met, which alone it would be forgiven for
 template <class Scene, class N = Pack>
 class PackedAdvance {
@@ -59,7 +59,7 @@ class PackedAdvance {
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
   /// Of all together, who take the same steps.
-  [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double noise() const { return steps_.noise(); }
 
  private:
@@ -83,7 +83,7 @@ class PackedAdvance {
   }
 
   const Scene* scene_;
-  ExplicitSteps<Vector, detail::SceneField<Scene>> steps_;
+  ExplicitRungeKutta<Vector, detail::SceneField<Scene>> steps_;
 };
 
 template <class Scene>
@@ -100,11 +100,11 @@ class PackedAdvance<Scene, double> {
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
   [[nodiscard]] States at(double time) { return {steps_.at(time)}; }
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
-  [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double noise() const { return steps_.noise(); }
 
  private:
-  Advance<Scene> steps_;
+  Integrator<Scene> steps_;
 };
 
 }  // namespace kreisel

@@ -19,8 +19,8 @@ namespace kreisel::detail {
 ///            exception of work or progress, lets `stop` become true and nothing more begin
 /// Throws   : the first exception of work or progress, after all threads have ended
 template <class Work>
-bool share_out(std::size_t count, int threads, const std::function<bool(double)>& progress,
-               const Work& work) {
+bool parallel_for(std::size_t count, int threads, const std::function<bool(double)>& progress,
+                  const Work& work) {
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> stop = false;
   std::mutex reporting;

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <optional>
 
+#include <dynamics/exact/double_double.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/refuse.hpp>
 #include <dynamics/exact/top_motion.hpp>
-#include <dynamics/exact/twofold.hpp>
 
 namespace kreisel::exact {
 
@@ -102,12 +102,12 @@ class FreeTop {
    public:
     Axes(const Vector3<double>& moments, const Vector3<double>& omega0) {
       std::sort(body_.begin(), body_.end(), [&](int i, int j) { return moments[i] < moments[j]; });
-      const Twofold i1 = moments[body_[0]];
-      const Twofold i2 = moments[body_[1]];
-      const Twofold i3 = moments[body_[2]];
-      const Twofold w1 = omega0[body_[0]];
-      const Twofold w3 = omega0[body_[2]];
-      const Twofold D = i3 * (i3 - i2) * (w3 * w3) - i1 * (i2 - i1) * (w1 * w1);
+      const DoubleDouble i1 = moments[body_[0]];
+      const DoubleDouble i2 = moments[body_[1]];
+      const DoubleDouble i3 = moments[body_[2]];
+      const DoubleDouble w1 = omega0[body_[0]];
+      const DoubleDouble w3 = omega0[body_[2]];
+      const DoubleDouble D = i3 * (i3 - i2) * (w3 * w3) - i1 * (i2 - i1) * (w1 * w1);
       distance_ = std::abs(D.hi);
       if (D.hi < 0) {
         side_ = -1;

@@ -11,11 +11,11 @@
 #include <optional>
 #include <utility>
 
+#include <dynamics/exact/double_double.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/refuse.hpp>
 #include <dynamics/exact/top_motion.hpp>
-#include <dynamics/exact/twofold.hpp>
 
 namespace kreisel::exact {
 
@@ -204,32 +204,34 @@ class Gyrostat {
   }
 
  private:
-  [[nodiscard]] static Twofold quotient(const Twofold& a, const Twofold& b) {
+  [[nodiscard]] static DoubleDouble quotient(const DoubleDouble& a, const DoubleDouble& b) {
     const Real q = a.hi / b.hi;
     return {q, (a - b * q).hi / b.hi};
   }
 
-  [[nodiscard]] static Twofold root(const Twofold& a) {
+  [[nodiscard]] static DoubleDouble root(const DoubleDouble& a) {
     if (a.hi <= 0) return 0;
     const Real r = std::sqrt(a.hi);
-    return {r, (a - Twofold(r) * r).hi / (2 * r)};
+    return {r, (a - DoubleDouble(r) * r).hi / (2 * r)};
   }
 
   /// Body, rotor and rates on the axes 1, 2, 3.
   struct System {
-    Twofold A, B, C;
-    Twofold h;
-    Twofold w1, w2, w3;
+    DoubleDouble A, B, C;
+    DoubleDouble h;
+    DoubleDouble w1, w2, w3;
 
     [[nodiscard]] detail::RealVector omega() const { return {w1.hi, w2.hi, w3.hi}; }
 
     /// (C - B) omega3 + h, what turns omega2 into omega1, and (C - A) omega3 + h.
-    [[nodiscard]] Twofold k1() const { return (C - B) * w3 + h; }
-    [[nodiscard]] Twofold k2() const { return (C - A) * w3 + h; }
+    [[nodiscard]] DoubleDouble k1() const { return (C - B) * w3 + h; }
+    [[nodiscard]] DoubleDouble k2() const { return (C - A) * w3 + h; }
   };
 
   [[nodiscard]] static bool steady(const System& s) {
-    const auto none = [](const Twofold& a, const Twofold& b) { return a.hi == 0 || b.hi == 0; };
+    const auto none = [](const DoubleDouble& a, const DoubleDouble& b) {
+      return a.hi == 0 || b.hi == 0;
+    };
     return none(s.w1, s.k2()) && none(s.w2, s.k1()) && (none(s.w1, s.w2) || (s.B - s.A).hi == 0);
   }
 
@@ -278,26 +280,26 @@ class Gyrostat {
 
   /// value + slope v, not negative at v = 0.
   struct Linear {
-    Twofold value, slope;
+    DoubleDouble value, slope;
 
-    [[nodiscard]] Real operator()(const Twofold& v) const { return (value + slope * v).hi; }
-    [[nodiscard]] Twofold zero() const { return quotient(-value, slope); }
+    [[nodiscard]] Real operator()(const DoubleDouble& v) const { return (value + slope * v).hi; }
+    [[nodiscard]] DoubleDouble zero() const { return quotient(-value, slope); }
   };
 
   /// a v^2 + 2 b v + c,  c >= 0.
   struct Quadratic {
-    Twofold a, b, c;
+    DoubleDouble a, b, c;
 
-    [[nodiscard]] Twofold discriminant() const { return b * b - a * c; }
+    [[nodiscard]] DoubleDouble discriminant() const { return b * b - a * c; }
 
-    [[nodiscard]] Real polar(const Twofold& v, const Twofold& w) const {
+    [[nodiscard]] Real polar(const DoubleDouble& v, const DoubleDouble& w) const {
       return (c + b * (v + w) + a * v * w).hi;
     }
 
     [[nodiscard]] std::array<Linear, 2> factors() const {
-      const Twofold s = root(discriminant());
-      const Twofold t = b.hi < 0 ? b - s : b + s;
-      return {Linear{c, t}, Linear{1, t.hi == 0 ? Twofold(0) : quotient(a, t)}};
+      const DoubleDouble s = root(discriminant());
+      const DoubleDouble t = b.hi < 0 ? b - s : b + s;
+      return {Linear{c, t}, Linear{1, t.hi == 0 ? DoubleDouble(0) : quotient(a, t)}};
     }
   };
 
@@ -333,15 +335,15 @@ class Gyrostat {
       amplitude_[1] /= std::sqrt(moment2_ * b_a);
       start_at(s.w1.hi, s.w2.hi);
 
-      const Twofold l1 = s.A * s.w1;
-      const Twofold l2 = s.B * s.w2;
-      const Twofold l3 = s.C * s.w3 + s.h;
-      const Twofold L = root(l1 * l1 + l2 * l2 + l3 * l3);
+      const DoubleDouble l1 = s.A * s.w1;
+      const DoubleDouble l2 = s.B * s.w2;
+      const DoubleDouble l3 = s.C * s.w3 + s.h;
+      const DoubleDouble L = root(l1 * l1 + l2 * l2 + l3 * l3);
       equator_ = (l3 + l3 + s.C * (e0_ + e1_)).hi;
       g0_ = (L + l3 + s.C * e0_).hi;
       g1_ = (L + l3 + s.C * e1_).hi;
       steady_precession_ = (L + s.h).hi / s.C.hi;
-      const Twofold excess =
+      const DoubleDouble excess =
           s.C * (l1 * s.w1 + l2 * s.w2) - (L + l3) * (L + s.h + s.h - l3);  // 2 E C - (L + h)^2
       unsteady_precession_ = excess.hi / (s.C.hi * lambda_);
       const Real M = g0_ + kappa_ * g1_;
@@ -500,7 +502,7 @@ class Gyrostat {
     Real moment1_, moment2_;
     Real spin_;  ///< omega3 at time 0
     bool complex_ = false;
-    Twofold e0_ = 0, e1_ = 0;
+    DoubleDouble e0_ = 0, e1_ = 0;
     Real kappa_;
     EllipticFunctions functions_;
     Real lambda_;

@@ -7,11 +7,11 @@
 #include <complex>
 #include <optional>
 
+#include <dynamics/exact/double_double.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/refuse.hpp>
 #include <dynamics/exact/top_motion.hpp>
-#include <dynamics/exact/twofold.hpp>
 
 namespace kreisel::exact {
 
@@ -210,20 +210,20 @@ class LagrangeTop {
     Real plus;   ///< (L3 + L_vertical)/2A
     Real slope;  ///< F'(0) = v^2 - kappa r0 + 2 L3/A minus,  v^2 = omega1^2 + omega2^2
 
-    Exact(Twofold A, Twofold C, Twofold weight_moment, const Vector3<double>& omega,
+    Exact(DoubleDouble A, DoubleDouble C, DoubleDouble weight_moment, const Vector3<double>& omega,
           const Eigen::Quaterniond& q) {
-      const Twofold w = q.w();
-      const Twofold x = q.x();
-      const Twofold y = q.y();
-      const Twofold z = q.z();
-      const Twofold w1 = omega.x();
-      const Twofold w2 = omega.y();
-      const Twofold tilted = x * x + y * y;
-      const Twofold straight = w * w + z * z;
-      const Twofold norm2 = tilted + straight;
-      const Twofold axial = C * omega.z();
-      const Twofold across = A * (w1 * (x * z - w * y) + w2 * (y * z + w * x));
-      const Twofold above = A * norm2 * (w1 * w1 + w2 * w2) - 4 * weight_moment * tilted;
+      const DoubleDouble w = q.w();
+      const DoubleDouble x = q.x();
+      const DoubleDouble y = q.y();
+      const DoubleDouble z = q.z();
+      const DoubleDouble w1 = omega.x();
+      const DoubleDouble w2 = omega.y();
+      const DoubleDouble tilted = x * x + y * y;
+      const DoubleDouble straight = w * w + z * z;
+      const DoubleDouble norm2 = tilted + straight;
+      const DoubleDouble axial = C * omega.z();
+      const DoubleDouble across = A * (w1 * (x * z - w * y) + w2 * (y * z + w * x));
+      const DoubleDouble above = A * norm2 * (w1 * w1 + w2 * w2) - 4 * weight_moment * tilted;
       const Real A_norm2 = (A * norm2).hi;
       minus = (axial * tilted - across).hi / A_norm2;
       plus = (axial * straight + across).hi / A_norm2;

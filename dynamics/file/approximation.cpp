@@ -83,19 +83,19 @@ class Approximation final : public SceneSolver {
       : exact_(std::move(exact)), motion_(scene) {}
 
   [[nodiscard]] Trajectory<JointState> solve(
-      const Task& task, const JointState& start, const Listener& listener,
+      const SolveOptions& options, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const override {
     const auto clock = std::chrono::steady_clock::now();
     Trajectory<JointState> result = exact_->solve(
-        task, start, [&](double, const JointState&) { return !interrupted(); }, interrupted);
+        options, start, [&](double, const JointState&) { return !interrupted(); }, interrupted);
     if (result.report.status != RunStatus::complete) return result;
-    const std::vector<VectorXd> states = motion_.states(joined(start), task.times);
-    detail::ErrorMeasure<Measured> distance({tree().blocks()}, task.smallest);
+    const std::vector<VectorXd> states = motion_.states(joined(start), options.output_times);
+    detail::ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
     // Relative to the greatest size of the whole run: an approximation may begin with other rates.
     for (const JointState& state : result.states) (void)distance(joined(state), joined(state));
     RunReport& report = result.report;
     report.method = Motion::method;
-    const auto at_start = conserved(task.begin, start);
+    const auto at_start = conserved(options.begin, start);
     for (auto& invariant : report.invariants) invariant.largest = 0;
     const Eigen::Index coordinates = tree().coordinates();
     std::size_t done = 0;
@@ -118,7 +118,7 @@ class Approximation final : public SceneSolver {
       }
       if (!listener(t, state)) report.status = RunStatus::cancelled;
     }
-    if (done < task.times.size() && report.status == RunStatus::complete) {
+    if (done < options.output_times.size() && report.status == RunStatus::complete) {
       report.status = RunStatus::failed;
       report.message =
           "the motion is no longer slow against the nutations, which the precession "
@@ -127,7 +127,7 @@ class Approximation final : public SceneSolver {
     result.times.resize(done);
     result.states.resize(done);
     result.errors.resize(done);
-    report.tolerance_kept = report.error_estimate <= task.tolerance;
+    report.tolerance_kept = report.error_estimate <= options.tolerance;
     report.run_time =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return result;
@@ -160,7 +160,7 @@ class Approximation final : public SceneSolver {
 }  // namespace
 
 std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
-                                               std::unique_ptr<SceneSolver> exact) {
+                                                std::unique_ptr<SceneSolver> exact) {
   switch (scene.model) {
     case SceneModel::linear:
       return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));

@@ -16,6 +16,6 @@ namespace kreisel {
 /// fuchs-weigand : paper 002 (49), UnsymmetricRotor
 /// Throws        : InvalidInput where the scene has no such equations
 [[nodiscard]] std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
-                                                             std::unique_ptr<SceneSolver> exact);
+                                                              std::unique_ptr<SceneSolver> exact);
 
 }  // namespace kreisel

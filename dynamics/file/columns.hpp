@@ -13,7 +13,8 @@ namespace kreisel {
 std::vector<std::string> columns(const BodyTree& tree, bool reactions);
 
 /// The numbers of a row, in the order of the columns.
-std::vector<double> row(const SceneSolver& model, double t, const JointState& state, bool reactions);
+std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
+                        bool reactions);
 
 /// The row as pictures show it: what is rounding next to the scale is 0.
 std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,

@@ -6,7 +6,7 @@
 #include <string>
 
 #include <dynamics/file/gimbal_motion.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -87,7 +87,7 @@ CardanBearing bearing(const BodyDescription& ring) {
 template <class Gyro>
 std::vector<VectorXd> ring_oscillation(const Gyro& gyro, double t_begin, const VectorXd& start,
                                        const std::vector<double>& times) {
-  Advance run(gyro, t_begin, {start[0], start[1], start[3], start[4]}, {.relative = 1e-13});
+  Integrator run(gyro, t_begin, {start[0], start[1], start[3], start[4]}, {.relative = 1e-13});
   std::vector<VectorXd> result;
   for (const double t : times) {
     const auto ring = run.on_the_way(t_begin + t, t_begin + times.back());

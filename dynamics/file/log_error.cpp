@@ -86,18 +86,18 @@ class Beside {
   /// The end of a run along another guide.
   [[nodiscard]] End end_of(const SceneFile& scene, double tolerance) const {
     const std::unique_ptr<SceneSolver> other = make_model(scene);
-    Task task;
-    task.times = {run_.times.back()};
-    task.tolerance = tolerance;
-    task.method = method_named(run_.report.method).value_or(Method::automatic);
+    SolveOptions options;
+    options.output_times = {run_.times.back()};
+    options.tolerance = tolerance;
+    options.method = method_named(run_.report.method).value_or(Method::automatic);
     const auto beside = other->solve(
-        task, start_of(scene), [](double, const JointState&) { return true; }, interrupted_);
+        options, start_of(scene), [](double, const JointState&) { return true; }, interrupted_);
     if (interrupted_()) throw Interrupted{};
     if (beside.report.status != RunStatus::complete) {
       throw ComputationFailed("error of the log: a run beside failed: " + beside.report.message);
     }
     const JointState& state = beside.states.back();
-    return {state, other->reactions(task.times.back(), state)};
+    return {state, other->reactions(options.output_times.back(), state)};
   }
 
   /// The distance of two ends.

@@ -28,7 +28,8 @@ struct LogError {
 /// Cost   : thirteen runs for each log, to 1e-6, or to the task's tolerance where the error is as
 ///          small
 /// Throws : ComputationFailed where such a run fails
-[[nodiscard]] std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver& model,
+[[nodiscard]] std::optional<LogError> error_of_logs(const SceneFile& scene,
+                                                    const SceneSolver& model,
                                                     const Trajectory<JointState>& run,
                                                     const std::function<bool()>& interrupted);
 

@@ -10,7 +10,7 @@
 #include <dynamics/law/relative.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/solve/report.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 
 namespace kreisel {
 
@@ -26,7 +26,7 @@ class SceneSolver {
 
   /// Whether a signal wants the run to end is asked at every evaluation.
   [[nodiscard]] virtual Trajectory<JointState> solve(
-      const Task& task, const JointState& start, const Listener& listener,
+      const SolveOptions& options, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const = 0;
 
   /// How far its equations themselves were off in the latest run; 0 for the exact ones.

@@ -80,10 +80,10 @@ class ModelOnGuide final : public SceneSolver {
         workspace_(system_.workspace()) {}
 
   [[nodiscard]] Trajectory<JointState> solve(
-      const Task& task, const JointState& start, const Listener& listener,
+      const SolveOptions& options, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const override {
     const WatchedSystem<System> watched(system_, interrupted);
-    Task watched_task = task;
+    SolveOptions watched_task = options;
     watched_task.progress = [&](double t) { return listener(t, watched.latest()); };
     auto run = kreisel::solve(watched, State{start.coordinates, start.rates}, watched_task);
     Trajectory<JointState> result{

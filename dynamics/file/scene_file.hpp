@@ -11,7 +11,7 @@
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/tabulated.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/tree/description.hpp>
 #include <motor/error.hpp>
 

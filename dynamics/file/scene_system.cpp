@@ -75,7 +75,7 @@ struct SiteWeight {
   double magnitude;
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> g(N(magnitude), N(0), N(0));
     return UniformGravity<Inertial, N>{detail::guide_at<N>(site, s.t).X.value.rotation * g}(s);
   }

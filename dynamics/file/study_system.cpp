@@ -120,7 +120,7 @@ std::vector<StudySystem::Vector> StudySystem::technical(const Vector& start,
   const TechnicalBodies<SceneGuide> model(*bodies_);
   const auto [place, u] = model.start(0, start);
   TechnicalOptions options;
-  options.times = times;
+  options.output_times = times;
   const auto motion = technical_motion(model, 0, place, u, times.back(), options);
   std::vector<Vector> states;
   for (const auto& sample : motion.outputs) {

@@ -14,21 +14,21 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_parts.hpp>
+#include <dynamics/gimbal/cardan_series.hpp>
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/series.hpp>
 #include <dynamics/inertia.hpp>
-#include <dynamics/gimbal/cardan_parts.hpp>
-#include <dynamics/gimbal/cardan_series.hpp>
-#include <dynamics/model/dual_numbers.hpp>
-#include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/load/load.hpp>
+#include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/step/lanes.hpp>
-#include <motor/absent.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -65,7 +65,7 @@ inline constexpr bool drive_takes<Rotor, S> = requires(const Rotor& rotor, const
   S(rotor.torque(x, x));
 };
 
-/// u and its rate on guide axes; G and V are numbers or Absent.
+/// u and its rate on guide axes; G and V are numbers or StaticZero.
 template <class G, class V>
 struct Turning {
   Components<G> u = {};
@@ -73,7 +73,7 @@ struct Turning {
 };
 
 /// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
-/// number or, for a symmetric rotor that counts with the ring, Absent.
+/// number or, for a symmetric rotor that counts with the ring, StaticZero.
 template <class N>
 struct TurnedRotor {
   N P;  ///< about A_2
@@ -90,7 +90,7 @@ struct CardanMotion {
 };
 
 /// Rates of angular momentum of the three bodies, each on its ring's axes, the rotor's on the inner
-/// ring's; of phi'' nothing. N is Absent where the rotor counts with the inner ring.
+/// ring's; of phi'' nothing. N is StaticZero where the rotor counts with the inner ring.
 template <class S, class K, class N>
 struct CardanRates {
   K outer_a, outer_b, outer_c;
@@ -196,9 +196,9 @@ class CardanGyro {
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
                                              const Eigen::Matrix<S, 6, 1>& y) const {
     if constexpr (std::is_same_v<S, double>) {
-      if (loose_) return rates_of<detail::Absent, detail::Absent, detail::Absent>(t, y);
+      if (loose_) return rates_of<detail::StaticZero, detail::StaticZero, detail::StaticZero>(t, y);
     }
-    if (plain_) return rates_of<detail::Absent, detail::Absent, Parameter>(t, y);
+    if (plain_) return rates_of<detail::StaticZero, detail::StaticZero, Parameter>(t, y);
     return less_plain_rates<S>(t, y);
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
@@ -220,7 +220,7 @@ class CardanGyro {
     if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) gyro.torque = rotor_.torque;
     if constexpr (!regulated) gyro.friction = rotor_.friction;
     if constexpr (detail::never_turns<M> || detail::is_resting<M>) {
-      return detail::CardanSeries(gyro, detail::Absent{});
+      return detail::CardanSeries(gyro, detail::StaticZero{});
     } else if constexpr (SteadyGuide<M>) {
       return detail::CardanSeries(gyro, detail::components(detail::vector<double>(steady_)));
     } else {
@@ -237,7 +237,7 @@ class CardanGyro {
   /// The same gyro with its springs off by a last digit, if it has any: as much as the sums of
   /// moments that stand against them may be rounded by, which grows with each radian of their
   /// oscillation. For estimates of what rounding does.
-  [[nodiscard]] std::optional<CardanGyro> off_by_last_digits() const
+  [[nodiscard]] std::optional<CardanGyro> perturbed_by_ulps() const
       requires(std::is_same_v<Parameter, double>) {
     if (bearings_.outer.stiffness == 0 && bearings_.inner.stiffness == 0) return std::nullopt;
     CardanGyro other = *this;
@@ -516,7 +516,7 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] auto spin_torque([[maybe_unused]] const S& t, [[maybe_unused]] const S& df) const {
     if constexpr (std::is_same_v<Rotor, FrictionlessRotor>) {
-      return detail::Absent{};
+      return detail::StaticZero{};
     } else if constexpr (std::is_same_v<Rotor, DrivenRotor<double>>) {
       return S(rotor_.torque - S(rotor_.friction * df));
     } else if constexpr (detail::is_driven<Rotor>) {
@@ -553,9 +553,9 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] auto felt_turning(const S& t) const {
     if constexpr (detail::is_resting<M> || detail::never_turns<M>) {
-      return detail::Turning<detail::Absent, detail::Absent>{};
+      return detail::Turning<detail::StaticZero, detail::StaticZero>{};
     } else if constexpr (SteadyGuide<M>) {
-      return detail::Turning<S, detail::Absent>{{S(steady_.x), S(steady_.y), S(steady_.z)}, {}};
+      return detail::Turning<S, detail::StaticZero>{{S(steady_.x), S(steady_.y), S(steady_.z)}, {}};
     } else {
       return turning_at<S>(t);
     }
@@ -580,7 +580,7 @@ class CardanGyro {
 
   /// The left sides of the equations of motion.
   ///
-  /// G, V, N, D are S or Absent: a guide that turns, one that does so unsteadily, a rotor that is
+  /// G, V, N, D are S or StaticZero: a guide that turns, one that does so unsteadily, a rotor that is
   /// not counted with the inner ring, angular accelerations that are given.
   template <class S, class G, class V, class N, class D>
   [[nodiscard]] auto momentum_rates(const detail::Turning<G, V>& guide,
@@ -617,7 +617,7 @@ class CardanGyro {
     // A symmetric rotor, counted with the ring, is left with the momentum of its spin: all of it,
     // or, with C in the ring, that against the ring.
     constexpr bool counted = detail::is_absent<N>;
-    using Spin = std::conditional_t<counted, S, detail::Absent>;
+    using Spin = std::conditional_t<counted, S, detail::StaticZero>;
     const S L_c = moments_.rotor.z() * S(counted && regulated ? df : S(z2 + df));
     const Spin H = detail::kept<Spin>(L_c);
     detail::CardanRates<S, K, N> k;
@@ -639,7 +639,7 @@ class CardanGyro {
     return k;
   }
 
-  /// N is S, or Absent if the rotor is symmetric; Reference is Absent where the bearings have none,
+  /// N is S, or StaticZero if the rotor is symmetric; Reference is StaticZero where the bearings have none,
   /// Torque where they have neither springs nor friction.
   template <class N, class Reference, class Torque, class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
@@ -662,22 +662,22 @@ class CardanGyro {
     const auto& [sb, cb] = beta;
     const detail::TurnedRotor<N> rotor = turned_rotor<N>(y[2]);
     const auto& [P, Q, R, W] = rotor;
-    const auto k = momentum_rates<S, G, V, N, detail::Absent>(guide, alpha, beta, rotor, inner,
-                                                              {y[3], y[4], y[5]});
+    const auto k = momentum_rates<S, G, V, N, detail::StaticZero>(guide, alpha, beta, rotor, inner,
+                                                                  {y[3], y[4], y[5]});
 
     // The rotor's torque about C stands in for C_1 (dz_2 + phi''), or phi'' = 0 does.
     const auto on_rotor = [&] {
       if constexpr (!regulated) {
         return spin_torque<S>(t, y[5]);
       } else if constexpr (round) {
-        return detail::Absent{};
+        return detail::StaticZero{};
       } else {
         return S(C_1 * k.dz_2 + k.twist);
       }
     }();
     const auto resisted = [](const auto& bearing, const S& q, const S& dq) {
       if constexpr (detail::is_absent<Torque>) {
-        return detail::Absent{};
+        return detail::StaticZero{};
       } else {
         return resistance(bearing, q, dq);
       }
@@ -716,7 +716,7 @@ class CardanGyro {
   template <class S>
   [[nodiscard]] EIGEN_DONT_INLINE Eigen::Matrix<S, 6, 1> less_plain_rates(
       const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
-    if (symmetric_) return rates_of<detail::Absent, Parameter, Parameter>(t, y);
+    if (symmetric_) return rates_of<detail::StaticZero, Parameter, Parameter>(t, y);
     return rates_of<S, Parameter, Parameter>(t, y);
   }
 

@@ -5,8 +5,8 @@
 
 #include <dynamics/inertia.hpp>
 #include <dynamics/step/lanes.hpp>
-#include <motor/absent.hpp>
 #include <motor/error.hpp>
+#include <motor/static_zero.hpp>
 
 /// What a CardanGyro is made of, how it moves, and what is read out of it.
 
@@ -123,7 +123,7 @@ struct SinCos {
 /// Sine and cosine of reference + deviation, both relatively exact to 2u also where one of them
 /// is nearly 0: what rounding leaves of the sum is added to first order.
 template <class S>
-[[nodiscard, gnu::always_inline]] inline SinCos<S> sin_cos(Absent /*reference*/,
+[[nodiscard, gnu::always_inline]] inline SinCos<S> sin_cos(StaticZero /*reference*/,
                                                            const S& deviation) {
   using std::cos, std::sin;
   return {S(sin(deviation)), S(cos(deviation))};
@@ -131,7 +131,7 @@ template <class S>
 template <class P, class S>
 [[nodiscard, gnu::always_inline]] inline SinCos<S> sin_cos(const P& reference, const S& deviation) {
   using std::cos, std::sin;
-  if (all(reference == P(0))) return sin_cos(Absent{}, deviation);
+  if (all(reference == P(0))) return sin_cos(StaticZero{}, deviation);
   const S sum = reference + deviation;
   const S back = sum - reference;
   const S rest = (reference - S(sum - back)) + S(deviation - back);

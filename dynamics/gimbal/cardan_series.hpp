@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstddef>
 
-#include <dynamics/guide/series.hpp>
 #include <dynamics/gimbal/cardan_parts.hpp>
-#include <motor/absent.hpp>
+#include <dynamics/guide/series.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
 
@@ -95,7 +95,7 @@ struct CardanConstants {
 /// With the mean of A_1 and B_1 in the ring, what is left of the rotor's tensor on the ring's axes is
 /// n (cos 2 phi, sin 2 phi; sin 2 phi, -cos 2 phi).
 ///
-/// Turning : Absent where the guide does not turn; u where it does so steadily; or at(t, h, order),
+/// Turning : StaticZero where the guide does not turn; u where it does so steadily; or at(t, h, order),
 ///           which gives the series of u
 /// Source  : the equations are those of CardanGyro in another form; recurrences for products:
 ///           E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, I.8
@@ -293,7 +293,7 @@ class CardanSeries {
     }
   }
 
-  [[nodiscard]] static Components<double> first(const Absent& /*u*/) { return {}; }
+  [[nodiscard]] static Components<double> first(const StaticZero& /*u*/) { return {}; }
   [[nodiscard]] static Components<double> first(const Components<double>& u) { return u; }
   [[nodiscard]] static Components<double> first(const GuideSeries::Coefficients& u) { return u[0]; }
 

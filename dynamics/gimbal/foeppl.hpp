@@ -1,8 +1,8 @@
 #pragma once
 
-#include <dynamics/guide/resting.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gimbal_oscillation.hpp>
+#include <dynamics/guide/resting.hpp>
 #include <dynamics/model/terms.hpp>
 
 namespace kreisel {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/tree/description.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/model/terms.hpp>
+#include <dynamics/tree/description.hpp>
 
 namespace kreisel {
 

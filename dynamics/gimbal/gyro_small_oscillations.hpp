@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include <dynamics/guide/motion.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gimbal_oscillation.hpp>
+#include <dynamics/guide/motion.hpp>
 #include <dynamics/model/terms.hpp>
 
 namespace kreisel {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include <dynamics/guide/resting.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gimbal_oscillation.hpp>
+#include <dynamics/guide/resting.hpp>
 #include <dynamics/model/terms.hpp>
 
 namespace kreisel {

@@ -30,21 +30,21 @@ class AnalyticFrame {
   [[nodiscard]] GuideSeries series(double t, double h, int order,
                                    const detail::Components<double>& g) const {
     const Pose<PowerSeries> pose = posed_.function()(PowerSeries::time(t, h, order + 1));
-    const auto turned_back = [&pose](int k, const auto& x, const auto& y, const auto& z) {
+    const auto rotated_back = [&pose](int k, const auto& x, const auto& y, const auto& z) {
       const Matrix3<PowerSeries>& R = pose.rotation;
       return R(0, k) * x + R(1, k) * y + R(2, k) * z;
     };
     const auto turning = [&](int k, int i) {
       const Matrix3<PowerSeries>& R = pose.rotation;
-      return turned_back(k, R(0, i).derivative(h), R(1, i).derivative(h), R(2, i).derivative(h));
+      return rotated_back(k, R(0, i).derivative(h), R(1, i).derivative(h), R(2, i).derivative(h));
     };
     const PowerSeries u[] = {turning(2, 1), turning(0, 2), turning(1, 0)};
     const auto felt = [&](double along, int i) {
       return along - pose.translation[i].derivative(h).derivative(h);
     };
     const PowerSeries x = felt(g.x, 0), y = felt(g.y, 1), z = felt(g.z, 2);
-    const PowerSeries f[] = {turned_back(0, x, y, z), turned_back(1, x, y, z),
-                             turned_back(2, x, y, z)};
+    const PowerSeries f[] = {rotated_back(0, x, y, z), rotated_back(1, x, y, z),
+                             rotated_back(2, x, y, z)};
     GuideSeries result;
     for (int k = 0; k <= order; ++k) {
       const auto at = static_cast<std::size_t>(k);

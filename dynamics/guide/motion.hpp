@@ -4,9 +4,9 @@
 
 #include <concepts>
 
-#include <motor/absent.hpp>
 #include <motor/frame.hpp>
 #include <motor/rate.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -68,7 +68,7 @@ template <class M, class S>
 
 /// What never changes about a frame in steady motion, on its own axes: u (ou = 0) and the inertial
 /// acceleration of its origin. A guide whose motion is steady offers it as steady(); what it does
-/// not have is Absent by type.
+/// not have is StaticZero by type.
 ///
 /// Units  : rad/s, m/s^2
 template <class U, class A>

@@ -32,14 +32,14 @@ struct RotatingFrame {
     const auto w = t * u;
     // Its translation: the integral of exp(u s) a.
     const Pose<S> turn = exp(Motor<S>{detail::vector<S>(w), detail::vector<S>(t * a)});
-    const auto v =
-        turned_back(detail::Turn<S>::from(turn.rotation),
-                    turned_back(axes, components(origin_velocity)) + components(turn.translation));
+    const auto v = rotated_back(
+        detail::Turn<S>::from(turn.rotation),
+        rotated_back(axes, components(origin_velocity)) + components(turn.translation));
     FrameMotion<G, I, S> motion;
     detail::multiply(X.value.rotation, turn.rotation, motion.X.value.rotation);
     motion.X.value.translation =
         detail::vector<S>(components(X.value.translation) + t * components(origin_velocity) +
-                          turned(axes, (t * t) * twice_integrated(w, a)));
+                          rotated(axes, (t * t) * twice_integrated(w, a)));
     motion.V.value = {angular_velocity, detail::vector<S>(v)};
     motion.dV.value = {Vector3<S>::Zero(), detail::vector<S>(a - cross(u, v))};
     return motion;

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <limits>
 
-#include <motor/absent.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 

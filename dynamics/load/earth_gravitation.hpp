@@ -23,7 +23,7 @@ struct EarthGravitation {
 
   template <class N>
   requires(!detail::is_pack<N>) [[nodiscard]] Force<Body, N> operator()(
-      const Situation<N>& s) const {
+      const LoadContext<N>& s) const {
     const Vector3<N> centre = s.centre();
     const Vector3<N> g =
         s.template on_body_axes<Inertial>(field(Vector3<N>(s.template place<Inertial>(centre))));
@@ -31,7 +31,7 @@ struct EarthGravitation {
     return {{weight, centre.cross(weight)}};
   }
 
-  [[nodiscard]] double potential(const Situation<>& s) const {
+  [[nodiscard]] double potential(const LoadContext<>& s) const {
     const Vector3<double> p = s.place<Inertial>(s.centre());
     Vector3<double> g;
     const auto& field = GeographicLib::NormalGravity::WGS84();

@@ -14,7 +14,7 @@ namespace kreisel {
 
 /// Where a body is and how it moves at one moment: what a load may depend on.
 template <class S = double>
-struct Situation {
+struct LoadContext {
   S t = S(0);
   Displacement<Guide, Body, S> X = {};         ///< the body in the guide
   Velocity<Body, Guide, Body, S> V_rel = {};   ///< V'
@@ -52,7 +52,7 @@ struct Situation {
 
 /// What acts on a body: called with a situation it gives force and torque about the body's origin,
 /// on body axes. A user's lambda is one. A load that has a potential says so by a member
-/// potential(situation), which the read-outs add up; one that does not look at Situation::guide by
+/// potential(situation), which the read-outs add up; one that does not look at LoadContext::guide by
 /// a static member ignores_guide = true, which spares scenes to work the guide out. A static member
 /// kind is its name in terms().
 ///
@@ -63,7 +63,7 @@ struct Situation {
 /// Those here are called with situations in any numbers: what they do is differentiated by dual
 /// ones.
 template <class L, class S = double>
-concept Load = requires(const L& load, const Situation<S>& s) {
+concept Load = requires(const L& load, const LoadContext<S>& s) {
   { load(s) } -> std::same_as<Force<Body, S>>;
 };
 
@@ -94,7 +94,7 @@ struct UniformGravity {
   Vector3<S> g = Vector3<S>::Zero();
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> g_Body = s.template on_body_axes<A>(g.template cast<N>());
     const Inertia<N>& T = s.inertia.value;
     return {{T.mass * g_Body, T.first_moment.cross(g_Body)}};
@@ -104,7 +104,7 @@ struct UniformGravity {
   [[nodiscard]] bool keeps_energy() const { return !std::is_same_v<A, Body>; }
 
   /// Zero where the centre of mass is at the origin of A.
-  [[nodiscard]] S potential(const Situation<S>& s) const {
+  [[nodiscard]] S potential(const LoadContext<S>& s) const {
     return -s.inertia.value.mass * g.dot(s.template place<A>(s.centre()));
   }
 };
@@ -122,7 +122,7 @@ struct ConstantLoad {
   Vector3<S> point = Vector3<S>::Zero();
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> f = s.template on_body_axes<A>(force.template cast<N>());
     return {{f, s.template on_body_axes<A>(torque.template cast<N>()) +
                     point.template cast<N>().cross(f)}};
@@ -141,7 +141,7 @@ struct ViscousDrag {
   S force_per_velocity = S(0);  ///< k, acting at the body's origin
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     return {{N(-force_per_velocity) * s.V_rel.value.moment,
              N(-torque_per_rate) * s.V_rel.value.resultant}};
   }
@@ -164,7 +164,7 @@ struct Spring {
   S damping = S(0);
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> end = body_end.template cast<N>();
     const Vector3<N> reach =
         s.template on_body_axes<Guide>(s.template place<Guide>(end) - guide_end.template cast<N>());
@@ -180,7 +180,7 @@ struct Spring {
 
   [[nodiscard]] bool keeps_energy() const { return damping == S(0); }
 
-  [[nodiscard]] S potential(const Situation<S>& s) const {
+  [[nodiscard]] S potential(const LoadContext<S>& s) const {
     const S stretch = (s.template place<Guide>(body_end) - guide_end).norm() - rest_length;
     return stiffness * stretch * stretch / S(2);
   }
@@ -202,7 +202,7 @@ struct ElasticMount {
   Vector3<S> preload = Vector3<S>::Zero();  ///< on the body, on guide axes, when both ends meet
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> end = body_end.template cast<N>();
     const Vector3<N> deflection = s.template place<Guide>(end) - guide_end.template cast<N>();
     const Vector3<N> rate = s.X.value.rotation * s.velocity(end);
@@ -229,7 +229,7 @@ struct ElasticMount {
     return !is_damped && apart <= S(18) * std::numeric_limits<S>::epsilon() * greatest;
   }
 
-  [[nodiscard]] S potential(const Situation<S>& s) const {
+  [[nodiscard]] S potential(const LoadContext<S>& s) const {
     const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;
     return deflection.dot(stiffness * deflection) / S(2) - preload.dot(deflection);
   }

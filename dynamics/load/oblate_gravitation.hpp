@@ -36,7 +36,7 @@ struct OblateGravitation {
     return -(parameter / (r2 * r)) * g;
   }
 
-  [[nodiscard]] Force<Body, S> operator()(const Situation<S>& s) const {
+  [[nodiscard]] Force<Body, S> operator()(const LoadContext<S>& s) const {
     const Vector3<S> centre = s.centre();
     const Vector3<S> g =
         s.template on_body_axes<Inertial>((*this)(s.template place<Inertial>(centre)));
@@ -44,7 +44,7 @@ struct OblateGravitation {
     return {{weight, centre.cross(weight)}};
   }
 
-  [[nodiscard]] S potential(const Situation<S>& s) const {
+  [[nodiscard]] S potential(const LoadContext<S>& s) const {
     const Vector3<S> p = s.template place<Inertial>(s.centre());
     const S r = p.norm();
     const S sine = p.z() / r;

@@ -17,7 +17,7 @@ struct ClosedForm {
   std::string name;
   std::function<State(double)> at;
   /// By the measure of RunReport::error_estimate at output times, given in turn: error(t, smallest),
-  /// `smallest` that of the Task.
+  /// `smallest` that of the SolveOptions.
   std::function<double(double, double)> error;
 };
 

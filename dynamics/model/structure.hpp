@@ -10,8 +10,8 @@
 
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/load.hpp>
-#include <motor/absent.hpp>
 #include <motor/error.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -20,7 +20,7 @@ namespace kreisel {
 struct FirstMoment {
   static constexpr const char* name = "FirstMoment";
 };
-/// About O' of a HeldBody, about its centre of mass of a FreeBody.
+/// About O' of a FixedPointBody, about its centre of mass of a FreeBody.
 struct ProductsOfInertia {
   static constexpr const char* name = "ProductsOfInertia";
 };
@@ -60,7 +60,7 @@ enum class Axis { x, y, z };
 /// Says in a scene's type that a quantity's components about these axes vanish (without axes: all
 /// of it). What they would have multiplied is then not in the program.
 ///
-///   HeldBody(T, point, guide, gravity, Without<FirstMoment, Axis::x, Axis::y>{},
+///   FixedPointBody(T, point, guide, gravity, Without<FirstMoment, Axis::x, Axis::y>{},
 ///            Without<ProductsOfInertia>{})
 ///
 /// It stands among the loads, and is one that does nothing. The scene holds it against its numbers
@@ -70,7 +70,7 @@ struct Without {
   static constexpr bool ignores_spin = true;
 
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& /*s*/) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& /*s*/) const {
     return {};
   }
 };
@@ -88,9 +88,9 @@ template <class Quantity, Axis axis, class... Parts>
 inline constexpr bool vanishes = (says_without<Parts, Quantity, axis> || ...);
 
 template <class Quantity, class N, class... Parts>
-using Kept = Components<std::conditional_t<vanishes<Quantity, Axis::x, Parts...>, Absent, N>,
-                        std::conditional_t<vanishes<Quantity, Axis::y, Parts...>, Absent, N>,
-                        std::conditional_t<vanishes<Quantity, Axis::z, Parts...>, Absent, N>>;
+using Kept = Components<std::conditional_t<vanishes<Quantity, Axis::x, Parts...>, StaticZero, N>,
+                        std::conditional_t<vanishes<Quantity, Axis::y, Parts...>, StaticZero, N>,
+                        std::conditional_t<vanishes<Quantity, Axis::z, Parts...>, StaticZero, N>>;
 
 /// A number, or nothing of it.
 template <class T, class N>
@@ -105,9 +105,9 @@ template <class T, class N>
 /// A vector without the components that vanish.
 template <class Quantity, class... Parts, class X, class Y, class Z>
 [[nodiscard]] auto without(const Components<X, Y, Z>& v) {
-  using P = std::conditional_t<vanishes<Quantity, Axis::x, Parts...>, Absent, X>;
-  using Q = std::conditional_t<vanishes<Quantity, Axis::y, Parts...>, Absent, Y>;
-  using R = std::conditional_t<vanishes<Quantity, Axis::z, Parts...>, Absent, Z>;
+  using P = std::conditional_t<vanishes<Quantity, Axis::x, Parts...>, StaticZero, X>;
+  using Q = std::conditional_t<vanishes<Quantity, Axis::y, Parts...>, StaticZero, Y>;
+  using R = std::conditional_t<vanishes<Quantity, Axis::z, Parts...>, StaticZero, Z>;
   return Components<P, Q, R>{kept<P>(v.x), kept<Q>(v.y), kept<R>(v.z)};
 }
 
@@ -215,7 +215,7 @@ class GeneralTensor {
   }
 
   /// The tensor with its entries moved by two last digits: one for them, one for their factors.
-  [[nodiscard]] GeneralTensor off_by_last_digits() const {
+  [[nodiscard]] GeneralTensor perturbed_by_ulps() const {
     const Symmetric3<double>& T = tensor_;
     constexpr double up = 1 + 2 * std::numeric_limits<double>::epsilon();
     constexpr double down = 1 - 2 * std::numeric_limits<double>::epsilon();

@@ -37,7 +37,7 @@ class Terms {
 /// What a scene's field computes and what its type, or what it found out when it was built, leaves
 /// out: said by the same constants and types that the field is compiled from.
 ///
-///   std::cout << terms(HeldBody(rod, {0, 0, 0}, RestingFrame<>{}, ViscousDrag<>{0.02}));
+///   std::cout << terms(FixedPointBody(rod, {0, 0, 0}, RestingFrame<>{}, ViscousDrag<>{0.02}));
 ///
 /// A term that is kept may still be 0 in numbers: of those no type knows.
 ///

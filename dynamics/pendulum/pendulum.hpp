@@ -9,12 +9,12 @@
 
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/inertia.hpp>
-#include <dynamics/pendulum/pendulum_series.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
-#include <motor/absent.hpp>
+#include <dynamics/pendulum/pendulum_series.hpp>
 #include <motor/error.hpp>
 #include <motor/motor.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -150,7 +150,7 @@ struct PendulumParts {
 namespace detail {
 
 /// The moments of inertia that matter and the products, over a common divisor; of a body without
-/// products P is Absent.
+/// products P is StaticZero.
 template <class S, class P>
 struct PendulumShape {
   S moment;    ///< m a
@@ -158,7 +158,7 @@ struct PendulumShape {
   Components<P> phi;
 };
 
-/// PendulumTerms of which each is a number or Absent.
+/// PendulumTerms of which each is a number or StaticZero.
 template <class E, class F, class H, class K>
 struct PlaneTerms {
   E e;
@@ -198,7 +198,7 @@ template <class S, class P, class A>
 [[nodiscard]] auto euler_terms(const PendulumShape<S, P>& body, const Components<A>& du) {
   using E = Product<A, P>;
   const Components<P>& phi = body.phi;
-  return PlaneTerms<E, E, Absent, Absent>{
+  return PlaneTerms<E, E, StaticZero, StaticZero>{
       E(phi.x * du.x - phi.y * du.y), E(E(-E(phi.x * du.y)) - E(phi.y * du.x)), {}, {}};
 }
 
@@ -208,13 +208,13 @@ template <class S, class P>
   return gradient_terms(body, S(G(1, 1) - G(0, 0)), S(G(0, 1)), S(G(0, 2)), S(G(1, 2)));
 }
 
-/// 0 for what is Absent.
+/// 0 for what is StaticZero.
 template <class S, class F>
 [[nodiscard]] PendulumTerms<S> terms(const PlaneTerms<F, F, S, S>& t) {
   return {S(S(0) + t.e), S(S(0) + t.f), t.h, t.k};
 }
 template <class S>
-[[nodiscard]] PendulumTerms<S> terms(const PlaneTerms<S, S, Absent, Absent>& t) {
+[[nodiscard]] PendulumTerms<S> terms(const PlaneTerms<S, S, StaticZero, StaticZero>& t) {
   return {t.e, t.f, S(0), S(0)};
 }
 
@@ -223,7 +223,7 @@ template <class S>
   return {body.mass * body.arm, body.theta_b - body.theta_a, {body.phi_a, body.phi_b, body.phi_c}};
 }
 
-/// e sin(phi) + f cos(phi) + h cos(2 phi) + k sin(2 phi), each of the four a number or Absent.
+/// e sin(phi) + f cos(phi) + h cos(2 phi) + k sin(2 phi), each of the four a number or StaticZero.
 template <class A, class E, class F, class H, class K>
 [[nodiscard]] A restoring_moment(const E& e, const F& f, const H& h, const K& twice_k,
                                  const A& phi) {
@@ -359,7 +359,7 @@ inline constexpr bool is_steady_pendulum_guide<PendulumGuide<S>> = true;
 template <class S>
 inline constexpr bool is_steady_pendulum_guide<RestingPendulumGuide<S>> = true;
 
-/// E, F, H, 2K and ou_z over Theta_C: numbers, or Absent.
+/// E, F, H, 2K and ou_z over Theta_C: numbers, or StaticZero.
 template <class E, class F, class H, class K, class D>
 struct PendulumEquation {
   E e;
@@ -385,7 +385,7 @@ template <class S, class P>
 }
 
 template <class S, class P>
-[[nodiscard]] PendulumEquation<S, Absent, Absent, Absent, Absent> pendulum_equation(
+[[nodiscard]] PendulumEquation<S, StaticZero, StaticZero, StaticZero, StaticZero> pendulum_equation(
     const PendulumShape<S, P>& over_theta, const RestingPendulumGuide<S>& guide) {
   return {S(over_theta.moment * guide.gravity), {}, {}, {}, {}};
 }
@@ -396,7 +396,7 @@ template <class Shape, class Motion>
   if constexpr (is_steady_pendulum_guide<Motion>) {
     return pendulum_equation(over_theta, motion);
   } else {
-    return Absent{};
+    return StaticZero{};
   }
 }
 
@@ -465,7 +465,7 @@ class PendulumField {
 
  private:
   static constexpr bool principal = detail::principal<Known...>;
-  using Shape = detail::PendulumShape<S, std::conditional_t<principal, detail::Absent, S>>;
+  using Shape = detail::PendulumShape<S, std::conditional_t<principal, detail::StaticZero, S>>;
 
   [[nodiscard]] static Shape known_shape(const PendulumBody<S>& body) {
     const S moment = body.mass * body.arm / body.theta_c;

@@ -17,7 +17,7 @@ namespace kreisel {
 ///
 /// The earth's rotation moves a swing of 1 rad by 1e-9 rad in half a minute: the difference of two
 /// runs would have six digits of that, this has twelve. Each component is measured by its own
-/// size: ask for Accuracy::smallest or Task::smallest = 0.
+/// size: ask for Accuracy::absolute_scale or SolveOptions::absolute_scale = 0.
 ///
 /// D      : callable (S t, S angle, S rate) -> S, an angular acceleration; name S as its result, for
 ///          what dual numbers give to auto refers to what is gone by then

@@ -52,9 +52,9 @@ template <class S, class Look>
 /// signs at the ends decide. What is undecided at r = sqrt(epsilon), or is 0 to rounding all over,
 /// is a cluster: a bifurcation point, examined by its ends and its extremum.
 template <class S>
-class EquilibriumSearch {
+class EquilibriumOptions {
  public:
-  explicit EquilibriumSearch(const PendulumCoefficients<S>& c) : c_(c), e_(c.e()) {
+  explicit EquilibriumOptions(const PendulumCoefficients<S>& c) : c_(c), e_(c.e()) {
     using std::abs, std::acos, std::sqrt;
     pi_ = acos(S(-1));
     const S size = abs(e_) + abs(c.f) + abs(c.h) + abs(c.k);
@@ -251,7 +251,7 @@ class EquilibriumSearch {
 /// Throws : InvalidInput when E, F, H, K are all 0, or not finite
 template <class S>
 [[nodiscard]] std::vector<Equilibrium<S>> equilibria(const PendulumCoefficients<S>& c) {
-  return detail::EquilibriumSearch<S>(c).run();
+  return detail::EquilibriumOptions<S>(c).run();
 }
 
 /// The stable equilibrium nearest 0; of two equally near (to 16u), the positive one.

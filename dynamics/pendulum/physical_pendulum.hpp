@@ -13,10 +13,10 @@
 
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/model/closed_form.hpp>
+#include <dynamics/model/terms.hpp>
 #include <dynamics/pendulum/pendulum.hpp>
 #include <dynamics/pendulum/pendulum_motion.hpp>
 #include <dynamics/pendulum/pendulum_series.hpp>
-#include <dynamics/model/terms.hpp>
 
 namespace kreisel {
 
@@ -78,7 +78,7 @@ class SteadyPendulumMotionError {
 ///   Theta_C phi.. + f(phi.) + E sin phi + F cos phi + H cos 2phi + K sin 2phi = -Theta_C ou_z
 ///
 ///   const PhysicalPendulum pendulum(PendulumBody<>::thin_rod(1), pendulum_guide(earth_guide(site)));
-///   const auto run = solve(pendulum, {.angle = 0.1}, {.times = {3600}, .tolerance = 1e-12});
+///   const auto run = solve(pendulum, {.angle = 0.1}, {.output_times = {3600}, .tolerance = 1e-12});
 ///
 /// Motion is a PendulumGuide or a RestingPendulumGuide where the guide moves steadily, or a function
 /// of time that returns one of both; Damping a function phi. -> f(phi.) [N m]; Known what is said of

@@ -9,11 +9,11 @@
 
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/guide/series.hpp>
-#include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/load/load.hpp>
+#include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
-#include <motor/absent.hpp>
+#include <motor/static_zero.hpp>
 
 /// What a body in a guide feels of the guide's motion, on guide axes: by need and, where the motion
 /// is steady, worked out beforehand.
@@ -177,7 +177,7 @@ template <bool gravity, class P, class M, class... Loads>
       const auto carried = carried_acceleration(u, NoVector{}, motion.origin_acceleration, r);
       const auto in_guide = field_on<Guide>(loads...) - carried;
       const auto inertial =
-          turned_back(Turn<double>::from(guide(0).X.value.rotation), field_on<Inertial>(loads...));
+          rotated_back(Turn<double>::from(guide(0).X.value.rotation), field_on<Inertial>(loads...));
       if constexpr (has_field<Inertial, Loads...> && !U::absent) {
         static_assert(!restricts_felt_gravity<Loads...>,
                       "gravity that rests in the inertial frame turns in this guide");
@@ -250,12 +250,12 @@ class FeltSeries {
 
 /// The motion of a guide M as a body with these loads feels it at the guide-fixed point r.
 ///
-/// P is NoVector where r is the guide's origin. Without `gravity` g' is Absent: it does not matter
+/// P is NoVector where r is the guide's origin. Without `gravity` g' is StaticZero: it does not matter
 /// to what is held at its centre of mass.
 template <bool gravity, class P, class M, class... Loads>
-class FeltMotion {
+class ApparentField {
  public:
-  FeltMotion(const P& r, const M& guide, const std::string& what, const Loads&... loads)
+  ApparentField(const P& r, const M& guide, const std::string& what, const Loads&... loads)
       : r_(r), known_(known_motion<gravity>(r, guide, what, loads...)) {}
 
   /// All that a body feels of a guide that moves steadily or analytically, for AttitudeSeries.
@@ -310,7 +310,7 @@ class FeltMotion {
     if constexpr (gravity) {
       const auto g =
           field_on<Guide>(loads...) +
-          turned_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
+          rotated_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
           carried_acceleration(u, du, components(a), r_);
       return felt(u, du, g);
     } else {
@@ -336,7 +336,8 @@ template <class M>
     return guide.series(t, h, order, g);
   } else {
     const UniformGravity<Inertial> field{vector<double>(g)};
-    const FeltMotion<true, NoVector, M, UniformGravity<Inertial>> felt({}, guide, "guide", field);
+    const ApparentField<true, NoVector, M, UniformGravity<Inertial>> felt({}, guide, "guide",
+                                                                          field);
     const auto whole = felt.whole(guide, field);
     if constexpr (requires { whole.at(t, h, order); }) {
       return whole.at(t, h, order);
@@ -351,7 +352,7 @@ template <class M>
 
 /// The loads that are no field and no statement, together.
 template <class N, class... Loads>
-[[nodiscard]] Force<Body, N> forces(const Situation<N>& s, const Loads&... loads) {
+[[nodiscard]] Force<Body, N> forces(const LoadContext<N>& s, const Loads&... loads) {
   Force<Body, N> sum;
   const auto add = [&](const auto& load) {
     if constexpr (is_force<std::decay_t<decltype(load)>>) sum = sum + load(s);

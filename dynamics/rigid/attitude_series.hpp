@@ -6,8 +6,8 @@
 #include <dynamics/guide/series.hpp>
 #include <dynamics/rigid/diagonals.hpp>
 #include <dynamics/rigid/tensor_of_four.hpp>
-#include <motor/absent.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
 

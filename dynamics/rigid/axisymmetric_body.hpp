@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <motor/attitude.hpp>
 #include <motor/four.hpp>
 
@@ -19,7 +19,7 @@ namespace kreisel {
 /// A body of revolution held at a point of its axis at a point of a moving guide: a top or a gyro on
 /// a ship, however fast it spins.
 ///
-/// The same motion as HeldBody's, in axes that follow the body's axis but not its spin (Resal's).
+/// The same motion as FixedPointBody's, in axes that follow the body's axis but not its spin (Resal's).
 /// Nothing in them turns with the spin, only with the nutation, and the steps need resolve no more:
 /// the angle of spin is summed up beside them, for whoever wants to see the body's own axes.
 ///
@@ -30,13 +30,13 @@ namespace kreisel {
 /// Source : H. Resal, Traite de cinematique pure (1862); paper 002 (5) for *u'
 /// Frame  : z is the axis of the body; State on Resal's axes
 /// Units  : kg, metre, kg m^2, rad/s
-/// Error  : top of 3000 rad/s, 1 s: 29 000 evaluations where HeldBody takes 125 000, at 1e-12
+/// Error  : top of 3000 rad/s, 1 s: 29 000 evaluations where FixedPointBody takes 125 000, at 1e-12
 ///          (tests/dynamics/rigid/axisymmetric_body.cpp)
 /// Throws : InvalidInput where no body has these moments or one of them is 0
 template <class M, class... Loads>
 class AxisymmetricBody {
-  using Held =
-      HeldBody<M, Loads..., Without<ProductsOfInertia>, Without<FirstMoment, Axis::x, Axis::y>>;
+  using Held = FixedPointBody<M, Loads..., Without<ProductsOfInertia>,
+                              Without<FirstMoment, Axis::x, Axis::y>>;
 
  public:
   using S = double;
@@ -94,8 +94,8 @@ class AxisymmetricBody {
   }
 
   /// The body's read-out, its motors on the body's own axes.
-  [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {
-    return body_.read_out(t, on_body_axes(state));
+  [[nodiscard]] BodyOutputs<S> body_outputs(const S& t, const State& state) const {
+    return body_.body_outputs(t, on_body_axes(state));
   }
 
   /// For integrators: components that share unit and size.

@@ -12,14 +12,14 @@
 #include <vector>
 
 #include <dynamics/inertia.hpp>
-#include <dynamics/rigid/attitude_series.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
+#include <dynamics/rigid/attitude_series.hpp>
 #include <dynamics/step/lanes.hpp>
-#include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -49,7 +49,7 @@ struct EulerTopState {
 ///
 ///   Theta w' + w x (Theta w + h) = -k x gamma,   gamma = the vertical on body axes
 ///
-/// HeldBody has the same and more, on a guide that moves; this one knows that nothing does, and
+/// FixedPointBody has the same and more, on a guide that moves; this one knows that nothing does, and
 /// takes principal axes.
 ///
 /// Source : L. Euler; Lagrange; S. Kovalevskaya, Acta Math. 12 (1889) 177, whose invariant is named
@@ -153,7 +153,7 @@ class BasicEulerTop {
     const S imaginary = 2 * w.x() * w.y() - (k.x() * gamma.y + k.y() * gamma.x) / C;
     return {twice_kinetic / 2 + potential, gamma.x * L.x + gamma.y * L.y + gamma.z * L.z, L.z,
             real * real + imaginary * imaginary,
-            detail::vector<S>(turned(detail::Turn<S>::from(q), L))};
+            detail::vector<S>(rotated(detail::Turn<S>::from(q), L))};
   }
 
   /// Those of the invariants that this top keeps, by name.

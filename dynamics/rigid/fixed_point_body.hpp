@@ -13,17 +13,17 @@
 
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/rigid/attitude_series.hpp>
 #include <dynamics/model/dual_numbers.hpp>
-#include <dynamics/rigid/apparent_field.hpp>
-#include <dynamics/rigid/jacobi_integral.hpp>
-#include <dynamics/tree/body_outputs.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
-#include <motor/absent.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
+#include <dynamics/rigid/attitude_series.hpp>
+#include <dynamics/rigid/jacobi_integral.hpp>
+#include <dynamics/tree/body_outputs.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -48,9 +48,10 @@ struct HeldBodyState {
 /// Throws : InvalidInput where the inertia is none or the tensor about O' is singular (a needle
 ///          along a line through O', all mass in O')
 template <class M, class... Loads>
-class HeldBody {
+class FixedPointBody {
   static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
-  static_assert(detail::are_loads<Loads...>, "a load takes a Situation and returns a Force<Body>");
+  static_assert(detail::are_loads<Loads...>,
+                "a load takes a LoadContext and returns a Force<Body>");
 
  public:
   using S = double;
@@ -59,7 +60,8 @@ class HeldBody {
   using State = HeldBodyState;
 
   /// `point` is where in the guide the body is held.
-  HeldBody(const InertiaTensor<Body, S>& inertia, const Vector3<S>& point, M guide, Loads... loads)
+  FixedPointBody(const InertiaTensor<Body, S>& inertia, const Vector3<S>& point, M guide,
+                 Loads... loads)
       : inertia_(inertia),
         point_(point),
         guide_(std::move(guide)),
@@ -84,8 +86,8 @@ class HeldBody {
     }
   }
 
-  [[nodiscard]] Situation<S> situation(const S& t, const State& state) const {
-    Situation<S> s =
+  [[nodiscard]] LoadContext<S> situation(const S& t, const State& state) const {
+    LoadContext<S> s =
         situation_in<S>(t, Pose<S>::from(state.attitude).rotation, state.angular_velocity);
     s.guide = detail::guide_at<S>(guide_, t);
     return s;
@@ -97,7 +99,7 @@ class HeldBody {
   ///
   /// with g' what a body at rest in the guide feels at O' of uniform gravity, and M all other loads.
   template <class N>
-  [[nodiscard]] Vector3<N> acceleration(const Situation<N>& s) const {
+  [[nodiscard]] Vector3<N> acceleration(const LoadContext<N>& s) const {
     const auto turn = detail::Turn<N>::from(s.X.value.rotation);
     const auto u = detail::components(s.V_rel.value.resultant);
     return std::apply(
@@ -122,7 +124,7 @@ class HeldBody {
             return acceleration_of(turn, detail::components(u), felt_.at(guide_, N(t), all...),
                                    detail::NoVector{});
           } else {
-            Situation<N> s = situation_in<N>(t, turn.matrix(), u);
+            LoadContext<N> s = situation_in<N>(t, turn.matrix(), u);
             if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
             if constexpr (guide_is_read && !SteadyGuide<M>) {
               return acceleration_of(turn, detail::components(u), felt_.in(s.guide, all...),
@@ -145,11 +147,11 @@ class HeldBody {
     return series_on<detail::RateAxes::body>();
   }
 
-  [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {
-    const Situation<S> s = situation(t, state);
+  [[nodiscard]] BodyOutputs<S> body_outputs(const S& t, const State& state) const {
+    const LoadContext<S> s = situation(t, state);
     return std::apply(
         [&](const auto&... loads) {
-          return detail::read_out(s, {{acceleration(s), Vector3<S>::Zero()}}, loads...);
+          return detail::body_outputs(s, {{acceleration(s), Vector3<S>::Zero()}}, loads...);
         },
         loads_);
   }
@@ -219,7 +221,7 @@ class HeldBody {
                                                                  const State& state) const {
     return std::apply(
         [&](const Loads&... all) {
-          const Situation<S> s = situation(t, state);
+          const LoadContext<S> s = situation(t, state);
           auto kept = detail::kept_energy(guide_, s, all...);
           detail::add_kept_momenta<M>(kept, s, s.X.value.translation, false, all...);
           return kept;
@@ -229,13 +231,13 @@ class HeldBody {
 
   /// The same body with its tensor off by last digits, where that makes more than last digits of
   /// the motion: for estimates of what rounding does.
-  [[nodiscard]] std::optional<HeldBody> off_by_last_digits() const {
+  [[nodiscard]] std::optional<FixedPointBody> perturbed_by_ulps() const {
     if constexpr (detail::principal<Loads...>) {
       return std::nullopt;
     } else {
       if (!tensor_.is_nearly_singular()) return std::nullopt;
-      HeldBody other = *this;
-      other.tensor_ = tensor_.off_by_last_digits();
+      FixedPointBody other = *this;
+      other.tensor_ = tensor_.perturbed_by_ulps();
       return other;
     }
   }
@@ -271,20 +273,20 @@ class HeldBody {
   }
 
   template <class OtherGuide, class... Others>
-  [[nodiscard]] HeldBody<OtherGuide, Others...> remade(const InertiaTensor<Body, S>& inertia,
-                                                       const OtherGuide& guide,
-                                                       const std::tuple<Others...>& loads) const {
+  [[nodiscard]] FixedPointBody<OtherGuide, Others...> remade(
+      const InertiaTensor<Body, S>& inertia, const OtherGuide& guide,
+      const std::tuple<Others...>& loads) const {
     return std::apply(
         [&](const Others&... all) {
-          return HeldBody<OtherGuide, Others...>(inertia, point_, guide, all...);
+          return FixedPointBody<OtherGuide, Others...>(inertia, point_, guide, all...);
         },
         loads);
   }
 
   /// All but the guide's motion.
   template <class N>
-  [[nodiscard]] Situation<N> situation_in(const N& t, const Matrix3<N>& attitude,
-                                          const Vector3<N>& u) const {
+  [[nodiscard]] LoadContext<N> situation_in(const N& t, const Matrix3<N>& attitude,
+                                            const Vector3<N>& u) const {
     return {t,
             {{attitude, point_.template cast<N>()}},
             {{u, Vector3<N>::Zero()}},
@@ -296,11 +298,11 @@ class HeldBody {
   [[nodiscard]] detail::Components<N> acceleration_of(const detail::Turn<N>& R,
                                                       const detail::Components<N>& u_rel,
                                                       const U& guide, const T& torque) const {
-    const auto u = turned_back(R, guide.u);
+    const auto u = rotated_back(R, guide.u);
     const auto w = u_rel + u;
     const auto moment =
-        tensor_.gyroscopic_torque(w) + cross(first_moment_, turned_back(R, guide.g)) + torque;
-    return tensor_.solve(moment) - turned_back(R, guide.du) + cross(u_rel, u);
+        tensor_.gyroscopic_torque(w) + cross(first_moment_, rotated_back(R, guide.g)) + torque;
+    return tensor_.solve(moment) - rotated_back(R, guide.du) + cross(u_rel, u);
   }
 
   static constexpr bool has_forces = (detail::is_force<Loads> || ...);
@@ -308,7 +310,7 @@ class HeldBody {
 
   /// Of the loads that are not uniform gravity.
   template <class N>
-  [[nodiscard]] auto torque(const Situation<N>& s) const {
+  [[nodiscard]] auto torque(const LoadContext<N>& s) const {
     if constexpr (has_forces) {
       return std::apply(
           [&s](const Loads&... all) {
@@ -321,7 +323,7 @@ class HeldBody {
   }
 
   using FirstMomentKept = detail::Kept<FirstMoment, S, Loads...>;
-  using Felt = detail::FeltMotion<!FirstMomentKept::absent, detail::Components<S>, M, Loads...>;
+  using Felt = detail::ApparentField<!FirstMomentKept::absent, detail::Components<S>, M, Loads...>;
 
   using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
                                                           std::declval<const Loads&>()...));

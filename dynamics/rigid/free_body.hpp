@@ -13,15 +13,15 @@
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/model/structure.hpp>
+#include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/rigid/jacobi_integral.hpp>
 #include <dynamics/tree/body_outputs.hpp>
-#include <dynamics/model/structure.hpp>
-#include <dynamics/model/terms.hpp>
-#include <motor/absent.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 
@@ -35,7 +35,7 @@ struct FreeBodyState {
 /// A free rigid body watched from a moving guide: thrown, falling, floating, hung on springs.
 ///
 /// Its origin O' and its centre of mass may differ. The state is attitude, place and velocity motor
-/// V' against the guide; nothing depends on the quaternion's norm (see HeldBody).
+/// V' against the guide; nothing depends on the quaternion's norm (see FixedPointBody).
 ///
 /// Source : paper 002 (5)
 /// Units  : metre, rad/s, m/s
@@ -43,7 +43,8 @@ struct FreeBodyState {
 template <class M, class... Loads>
 class FreeBody {
   static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
-  static_assert(detail::are_loads<Loads...>, "a load takes a Situation and returns a Force<Body>");
+  static_assert(detail::are_loads<Loads...>,
+                "a load takes a LoadContext and returns a Force<Body>");
 
  public:
   using S = double;
@@ -67,9 +68,9 @@ class FreeBody {
                                                    "free body, first moment");
   }
 
-  [[nodiscard]] Situation<S> situation(const S& t, const State& state) const {
-    Situation<S> s = situation_in<S>(t, Pose<S>::from(state.attitude).rotation, state.position,
-                                     state.velocity.value);
+  [[nodiscard]] LoadContext<S> situation(const S& t, const State& state) const {
+    LoadContext<S> s = situation_in<S>(t, Pose<S>::from(state.attitude).rotation, state.position,
+                                       state.velocity.value);
     s.guide = detail::guide_at<S>(guide_, t);
     return s;
   }
@@ -83,7 +84,7 @@ class FreeBody {
   /// in the guide, P and M all other loads.
   template <class N>
   [[nodiscard]] Rate<Body, Velocity<Body, Guide, Body, N>> acceleration(
-      const Situation<N>& s) const {
+      const LoadContext<N>& s) const {
     return std::apply(
         [&](const Loads&... all) -> Rate<Body, Velocity<Body, Guide, Body, N>> {
           return {acceleration_of(detail::Turn<N>::from(s.X.value.rotation), s.X.value.translation,
@@ -106,7 +107,7 @@ class FreeBody {
     const Vector3<N> v(y[10], y[11], y[12]);
     const auto turn = detail::Turn<N>::from(q);
     const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
-    const auto dr = turned(turn, detail::components(v));
+    const auto dr = rotated(turn, detail::components(v));
     const auto rate = [&](const Acceleration<N>& dV) {
       return detail::gathered<N>(dq[0], dq[1], dq[2], dq[3], dr.x, dr.y, dr.z, dV.angular.x,
                                  dV.angular.y, dV.angular.z, dV.linear.x, dV.linear.y, dV.linear.z);
@@ -117,7 +118,7 @@ class FreeBody {
             return rate(
                 acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), NoForce{}));
           } else {
-            Situation<N> s = situation_in<N>(t, turn.matrix(), r, {u, v});
+            LoadContext<N> s = situation_in<N>(t, turn.matrix(), r, {u, v});
             if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
             if constexpr (guide_is_read && !SteadyGuide<M>) {
               return rate(acceleration_of(turn, r, {u, v}, felt_.in(s.guide, all...), force(s)));
@@ -131,10 +132,10 @@ class FreeBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  [[nodiscard]] ReadOut<S> read_out(const S& t, const State& state) const {
-    const Situation<S> s = situation(t, state);
+  [[nodiscard]] BodyOutputs<S> body_outputs(const S& t, const State& state) const {
+    const LoadContext<S> s = situation(t, state);
     return std::apply(
-        [&](const auto&... loads) { return detail::read_out(s, acceleration(s), loads...); },
+        [&](const auto&... loads) { return detail::body_outputs(s, acceleration(s), loads...); },
         loads_);
   }
 
@@ -215,7 +216,7 @@ class FreeBody {
                                                                  const State& state) const {
     return std::apply(
         [&](const Loads&... all) {
-          const Situation<S> s = situation(t, state);
+          const LoadContext<S> s = situation(t, state);
           auto kept = detail::kept_energy(guide_, s, all...);
           detail::add_kept_momenta<M>(kept, s, Vector3<double>::Zero(), true, all...);
           return kept;
@@ -259,8 +260,8 @@ class FreeBody {
 
   /// All but the guide's motion.
   template <class N>
-  [[nodiscard]] Situation<N> situation_in(const N& t, const Matrix3<N>& attitude,
-                                          const Vector3<N>& position, const Motor<N>& V) const {
+  [[nodiscard]] LoadContext<N> situation_in(const N& t, const Matrix3<N>& attitude,
+                                            const Vector3<N>& position, const Motor<N>& V) const {
     return {t, {{attitude, position}}, {V}, {}, {detail::lifted<N>(inertia_.value)}};
   }
 
@@ -276,7 +277,7 @@ class FreeBody {
 
   /// Of the loads that are not uniform gravity.
   template <class N>
-  [[nodiscard]] auto force(const Situation<N>& s) const {
+  [[nodiscard]] auto force(const LoadContext<N>& s) const {
     if constexpr (has_forces) {
       return std::apply(
           [&s](const Loads&... all) {
@@ -307,14 +308,14 @@ class FreeBody {
     const auto u_rel = detail::components(V.resultant);
     const auto v_rel = detail::components(V.moment);
     const auto r = detail::components(position);
-    const auto u = turned_back(R, guide.u);
+    const auto u = rotated_back(R, guide.u);
     const auto w = u_rel + u;
     const auto dw =
         tensor_.solve(tensor_.gyroscopic_torque(w) + load.torque - cross(centre_, load.force));
     const auto u_centrifugal = detail::without<CentrifugalForce, Loads...>(guide.u);
-    const auto g = turned_back(
+    const auto g = rotated_back(
         R, guide.g - detail::carried_acceleration(u_centrifugal, guide.du, detail::NoVector{}, r));
-    const auto du = dw - turned_back(R, guide.du) + cross(u_rel, u);
+    const auto du = dw - rotated_back(R, guide.du) + cross(u_rel, u);
     const auto dv = load.force / inertia_.value.mass + g - cross(dw, centre_) -
                     cross(w, cross(w, centre_)) - cross(w + u, v_rel);
     return {du, dv};
@@ -343,7 +344,7 @@ class FreeBody {
   }
 
   using CentreKept = detail::Kept<FirstMoment, S, Loads...>;
-  using Felt = detail::FeltMotion<true, detail::NoVector, M, Loads...>;
+  using Felt = detail::ApparentField<true, detail::NoVector, M, Loads...>;
 
   using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
                                                           std::declval<const Loads&>()...));

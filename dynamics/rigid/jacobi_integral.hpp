@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/load/load.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/tree/body_outputs.hpp>
 
 namespace kreisel::detail {
@@ -37,7 +37,7 @@ template <class M, class L>
 /// Units  : J
 template <class M, class... Loads>
 [[nodiscard]] std::vector<std::pair<const char*, double>> kept_energy(const M& guide,
-                                                                      const Situation<double>& s,
+                                                                      const LoadContext<double>& s,
                                                                       const Loads&... loads) {
   if constexpr (SteadyGuide<M>) {
     if (!(keeps_energy<M>(loads) && ...) || vanishes<CentrifugalForce, Axis::x, Loads...>)
@@ -84,8 +84,9 @@ template <class L>
 /// Frame : guide axes
 /// Units : kg m/s, kg m^2/s
 template <class M, class... Loads>
-void add_kept_momenta(std::vector<std::pair<const char*, double>>& kept, const Situation<double>& s,
-                      const Vector3<double>& about, bool is_free, const Loads&... loads) {
+void add_kept_momenta(std::vector<std::pair<const char*, double>>& kept,
+                      const LoadContext<double>& s, const Vector3<double>& about, bool is_free,
+                      const Loads&... loads) {
   if constexpr (is_resting<M> && (is_uniform<Loads> && ...)) {
     static constexpr const char* linear[] = {"momentum x", "momentum y", "momentum z"};
     static constexpr const char* angular[] = {"angular momentum x", "angular momentum y",

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/rigid/free_body.hpp>
-#include <dynamics/model/terms.hpp>
 
 namespace kreisel {
 
@@ -137,7 +137,7 @@ class SmallOscillations {
 
   /// The same body by the exact equations.
   [[nodiscard]] auto exact() const {
-    const auto mounts = [all = mounts_](const Situation<S>& s) {
+    const auto mounts = [all = mounts_](const LoadContext<S>& s) {
       Force<Body, S> sum;
       for (const ElasticMount<S>& mount : all) sum = sum + mount(s);
       return sum;

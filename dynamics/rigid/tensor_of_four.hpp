@@ -1,8 +1,8 @@
 #pragma once
 
 #include <dynamics/model/structure.hpp>
-#include <motor/absent.hpp>
 #include <motor/four.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
 

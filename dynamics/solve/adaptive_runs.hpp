@@ -5,7 +5,7 @@
 #include <limits>
 
 #include <dynamics/solve/error_measure.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/accuracy.hpp>
 
 /// Runs as solve() sets them, AdaptiveRuns and FixedRuns (fixed_runs.hpp): each kind has one setting,
@@ -24,7 +24,7 @@
 ///   begins_near_rounding() whether the first setting errs by little more than rounding
 ///   shakes()               whether one of a pair is shaken, by pair_digits()
 ///   of_pair(r)             what it is off by for that, where rounding grows to r
-///   can_look_for_rounding(x, missed)  whether GrownRounding can tell r
+///   can_look_for_rounding(x, missed)  whether RoundingGrowth can tell r
 ///   rounding()             of one step where nothing grows, in units of 2^-53
 ///   finer_by(x)            how many times finer that is
 ///   goes_on(x)             whether the finer run may become the coarser one of the next pair
@@ -37,8 +37,8 @@ namespace kreisel::detail {
 class AdaptiveRuns {
  public:
   /// Of verner98, taylor or radau13.
-  explicit AdaptiveRuns(const Task& task, Method method = Method::verner98)
-      : task_(task), method_(method) {}
+  explicit AdaptiveRuns(const SolveOptions& options, Method method = Method::verner98)
+      : task_(options), method_(method) {}
 
   [[nodiscard]] Method method() const { return method_; }
 
@@ -154,7 +154,7 @@ class AdaptiveRuns {
     return accuracy > near_rounding ? accuracy : finest();
   }
 
-  const Task& task_;
+  const SolveOptions& task_;
   Method method_;
 };
 
@@ -179,9 +179,9 @@ class CheapSteps {
     return true;
   }
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(accuracy_, suspected_);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(accuracy_, suspected_);
   }
 
  private:

@@ -10,21 +10,23 @@
 namespace kreisel::detail {
 
 std::unique_ptr<SteppedRun> run_explicit_steps(const SteppedScene& scene, const AnyField& field,
-                                               const Task& task, const Eigen::VectorXd& start,
+                                               const SolveOptions& options,
+                                               const Eigen::VectorXd& start,
                                                const Accuracy& accuracy) {
-  return run_explicit_steps<Eigen::VectorXd, AnyField>(scene, field, task, start, accuracy);
+  return run_explicit_steps<Eigen::VectorXd, AnyField>(scene, field, options, start, accuracy);
 }
 
 std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene, const AnyField& field,
-                                     const Task& task, const Eigen::VectorXd& start,
+                                     const SolveOptions& options, const Eigen::VectorXd& start,
                                      const EqualLength& length) {
-  return run_gauss_steps<Eigen::VectorXd, AnyField>(scene, field, task, start, length);
+  return run_gauss_steps<Eigen::VectorXd, AnyField>(scene, field, options, start, length);
 }
 
 std::unique_ptr<SteppedRun> run_taylor_steps(const SteppedScene& scene, const AnySeries& series,
-                                             const Task& task, const Eigen::VectorXd& start,
+                                             const SolveOptions& options,
+                                             const Eigen::VectorXd& start,
                                              const Accuracy& accuracy) {
-  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, series, task, start, accuracy);
+  return run_taylor_steps<Eigen::VectorXd, AnySeries>(scene, series, options, start, accuracy);
 }
 
 std::unique_ptr<StiffField> stiff_field(const AnyField& field) {

@@ -9,7 +9,7 @@
 
 #include <dynamics/guide/series.hpp>
 #include <dynamics/solve/run.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/shared.hpp>
@@ -51,16 +51,16 @@ class AnySeries {
 
 /// As the functions of the same names in runs_of_steps.hpp.
 KREISEL_API [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(
-    const SteppedScene& scene, const AnyField& field, const Task& task,
+    const SteppedScene& scene, const AnyField& field, const SolveOptions& options,
     const Eigen::VectorXd& start, const Accuracy& accuracy);
 KREISEL_API [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene,
                                                                const AnyField& field,
-                                                               const Task& task,
+                                                               const SolveOptions& options,
                                                                const Eigen::VectorXd& start,
                                                                const EqualLength& length);
 KREISEL_API [[nodiscard]] std::unique_ptr<SteppedRun> run_taylor_steps(const SteppedScene& scene,
                                                                        const AnySeries& series,
-                                                                       const Task& task,
+                                                                       const SolveOptions& options,
                                                                        const Eigen::VectorXd& start,
                                                                        const Accuracy& accuracy);
 

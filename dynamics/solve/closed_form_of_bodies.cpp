@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include <dynamics/tree/tree.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/pendulum/physical_pendulum.hpp>
 #include <dynamics/solve/closed_form.hpp>
+#include <dynamics/tree/tree.hpp>
 
 /// Systems of bodies that are no more than a pendulum or a top.
 

@@ -31,11 +31,11 @@ double BlockDistance::operator()(std::span<const double> a, std::span<const doub
       const Eigen::Vector4d unit_p = p.stableNormalized();
       Eigen::Vector4d unit_q = q.stableNormalized();
       if (unit_p.dot(unit_q) < 0) unit_q = -unit_q;
-      worst = worse(worst, 4 * std::asin(std::min(1.0, (unit_p - unit_q).norm() / 2)));
+      worst = max_or_nan(worst, 4 * std::asin(std::min(1.0, (unit_p - unit_q).norm() / 2)));
     } else {
       const double off = norm(difference_, begin, n);
       size_[i] = std::max(size_[i], norm(y, begin, n));
-      worst = worse(worst, off == 0 ? 0 : off / size_[i]);
+      worst = max_or_nan(worst, off == 0 ? 0 : off / size_[i]);
     }
     begin += n;
   }

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/api.hpp>
 
 namespace kreisel::detail {
@@ -19,7 +19,7 @@ namespace kreisel::detail {
 inline constexpr double times_finer = 30;
 
 /// The greater of two errors; a NaN stays, which std::max may forget.
-[[nodiscard]] inline double worse(double a, double b) { return b <= a || a != a ? a : b; }
+[[nodiscard]] inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
 
 /// The global error of a run after so many steps, `off` from one beside it whose error is so many
 /// times finer: what the coarser errs by, less that part of it, and half as much again for what is
@@ -35,9 +35,9 @@ inline constexpr double times_finer = 30;
 
 /// The state with its components moved by so much in the last digit.
 template <class Scene>
-[[nodiscard]] typename Scene::State off_by_last_digits(const Scene& scene,
-                                                       const typename Scene::State& state,
-                                                       double by) {
+[[nodiscard]] typename Scene::State perturbed_by_ulps(const Scene& scene,
+                                                      const typename Scene::State& state,
+                                                      double by) {
   typename Scene::Vector y = scene.to_vector(state);
   move_last_digits(y, by);
   return scene.from_vector(y);
@@ -51,9 +51,9 @@ class BlockDistance {
   BlockDistance(std::vector<int> blocks, double smallest)
       : blocks_(std::move(blocks)), size_(blocks_.size(), smallest) {}
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(size_);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(size_);
   }
 
   KREISEL_API double operator()(std::span<const double> a, std::span<const double> b);

@@ -5,7 +5,7 @@
 
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/run.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 
 namespace kreisel::detail {
 

@@ -31,9 +31,9 @@ struct Missed {
     return error > 0 && now < 0.1 * error * runs.falls(setting, at);
   }
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(setting, output, error, now);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(setting, output, error, now);
   }
 };
 

@@ -33,10 +33,10 @@ struct RunReport {
   double tolerance = 0;
   double error_estimate = 0;
   bool tolerance_kept =
-      false;      ///< error_estimate <= tolerance; else nothing better could be reached
-  Effort effort;  ///< of the trajectory returned
-  double all_evaluations = 0;  ///< with those for the estimate and for attempts that fell short
-  double run_time = 0;         ///< s, all included
+      false;  ///< error_estimate <= tolerance; else nothing better could be reached
+  IntegrationStatistics effort;  ///< of the trajectory returned
+  double all_evaluations = 0;    ///< with those for the estimate and for attempts that fell short
+  double run_time = 0;           ///< s, all included
   std::vector<InvariantDrift> invariants;
   /// The greatest size of each part of the state at the start and at every step, in its own unit and in
   /// the order of the scene's blocks: error_estimate is relative to it. Empty for closed forms.

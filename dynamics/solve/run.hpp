@@ -15,9 +15,9 @@
 #include <dynamics/model/closed_form.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/report.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/accuracy.hpp>
-#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/checkpoint.hpp>
 #include <dynamics/step/radau.hpp>
 #include <motor/api.hpp>
 
@@ -39,7 +39,7 @@ class Run {
   /// nothing, where the run keeps no sizes.
   [[nodiscard]] virtual std::span<const double> sizes() const { return {}; }
 
-  [[nodiscard]] virtual Effort effort() const = 0;
+  [[nodiscard]] virtual IntegrationStatistics effort() const = 0;
 
   /// What rounding in the field has made by now, where the run knows that; else 0.
   [[nodiscard]] virtual double noise() const { return 0; }
@@ -51,7 +51,7 @@ class Run {
   [[nodiscard]] virtual std::optional<Method> changed_to() const { return std::nullopt; }
 
   /// What it goes on from; nothing, where it cannot.
-  virtual void pass(Bookmark& bookmark) = 0;
+  virtual void pass(Checkpoint& checkpoint) = 0;
 };
 
 /// An integration by steps of its own length, whose states within the last step can be read.
@@ -100,7 +100,7 @@ class SteppedRun : public Run {
 
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
-  void pass(Bookmark& bookmark) override { bookmark(sizes_); }
+  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_); }
 
  private:
   void note_sizes() {
@@ -126,9 +126,9 @@ struct EqualLength {
   /// else the two would be the same, and tell nothing of their error.
   double beside = std::numeric_limits<double>::infinity();
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(longest, beside);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(longest, beside);
   }
 
   [[nodiscard]] double over(double interval) const {
@@ -168,31 +168,32 @@ class SteppedScene {
   [[nodiscard]] virtual std::unique_ptr<StiffField> stiff_field(bool other) const = 0;
 
   /// From `start` at task.begin on.
-  [[nodiscard]] virtual std::unique_ptr<SteppedRun> explicit_run(const Task& task,
+  [[nodiscard]] virtual std::unique_ptr<SteppedRun> explicit_run(const SolveOptions& options,
                                                                  const Eigen::VectorXd& start,
                                                                  const Accuracy& accuracy,
                                                                  bool other) const = 0;
-  [[nodiscard]] virtual std::unique_ptr<SteppedRun> taylor_run(const Task& task,
+  [[nodiscard]] virtual std::unique_ptr<SteppedRun> taylor_run(const SolveOptions& options,
                                                                const Eigen::VectorXd& start,
                                                                const Accuracy& accuracy,
                                                                bool other) const = 0;
-  [[nodiscard]] virtual std::unique_ptr<Run> gauss_run(const Task& task,
+  [[nodiscard]] virtual std::unique_ptr<Run> gauss_run(const SolveOptions& options,
                                                        const Eigen::VectorXd& start,
                                                        const EqualLength& length,
                                                        bool other) const = 0;
 };
 
 /// Throws what is wrong with a task for this scene and this start.
-KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start, const Task& task);
+KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start,
+                       const SolveOptions& options);
 
 /// The motion of a scene by steps; its states are their components, one after another.
 KREISEL_API [[nodiscard]] Trajectory<double> solve_by_steps(const SteppedScene& scene,
                                                             const Eigen::VectorXd& start,
-                                                            const Task& task);
+                                                            const SolveOptions& options);
 
 /// The same by the closed form.
 KREISEL_API [[nodiscard]] Trajectory<double> solve_closed(
-    const SteppedScene& scene, const Eigen::VectorXd& start, const Task& task,
+    const SteppedScene& scene, const Eigen::VectorXd& start, const SolveOptions& options,
     const ClosedForm<Eigen::VectorXd>& motion);
 
 KREISEL_API [[noreturn]] void refuse_closed_form();

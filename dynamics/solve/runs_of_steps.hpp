@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <dynamics/solve/run.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/gauss.hpp>
 #include <dynamics/step/taylor.hpp>
@@ -25,7 +25,7 @@ void write(double* y, const Vector& from) {
   std::copy_n(from.data(), from.size(), y);
 }
 
-/// Of ExplicitSteps or TaylorSteps.
+/// Of ExplicitRungeKutta or TaylorSteps.
 template <class Steps>
 class RunOfSteps final : public SteppedRun {
  public:
@@ -67,12 +67,12 @@ class RunOfSteps final : public SteppedRun {
   [[nodiscard]] bool covers(double t) const override { return steps_.covers(t); }
   void read(double t, double* y) override { write(y, steps_.at(t)); }
   void know_sizes(std::span<const double> sizes) override { steps_.know_sizes(sizes); }
-  [[nodiscard]] Effort effort() const override { return steps_.effort(); }
+  [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
   [[nodiscard]] double noise() const override { return steps_.noise(); }
 
-  void pass(Bookmark& bookmark) override {
-    SteppedRun::pass(bookmark);
-    bookmark(from_, steps_);
+  void pass(Checkpoint& checkpoint) override {
+    SteppedRun::pass(checkpoint);
+    checkpoint(from_, steps_);
   }
 
  private:
@@ -81,9 +81,9 @@ class RunOfSteps final : public SteppedRun {
 };
 
 template <class Steps>
-class RunOfGaussSteps final : public Run {
+class RunOfGaussIRK final : public Run {
  public:
-  RunOfGaussSteps(const EqualLength& length, Steps steps)
+  RunOfGaussIRK(const EqualLength& length, Steps steps)
       : length_(length), steps_(std::move(steps)) {}
 
   void on_the_way(double t, double /*end*/, double* y) override {
@@ -94,9 +94,9 @@ class RunOfGaussSteps final : public Run {
 
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
-  [[nodiscard]] Effort effort() const override { return steps_.effort(); }
+  [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
   [[nodiscard]] double noise() const override { return steps_.noise(); }
-  void pass(Bookmark& bookmark) override { bookmark(steps_); }
+  void pass(Checkpoint& checkpoint) override { checkpoint(steps_); }
 
  private:
   EqualLength length_;
@@ -107,35 +107,38 @@ class RunOfGaussSteps final : public Run {
 /// Of a scene's field; states are of the kind Vector.
 template <class Vector, class Field>
 [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(const SteppedScene& scene, Field field,
-                                                             const Task& task,
+                                                             const SolveOptions& options,
                                                              const Eigen::VectorXd& start,
                                                              const Accuracy& accuracy) {
-  using Steps = ExplicitSteps<Vector, Field>;
-  Steps steps(std::move(field), task.begin, vector_of<Vector>(start), accuracy, scene.blocks());
-  steps.stop_at(task.jumps);
-  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), task.smallest, std::move(steps));
+  using Steps = ExplicitRungeKutta<Vector, Field>;
+  Steps steps(std::move(field), options.begin, vector_of<Vector>(start), accuracy, scene.blocks());
+  steps.stop_at(options.discontinuities);
+  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options.absolute_scale,
+                                             std::move(steps));
 }
 
 template <class Vector, class Field>
 [[nodiscard]] std::unique_ptr<Run> run_gauss_steps(const SteppedScene& scene, Field field,
-                                                   const Task& task, const Eigen::VectorXd& start,
+                                                   const SolveOptions& options,
+                                                   const Eigen::VectorXd& start,
                                                    const EqualLength& length) {
-  using Steps = GaussSteps<Vector, Field>;
-  Steps steps(std::move(field), task.begin, vector_of<Vector>(start), length.longest,
-              scene.blocks(), task.smallest);
-  steps.give_up_after(task.most_evaluations);
-  return std::make_unique<RunOfGaussSteps<Steps>>(length, std::move(steps));
+  using Steps = GaussIRK<Vector, Field>;
+  Steps steps(std::move(field), options.begin, vector_of<Vector>(start), length.longest,
+              scene.blocks(), options.absolute_scale);
+  steps.give_up_after(options.max_evaluations);
+  return std::make_unique<RunOfGaussIRK<Steps>>(length, std::move(steps));
 }
 
 template <class Vector, class Series>
 [[nodiscard]] std::unique_ptr<SteppedRun> run_taylor_steps(const SteppedScene& scene, Series series,
-                                                           const Task& task,
+                                                           const SolveOptions& options,
                                                            const Eigen::VectorXd& start,
                                                            const Accuracy& accuracy) {
   using Steps = TaylorSteps<Vector, Series>;
-  Steps steps(std::move(series), task.begin, vector_of<Vector>(start), accuracy, scene.blocks());
-  steps.stop_at(task.jumps);
-  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), task.smallest, std::move(steps));
+  Steps steps(std::move(series), options.begin, vector_of<Vector>(start), accuracy, scene.blocks());
+  steps.stop_at(options.discontinuities);
+  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options.absolute_scale,
+                                             std::move(steps));
 }
 
 }  // namespace kreisel::detail

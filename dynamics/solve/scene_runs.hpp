@@ -16,7 +16,7 @@
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/runs_of_steps.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/step/jacobian.hpp>
 
 /// The runs of one scene.
@@ -38,9 +38,9 @@ template <class Scene>
 
 /// The scene off by last digits, if it has such.
 template <class Scene>
-[[nodiscard]] std::optional<Scene> off_by_last_digits(const Scene& scene) {
-  if constexpr (requires { scene.off_by_last_digits(); }) {
-    return scene.off_by_last_digits();
+[[nodiscard]] std::optional<Scene> perturbed_by_ulps(const Scene& scene) {
+  if constexpr (requires { scene.perturbed_by_ulps(); }) {
+    return scene.perturbed_by_ulps();
   } else {
     return std::nullopt;
   }
@@ -53,7 +53,7 @@ class SceneRuns final : public SteppedScene {
 
  public:
   explicit SceneRuns(const Scene& scene)
-      : scene_(scene), other_(detail::off_by_last_digits(scene)) {}
+      : scene_(scene), other_(detail::perturbed_by_ulps(scene)) {}
 
   [[nodiscard]] Eigen::VectorXd to_vector(const State& state) const {
     return vector_of<Eigen::VectorXd>(scene_.to_vector(state));
@@ -97,7 +97,8 @@ class SceneRuns final : public SteppedScene {
         for (const auto& [name, value] : now) drifts.push_back({name, value, 0});
       }
       for (std::size_t i = 0; i < now.size(); ++i) {
-        drifts[i].largest = worse(drifts[i].largest, std::abs(now[i].second - drifts[i].start));
+        drifts[i].largest =
+            max_or_nan(drifts[i].largest, std::abs(now[i].second - drifts[i].start));
       }
     }
   }
@@ -113,39 +114,40 @@ class SceneRuns final : public SteppedScene {
     }
   }
 
-  [[nodiscard]] std::unique_ptr<SteppedRun> explicit_run(const Task& task,
+  [[nodiscard]] std::unique_ptr<SteppedRun> explicit_run(const SolveOptions& options,
                                                          const Eigen::VectorXd& start,
                                                          const Accuracy& accuracy,
                                                          bool other) const override {
     if constexpr (of_any_size) {
-      return run_explicit_steps(*this, field(other), task, start, accuracy);
+      return run_explicit_steps(*this, field(other), options, start, accuracy);
     } else {
-      return run_explicit_steps<Own>(*this, field(other), task, start, accuracy);
+      return run_explicit_steps<Own>(*this, field(other), options, start, accuracy);
     }
   }
 
-  [[nodiscard]] std::unique_ptr<SteppedRun> taylor_run(const Task& task,
+  [[nodiscard]] std::unique_ptr<SteppedRun> taylor_run(const SolveOptions& options,
                                                        const Eigen::VectorXd& start,
                                                        const Accuracy& accuracy,
                                                        bool other) const override {
     if constexpr (requires { scene_.series(); }) {
       if constexpr (of_any_size) {
-        return run_taylor_steps(*this, AnySeries(scene(other).series()), task, start, accuracy);
+        return run_taylor_steps(*this, AnySeries(scene(other).series()), options, start, accuracy);
       } else {
-        return run_taylor_steps<Own>(*this, scene(other).series(), task, start, accuracy);
+        return run_taylor_steps<Own>(*this, scene(other).series(), options, start, accuracy);
       }
     } else {
       return nullptr;
     }
   }
 
-  [[nodiscard]] std::unique_ptr<Run> gauss_run(const Task& task, const Eigen::VectorXd& start,
+  [[nodiscard]] std::unique_ptr<Run> gauss_run(const SolveOptions& options,
+                                               const Eigen::VectorXd& start,
                                                const EqualLength& length,
                                                bool other) const override {
     if constexpr (of_any_size) {
-      return run_gauss_steps(*this, field(other), task, start, length);
+      return run_gauss_steps(*this, field(other), options, start, length);
     } else {
-      return run_gauss_steps<Own>(*this, field(other), task, start, length);
+      return run_gauss_steps<Own>(*this, field(other), options, start, length);
     }
   }
 

@@ -24,7 +24,7 @@
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/splitting_runs.hpp>
 #include <dynamics/solve/switching_run.hpp>
-#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/checkpoint.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel::detail {
@@ -34,11 +34,11 @@ namespace kreisel::detail {
 }
 
 /// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
-[[nodiscard]] double pace(const SteppedScene& scene, const Task& task,
+[[nodiscard]] double pace(const SteppedScene& scene, const SolveOptions& options,
                           const Eigen::VectorXd& start) {
-  const auto steps = scene.explicit_run(task, start, {1e-14, task.smallest}, false);
-  const double end = task.times.back();
-  double t = task.begin;
+  const auto steps = scene.explicit_run(options, start, {1e-14, options.absolute_scale}, false);
+  const double end = options.output_times.back();
+  double t = options.begin;
   const auto go = [&] {
     const double from = t;
     const double before = steps->effort().steps;
@@ -64,29 +64,30 @@ namespace kreisel::detail {
 }
 
 [[nodiscard]] std::unique_ptr<SteppedRun> run(const AdaptiveRuns& runs, double setting,
-                                              const SteppedScene& scene, const Task& task,
+                                              const SteppedScene& scene,
+                                              const SolveOptions& options,
                                               const Eigen::VectorXd& start, bool moved,
                                               double shaken = 0) {
   const bool other = moved && scene.has_other();
-  const Accuracy accuracy{setting, task.smallest, task.most_evaluations, shaken};
+  const Accuracy accuracy{setting, options.absolute_scale, options.max_evaluations, shaken};
   if (runs.method() == Method::radau13) {
-    return std::make_unique<RadauRun>(scene, other, task, start, accuracy);
+    return std::make_unique<RadauRun>(scene, other, options, start, accuracy);
   }
-  if (task.method == Method::automatic) {
-    return std::make_unique<SwitchingRun>(scene, other, task, runs.method(), start, accuracy);
+  if (options.method == Method::automatic) {
+    return std::make_unique<SwitchingRun>(scene, other, options, runs.method(), start, accuracy);
   }
-  if (runs.method() == Method::taylor) return scene.taylor_run(task, start, accuracy, other);
-  return scene.explicit_run(task, start, accuracy, other);
+  if (runs.method() == Method::taylor) return scene.taylor_run(options, start, accuracy, other);
+  return scene.explicit_run(options, start, accuracy, other);
 }
 
 [[nodiscard]] std::unique_ptr<Run> run(const FixedRuns& runs, const EqualLength& length,
-                                       const SteppedScene& scene, const Task& task,
+                                       const SteppedScene& scene, const SolveOptions& options,
                                        const Eigen::VectorXd& start, bool moved,
                                        double /*shaken*/ = 0) {
   const bool other = moved && scene.has_other();
-  if (runs.method() == Method::gauss16) return scene.gauss_run(task, start, length, other);
+  if (runs.method() == Method::gauss16) return scene.gauss_run(options, start, length, other);
   return std::make_unique<SplittingRun>(
-      *scene.top(), task, EulerTop::from_vector(vector_of<EulerTop::Vector>(start)), length);
+      *scene.top(), options, EulerTop::from_vector(vector_of<EulerTop::Vector>(start)), length);
 }
 
 /// Keeps the largest drift of what a scene says is conserved.
@@ -103,9 +104,9 @@ class InvariantWatch {
   [[nodiscard]] double least_error(double t, std::span<const double> y,
                                    std::span<const double> sizes) const;
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    for (InvariantDrift& drift : drifts_) bookmark(drift.start, drift.largest);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    for (InvariantDrift& drift : drifts_) checkpoint(drift.start, drift.largest);
   }
 
   [[nodiscard]] const std::vector<InvariantDrift>& drifts() const { return drifts_; }
@@ -160,33 +161,35 @@ using Clock = std::chrono::steady_clock;
 }
 
 /// Notes a state and its error for the output time t; says whether the run is to go on.
-[[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch, const Task& task,
-                          double t, std::span<const double> state, double error) {
+[[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch,
+                          const SolveOptions& options, double t, std::span<const double> state,
+                          double error) {
   result.times.push_back(t);
   result.states.insert(result.states.end(), state.begin(), state.end());
   result.errors.push_back(error);
   watch.note(t, state);
-  if (!task.progress || task.progress(t)) return true;
+  if (!options.progress || options.progress(t)) return true;
   result.report.status = RunStatus::cancelled;
   return false;
 }
 
 Trajectory<double> solve_closed(const SteppedScene& scene, const Eigen::VectorXd& start,
-                                const Task& task, const ClosedForm<Eigen::VectorXd>& motion) {
+                                const SolveOptions& options,
+                                const ClosedForm<Eigen::VectorXd>& motion) {
   const Clock::time_point clock = Clock::now();
   Trajectory<double> result;
   RunReport& report = result.report;
   InvariantWatch watch(scene);
-  watch.note(task.begin, components_of(start));
-  for (const double t : task.times) {
-    const double error = motion.error(t, task.smallest);
-    report.error_estimate = worse(report.error_estimate, error);
+  watch.note(options.begin, components_of(start));
+  for (const double t : options.output_times) {
+    const double error = motion.error(t, options.absolute_scale);
+    report.error_estimate = max_or_nan(report.error_estimate, error);
     const Eigen::VectorXd state = motion.at(t);
-    if (!output(result, watch, task, t, components_of(state), error)) break;
+    if (!output(result, watch, options, t, components_of(state), error)) break;
   }
   report.method = motion.name;
-  report.tolerance = task.tolerance;
-  report.tolerance_kept = report.error_estimate <= task.tolerance;
+  report.tolerance = options.tolerance;
+  report.tolerance_kept = report.error_estimate <= options.tolerance;
   report.invariants = watch.drifts();
   report.run_time = seconds_since(clock);
   return result;
@@ -208,7 +211,7 @@ class RunSoFar {
   /// By how many last digits its start is moved.
   [[nodiscard]] double moved() const { return moved_; }
 
-  /// Whether it knows its outputs from the first one on: not if it was begun by a bookmark.
+  /// Whether it knows its outputs from the first one on: not if it was begun by a checkpoint.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
   /// Puts another run in the place of this one; the cost counts as if this one had been kept.
@@ -220,23 +223,23 @@ class RunSoFar {
   /// Evaluations.
   [[nodiscard]] double spent() const { return std::max(spent_before_, effort().evaluations); }
 
-  [[nodiscard]] Effort effort() const { return run_->effort(); }
+  [[nodiscard]] IntegrationStatistics effort() const { return run_->effort(); }
   [[nodiscard]] double noise() const { return run_->noise(); }
   [[nodiscard]] std::span<const double> sizes() const { return run_->sizes(); }
   [[nodiscard]] std::string changes() const { return run_->changes(); }
   [[nodiscard]] std::optional<Method> changed_to() const { return run_->changed_to(); }
 
   /// What it goes on from behind the first `done` outputs.
-  void pass(std::size_t done, Bookmark& bookmark) {
+  void pass(std::size_t done, Checkpoint& checkpoint) {
     if (known_ == 0) first_ = done;
-    run_->pass(bookmark);
-    bookmark(spent_before_);
+    run_->pass(checkpoint);
+    checkpoint(spent_before_);
     std::size_t ahead = first_ + known_ - done;
-    bookmark(ahead);
+    checkpoint(ahead);
     for (std::size_t i = done; i < done + ahead; ++i) {
       double* const y =
           i == first_ + known_ ? next_state() : states_.data() + (i - first_) * components_;
-      for (std::size_t k = 0; k < components_; ++k) bookmark(y[k]);
+      for (std::size_t k = 0; k < components_; ++k) checkpoint(y[k]);
     }
   }
 
@@ -260,18 +263,18 @@ class RunSoFar {
 /// shaken, in different ways, because one alone may miss the direction that grows. In steps of their
 /// own they would differ by what these err by.
 /// Beside a separatrix it may be far more than what steps err by, which cancels there.
-class GrownRounding {
+class RoundingGrowth {
  public:
-  GrownRounding(const AdaptiveRuns& runs, double accuracy, const SteppedScene& scene,
-                const Task& task, const Eigen::VectorXd& start)
+  RoundingGrowth(const AdaptiveRuns& runs, double accuracy, const SteppedScene& scene,
+                 const SolveOptions& options, const Eigen::VectorXd& start)
       : runs_(runs),
-        calm_(run(runs, accuracy, scene, task, start, false)),
+        calm_(run(runs, accuracy, scene, options, start, false)),
         calm_state_(start),
         shaken_state_(start),
-        distance_(scene.blocks(), task.smallest) {
+        distance_(scene.blocks(), options.absolute_scale) {
     double digits = AdaptiveRuns::shaken_digits;
     for (auto& shaken : shaken_) {
-      shaken = run(runs, accuracy, scene, task, start, false, digits);
+      shaken = run(runs, accuracy, scene, options, start, false, digits);
       digits += 1;  // other digits, another way
     }
   }
@@ -289,7 +292,7 @@ class GrownRounding {
       double off = 0;
       for (const auto& shaken : shaken_) {
         shaken->read(t, shaken_state_.data());
-        off = worse(off, distance_(components_of(calm_state_), components_of(shaken_state_)));
+        off = max_or_nan(off, distance_(components_of(calm_state_), components_of(shaken_state_)));
       }
       gave_up_ = !std::isfinite(off);
       return gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
@@ -309,10 +312,10 @@ class GrownRounding {
     return sum;
   }
 
-  void pass(Bookmark& bookmark) {
-    bookmark(distance_, gave_up_);
-    calm_->pass(bookmark);
-    for (const auto& shaken : shaken_) shaken->pass(bookmark);
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(distance_, gave_up_);
+    calm_->pass(checkpoint);
+    for (const auto& shaken : shaken_) shaken->pass(checkpoint);
   }
 
  private:
@@ -329,16 +332,17 @@ class GrownRounding {
 /// so that what is told of the error does not depend on what is asked for.
 class ComparisonTimes {
  public:
-  ComparisonTimes(const Task& task, bool adds) {
+  ComparisonTimes(const SolveOptions& options, bool adds) {
     constexpr int least = 16;
-    const double end = task.times.back();
-    const bool forwards = end > task.begin;
+    const double end = options.output_times.back();
+    const bool forwards = end > options.begin;
     const auto before = [&](double a, double b) { return forwards ? a < b : a > b; };
-    const int added = adds && task.times.size() < least && end != task.begin ? least - 1 : 0;
+    const int added =
+        adds && options.output_times.size() < least && end != options.begin ? least - 1 : 0;
     int next = 1;
-    for (const double t : task.times) {
+    for (const double t : options.output_times) {
       for (; next <= added; ++next) {
-        const double between = task.begin + next * ((end - task.begin) / least);
+        const double between = options.begin + next * ((end - options.begin) / least);
         if (!before(between, t)) break;
         times_.push_back({between, false});
       }
@@ -368,8 +372,8 @@ class ComparisonTimes {
 
 /// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
 /// tenfold.
-[[nodiscard]] double forecast(const Task& task, double t, double error) {
-  const double ahead = (task.times.back() - task.begin) / (t - task.begin);
+[[nodiscard]] double forecast(const SolveOptions& options, double t, double error) {
+  const double ahead = (options.output_times.back() - options.begin) / (t - options.begin);
   return error * (ahead < 10 ? ahead : 10);
 }
 
@@ -387,25 +391,26 @@ struct Account {
 ///
 /// Where rounding grows to the tolerance two runs may agree by chance. Of explicit steps one of the
 /// first pair is shaken by more digits than are rounded; unless they agree to a part of the tolerance
-/// all the same, GrownRounding tells what rounding grows to, and both go on, the shaken one anew if it
+/// all the same, RoundingGrowth tells what rounding grows to, and both go on, the shaken one anew if it
 /// is off for that. Where rounding may exceed the tolerance, or the error does not fall as the steps
 /// do, the finest are taken at once. Of other steps pairs that are tried until two agree would tell
 /// nothing: a third is held beside them where, after a miss, steps are so fine that what they err by
 /// may be rounding; an error that falls much faster than the steps do is taken for rounding too; and
 /// the finest are four, or six where rounding grows to more than the tolerance.
 ///
-/// Throws : InvalidInput for a bookmark that is none of these runs; an empty one is of their begin
+/// Throws : InvalidInput for a checkpoint that is none of these runs; an empty one is of their begin
 template <class Runs>
 [[nodiscard]] Trajectory<double> solve_in_pairs(const SteppedScene& scene, Runs runs,
-                                                const Eigen::VectorXd& start, const Task& task,
-                                                const std::vector<double>& bookmark,
+                                                const Eigen::VectorXd& start,
+                                                const SolveOptions& options,
+                                                const std::vector<double>& checkpoint,
                                                 Account& account) {
   const Clock::time_point clock = Clock::now();
 
   Trajectory<double> result;
-  const double end = task.times.back();
-  const ComparisonTimes times(task, std::is_same_v<Runs, AdaptiveRuns>);
-  double digits = digits_off(task);
+  const double end = options.output_times.back();
+  const ComparisonTimes times(options, std::is_same_v<Runs, AdaptiveRuns>);
+  double digits = digits_off(options);
   double grown_to = 0;  // by rounding, in any try
   CheapSteps cheap;     // that tell it
   double known = 0;     // of the error at this setting, from a try with fewer digits
@@ -418,30 +423,31 @@ template <class Runs>
     Eigen::VectorXd from = start;
     if (moved != 0) move_last_digits(from, moved);
     const double shaken = pair_is_shaken && moved > 0 ? runs.pair_digits() : 0;
-    return RunSoFar(run(runs, s, scene, task, from, moved != 0, shaken), start.size(), moved);
+    return RunSoFar(run(runs, s, scene, options, from, moved != 0, shaken), start.size(), moved);
   };
   // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
   // somewhere else than the others, beside which it may go on.
   const auto better_at_output = [&](RunSoFar& fine, std::size_t i) {
     const double t = times[i];
     const double part = fine.moved() > 0 ? 1.0 / 2 : fine.moved() < 0 ? 2.0 / 5 : 1.0 / 3;
-    const double stop = task.begin + part * (end - task.begin);
-    return fine.at_output(i, t, (t < stop) == (end > task.begin) ? stop : end);
+    const double stop = options.begin + part * (end - options.begin);
+    return fine.at_output(i, t, (t < stop) == (end > options.begin) ? stop : end);
   };
-  std::optional<Bookmark> from;
-  if (!bookmark.empty()) from.emplace(bookmark);
+  std::optional<Checkpoint> from;
+  if (!checkpoint.empty()) from.emplace(checkpoint);
   // Of implicit steps more is rounded.
   const auto rounding_of = [&](const RunSoFar& run) {
     return run.changed_to() ? AdaptiveRuns::rounding_of_radau : runs.rounding();
   };
   bool coarse_starts_off = false;
   const bool has_bookmarks = runs.method() != Method::splitting;
-  const auto pass_setting = [&](Bookmark& numbers) {
+  const auto pass_setting = [&](Checkpoint& numbers) {
     auto own = static_cast<double>(runs.method());
     numbers(own, setting, missed, digits, account.spent, coarse_starts_off, pair_is_shaken,
             looks_for_rounding, cheap);
     if (own == static_cast<double>(Method::verner98)) (void)runs.round_less();
-    if (own != static_cast<double>(runs.method())) refuse_task("the bookmark is of another method");
+    if (own != static_cast<double>(runs.method()))
+      refuse_task("the checkpoint is of another method");
   };
   if (from) pass_setting(*from);
   std::optional<RunSoFar> coarse;
@@ -451,18 +457,18 @@ template <class Runs>
     const bool last_try = runs.last(setting);
     RunReport& report = result.report;
     report.method = name(runs.method());
-    report.tolerance = task.tolerance;
+    report.tolerance = options.tolerance;
     report.error_estimate = known;
     InvariantWatch watch(scene);
-    BlockDistance distance(scene.blocks(), task.smallest);
+    BlockDistance distance(scene.blocks(), options.absolute_scale);
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
-    if (last_try) digits = std::max(digits, 3 * digits_off(task));
+    if (last_try) digits = std::max(digits, 3 * digits_off(options));
     if (!coarse) coarse.emplace(run_with(setting, coarse_starts_off ? digits : 0));
     if (!fine) fine.emplace(run_with(runs.finer(setting), coarse_starts_off ? 0 : digits));
-    std::optional<GrownRounding> rounding;
+    std::optional<RoundingGrowth> rounding;
     if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
       if (looks_for_rounding && runs.can_look_for_rounding(setting, missed.error > 0)) {
-        rounding.emplace(runs, cheap.beside(runs, setting), scene, task, start);
+        rounding.emplace(runs, cheap.beside(runs, setting), scene, options, start);
       }
     }
     // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
@@ -470,24 +476,24 @@ template <class Runs>
     const bool near_rounding = last_try || (runs.begins_near_rounding() && missed.error > 0);
     const bool may_be_rounding =
         runs.begins_near_rounding() || (missed.error > 0 && runs.may_be_rounding(setting));
-    const bool grown = last_try && digits_off(task) > 0;  // to far more than it is made by
+    const bool grown = last_try && digits_off(options) > 0;  // to far more than it is made by
     const int more_alone = grown ? 4 : near_rounding ? 2 : may_be_rounding ? 1 : 0;
     const int more = rounding ? (last_try ? 1 : 0) : more_alone;
     // What begins near rounding and comes near the tolerance is rounding that has grown: three runs
     // agree on that by chance more often than four.
     const bool surprises = runs.begins_near_rounding() && !near_rounding;
-    const double enough = surprises ? task.tolerance / 10 : task.tolerance;
+    const double enough = surprises ? options.tolerance / 10 : options.tolerance;
     std::vector<RunSoFar> others;
     for (int i = 1; i <= more; ++i) {
       others.push_back(run_with(runs.between(setting, double(i) / (more + 1)), -digits));
     }
-    watch.note(task.begin, components_of(start));
+    watch.note(options.begin, components_of(start));
     std::size_t done = 0;
     const auto spend_on_others = [&] {
       for (const RunSoFar& other : others) account.spent += other.spent();
       if (rounding) account.spent += rounding->evaluations();
     };
-    const auto pass_run = [&](Bookmark& numbers) {
+    const auto pass_run = [&](Checkpoint& numbers) {
       if (!has_bookmarks) return;
       numbers(done, report.error_estimate, grown_to, distance, watch);
       coarse->pass(done, numbers);
@@ -496,7 +502,7 @@ template <class Runs>
       if (rounding) rounding->pass(numbers);
     };
     const auto bookmark_here = [&] {
-      Bookmark numbers;
+      Checkpoint numbers;
       pass_setting(numbers);
       pass_run(numbers);
       return numbers.numbers();
@@ -516,10 +522,10 @@ template <class Runs>
         const std::span<const double> reached = coarse->at_output(done, t, end);
         distance.note_sizes(coarse->sizes());
         // One that was moved by last digits begins with others than were given.
-        state = t == task.begin ? components_of(start) : reached;
+        state = t == options.begin ? components_of(start) : reached;
         double off = 0;
         const auto hold_beside = [&](RunSoFar& run) {
-          off = worse(off, distance(state, better_at_output(run, done)));
+          off = max_or_nan(off, distance(state, better_at_output(run, done)));
         };
         hold_beside(*fine);
         for (RunSoFar& other : others) hold_beside(other);
@@ -527,8 +533,8 @@ template <class Runs>
         // Coarse steps beside a stiff motion go ways of their own when shaken, and that is no growth.
         if (rounding && !coarse->changed_to()) {
           const double now = rounding->at(t, end);
-          noise = worse(noise, now);
-          grown_to = worse(grown_to, now);
+          noise = max_or_nan(noise, now);
+          grown_to = max_or_nan(grown_to, now);
           rounds_too_much = rounding->may_be_too_much(grown_to);
         }
         const double error = error_of_pair(off, runs.finer_by(setting), rounding_of(*coarse),
@@ -536,23 +542,23 @@ template <class Runs>
         if (last_try && !std::isfinite(error)) {
           stop_integration(t, "the state has grown beyond the range of numbers");
         }
-        report.error_estimate = worse(report.error_estimate, error);
+        report.error_estimate = max_or_nan(report.error_estimate, error);
         missed.note(done, report.error_estimate);
-        expected = forecast(task, t, report.error_estimate);
+        expected = forecast(options, t, report.error_estimate);
         too_coarse = !last_try &&
                      (report.error_estimate > enough || expected > 4 * enough || rounds_too_much);
         if (too_coarse) break;
         const bool is_output = times.is_output(done);
-        if (is_output && !output(result, watch, task, t, state, error)) break;
+        if (is_output && !output(result, watch, options, t, state, error)) break;
         ++done;
         const bool offers =
-            is_output && has_bookmarks && task.offer_bookmark && done < times.size();
-        if (offers) task.offer_bookmark(std::cref(bookmark_here));
+            is_output && has_bookmarks && options.offer_checkpoint && done < times.size();
+        if (offers) options.offer_checkpoint(std::cref(bookmark_here));
       }
     } catch (const ComputationFailed& error) {
       report.status = RunStatus::failed;
       // What a load or a guide throws knows no time.
-      const double last_good = times.last_output(done, task.begin);
+      const double last_good = times.last_output(done, options.begin);
       std::ostringstream text;
       text.precision(17);
       text << error.what() << "; the last output is that of t = " << last_good << " s";
@@ -562,7 +568,7 @@ template <class Runs>
     const bool complete = report.status == RunStatus::complete;
     const bool implicit = coarse->changed_to().has_value();
     const bool unsure = !implicit && pair_is_shaken && !looks_for_rounding &&
-                        report.error_estimate > task.tolerance / 8 &&
+                        report.error_estimate > options.tolerance / 8 &&
                         runs.can_look_for_rounding(setting, missed.error > 0);
     // The shaken one is off by so much for having been shaken.
     const bool shaken_too_much = !implicit && pair_is_shaken && !rounds_too_much &&
@@ -602,7 +608,7 @@ template <class Runs>
         rounds_too_much || (!implicit && is_fine && missed.stays(runs, setting));
     const bool stays = by_chance || (too_coarse && only_rounds);
     if (too_coarse && missed.error == 0) missed = {setting, done, report.error_estimate};
-    const bool finer_will_do = !stays && expected < runs.finer_by(setting) * task.tolerance &&
+    const bool finer_will_do = !stays && expected < runs.finer_by(setting) * options.tolerance &&
                                digits <= 1 && !scene.has_other();
     if (too_coarse && finer_will_do && runs.goes_on(setting)) {
       setting = runs.finer(setting);
@@ -620,7 +626,7 @@ template <class Runs>
     if (stays && runs.round_less()) {
       setting = runs.first();
       missed = {setting};
-      digits = digits_off(task);
+      digits = digits_off(options);
       grown_to = 0;
       cheap = {};
       known = 0;
@@ -633,7 +639,8 @@ template <class Runs>
     if (too_coarse || by_chance || (too_close && complete)) {
       known = too_coarse || by_chance ? 0 : report.error_estimate;
       if (too_coarse || by_chance) {
-        setting = stays ? runs.finest() : runs.tightened(setting, task.tolerance / (2 * expected));
+        setting =
+            stays ? runs.finest() : runs.tightened(setting, options.tolerance / (2 * expected));
       }
       coarse_starts_off = false;
       pair_is_shaken = pair_is_shaken && !looks_for_rounding && !runs.last(setting);
@@ -641,10 +648,10 @@ template <class Runs>
       fine.reset();
       continue;
     }
-    report.error_estimate = worse(report.error_estimate, grown_to);
+    report.error_estimate = max_or_nan(report.error_estimate, grown_to);
     if (complete && done > 0) {
       const double shown = watch.least_error(times[done - 1], state, distance.sizes());
-      report.error_estimate = worse(report.error_estimate, shown);
+      report.error_estimate = max_or_nan(report.error_estimate, shown);
     }
     report.method = name(coarse->changed_to().value_or(runs.method()));
     report.changes = coarse->changes();
@@ -652,7 +659,7 @@ template <class Runs>
     report.effort = coarse->effort();
     report.all_evaluations = account.spent;
     report.tolerance_kept =
-        report.status != RunStatus::failed && report.error_estimate <= task.tolerance;
+        report.status != RunStatus::failed && report.error_estimate <= options.tolerance;
     report.invariants = watch.drifts();
     report.run_time = seconds_since(clock);
     return result;
@@ -685,25 +692,26 @@ template <class Runs>
 }
 
 Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::VectorXd& given,
-                                  const Task& task) {
+                                  const SolveOptions& options) {
   const Clock::time_point clock = Clock::now();
-  const Eigen::VectorXd start = start_of_steps(scene, given, task.smallest);
-  const bool automatic = task.method == Method::automatic;
+  const Eigen::VectorXd start = start_of_steps(scene, given, options.absolute_scale);
+  const bool automatic = options.method == Method::automatic;
   Account account;
-  const auto go_on = [&](const auto& runs, const Task& asked, const std::vector<double>& bookmark) {
-    auto result = solve_in_pairs(scene, runs, start, asked, bookmark, account);
+  const auto go_on = [&](const auto& runs, const SolveOptions& asked,
+                         const std::vector<double>& checkpoint) {
+    auto result = solve_in_pairs(scene, runs, start, asked, checkpoint, account);
     result.report.run_time = seconds_since(clock);
     return result;
   };
-  const auto with = [&](const auto& runs) { return go_on(runs, task, task.bookmark); };
+  const auto with = [&](const auto& runs) { return go_on(runs, options, options.checkpoint); };
   // Steps that are too long for what comes later on the way do not converge there.
-  const auto by_gauss = [&](const Task& asked, const std::vector<double>& bookmark) {
+  const auto by_gauss = [&](const SolveOptions& asked, const std::vector<double>& checkpoint) {
     const double once = pace(scene, asked, start);
-    auto result = go_on(gauss_runs(once), asked, bookmark);
+    auto result = go_on(gauss_runs(once), asked, checkpoint);
     constexpr int most_tries = 4;
     for (int i = 1; i <= most_tries && result.report.status == RunStatus::failed; ++i) {
-      if (result.report.all_evaluations > asked.most_evaluations) break;
-      result = go_on(gauss_runs(once * std::pow(0.25, i)), asked, bookmark);
+      if (result.report.all_evaluations > asked.max_evaluations) break;
+      result = go_on(gauss_runs(once * std::pow(0.25, i)), asked, checkpoint);
     }
     return result;
   };
@@ -711,16 +719,17 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
   if (const EulerTop* const top = scene.top()) {
     const auto state = EulerTop::from_vector(vector_of<EulerTop::Vector>(start));
     const bool pays = automatic && splits(*top) && is_fast(*top, state);
-    if (pays || task.method == Method::splitting) return with(splitting_runs(*top, task, state));
+    if (pays || options.method == Method::splitting)
+      return with(splitting_runs(*top, options, state));
   }
-  if (task.method == Method::radau13) return with(AdaptiveRuns(task, Method::radau13));
-  if (task.method == Method::gauss16) return by_gauss(task, task.bookmark);
-  const auto explicitly = [&](const Task& asked, const std::vector<double>& bookmark) {
+  if (options.method == Method::radau13) return with(AdaptiveRuns(options, Method::radau13));
+  if (options.method == Method::gauss16) return by_gauss(options, options.checkpoint);
+  const auto explicitly = [&](const SolveOptions& asked, const std::vector<double>& checkpoint) {
     const bool by_series = scene.knows_series() && asked.method != Method::verner98;
     const Method method = by_series ? Method::taylor : Method::verner98;
-    return go_on(AdaptiveRuns(asked, method), asked, bookmark);
+    return go_on(AdaptiveRuns(asked, method), asked, checkpoint);
   };
-  auto result = explicitly(task, task.bookmark);
+  auto result = explicitly(options, options.checkpoint);
   if (!automatic) return result;
   const bool stiff = !result.report.changes.empty();
 
@@ -730,8 +739,8 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
     return report.status == RunStatus::complete && !report.tolerance_kept;
   };
   const auto or_by = [&](Method method, const auto& run) {
-    Task alone = task;  // a bookmark would not know the other trajectory
-    alone.offer_bookmark = nullptr;
+    SolveOptions alone = options;  // a checkpoint would not know the other trajectory
+    alone.offer_checkpoint = nullptr;
     alone.method = method;
     auto other = run(alone);
     if (other.report.status == RunStatus::complete &&
@@ -739,11 +748,11 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
       result = std::move(other);
     }
   };
-  const auto by_steps = [&](const Task& asked) { return explicitly(asked, {}); };
+  const auto by_steps = [&](const SolveOptions& asked) { return explicitly(asked, {}); };
   if (missed() && stiff) {
     // Of explicit steps, as many as stability asks for cost so much; their last digits are better.
-    const double rate = std::abs(fastest_rate(scene, false, task.begin, start));
-    const double evaluations = 5 * rate * std::abs(task.times.back() - task.begin);
+    const double rate = std::abs(dominant_eigenvalue(scene, false, options.begin, start));
+    const double evaluations = 5 * rate * std::abs(options.output_times.back() - options.begin);
     if (evaluations < 10 * account.spent) {
       or_by(scene.knows_series() ? Method::taylor : Method::verner98, by_steps);
     }
@@ -752,8 +761,8 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
     or_by(Method::verner98, by_steps);
   }
   // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
-  if (missed() && !stiff && result.report.effort.steps > 1e5 && task.jumps.empty()) {
-    or_by(Method::gauss16, [&](const Task& asked) { return by_gauss(asked, {}); });
+  if (missed() && !stiff && result.report.effort.steps > 1e5 && options.discontinuities.empty()) {
+    or_by(Method::gauss16, [&](const SolveOptions& asked) { return by_gauss(asked, {}); });
   }
   return result;
 }
@@ -770,23 +779,24 @@ void check_start(const SteppedScene& scene, const Eigen::VectorXd& start) {
 }
 
 /// Throws what is wrong with the method asked for, for this scene.
-void check_method(const SteppedScene& scene, const Task& task) {
+void check_method(const SteppedScene& scene, const SolveOptions& options) {
   const auto refuse = [&](const char* why) {
-    refuse_task("method ", name(task.method), " does not apply: ", why);
+    refuse_task("method ", name(options.method), " does not apply: ", why);
   };
-  const bool fixed_steps = task.method == Method::gauss16 || task.method == Method::splitting;
-  if (fixed_steps && !task.jumps.empty()) refuse("its equal steps cannot end at the jumps");
-  if (task.method == Method::taylor && !scene.knows_series()) {
+  const bool fixed_steps = options.method == Method::gauss16 || options.method == Method::splitting;
+  if (fixed_steps && !options.discontinuities.empty())
+    refuse("its equal steps cannot end at the jumps");
+  if (options.method == Method::taylor && !scene.knows_series()) {
     refuse("this scene does not know its series");
   }
-  if (task.method != Method::splitting) return;
+  if (options.method != Method::splitting) return;
   if (scene.top() && splits(*scene.top())) return;
   refuse("it is for an EulerTop with two equal moments, under weight and without rotor");
 }
 
-void check(const SteppedScene& scene, const Eigen::VectorXd& start, const Task& task) {
-  check(task);
-  check_method(scene, task);
+void check(const SteppedScene& scene, const Eigen::VectorXd& start, const SolveOptions& options) {
+  check(options);
+  check_method(scene, options);
   check_start(scene, start);
 }
 

@@ -9,7 +9,7 @@
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/scene_runs.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 
 namespace kreisel {
 
@@ -32,10 +32,10 @@ namespace kreisel {
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
                                                       const typename Scene::State& start,
-                                                      const Task& task) {
+                                                      const SolveOptions& options) {
   const detail::SceneRuns<Scene> runs(scene);
   const Eigen::VectorXd y = runs.to_vector(start);
-  detail::check(runs, y, task);
+  detail::check(runs, y, options);
   const auto with_states = [&](Trajectory<double> by_components) {
     Trajectory<typename Scene::State> result;
     const auto components = static_cast<std::size_t>(y.size());
@@ -49,18 +49,20 @@ template <class Scene>
     result.errors = std::move(by_components.errors);
     return result;
   };
-  const bool closed_wanted = task.method == Method::closed_form || task.method == Method::automatic;
-  if constexpr (requires { closed_form(scene, task.begin, start); }) {
+  const bool closed_wanted =
+      options.method == Method::closed_form || options.method == Method::automatic;
+  if constexpr (requires { closed_form(scene, options.begin, start); }) {
     if (closed_wanted) {
-      const auto motion = closed_form(scene, task.begin, start);
+      const auto motion = closed_form(scene, options.begin, start);
       if (motion) {
         const auto at = [&](double t) { return runs.to_vector(motion->at(t)); };
-        return with_states(detail::solve_closed(runs, y, task, {motion->name, at, motion->error}));
+        return with_states(
+            detail::solve_closed(runs, y, options, {motion->name, at, motion->error}));
       }
     }
   }
-  if (task.method == Method::closed_form) detail::refuse_closed_form();
-  return with_states(detail::solve_by_steps(runs, y, task));
+  if (options.method == Method::closed_form) detail::refuse_closed_form();
+  return with_states(detail::solve_by_steps(runs, y, options));
 }
 
 }  // namespace kreisel

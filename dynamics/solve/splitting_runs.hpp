@@ -8,8 +8,8 @@
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/fixed_runs.hpp>
 #include <dynamics/solve/run.hpp>
-#include <dynamics/solve/task.hpp>
-#include <dynamics/step/bookmark.hpp>
+#include <dynamics/solve/solve_options.hpp>
+#include <dynamics/step/checkpoint.hpp>
 #include <dynamics/step/splitting.hpp>
 
 namespace kreisel::detail {
@@ -39,12 +39,12 @@ class SplittingRun final : public Run {
   };
 
  public:
-  SplittingRun(const EulerTop& top, const Task& task, const EulerTop::State& start,
+  SplittingRun(const EulerTop& top, const SolveOptions& options, const EulerTop::State& start,
                const EqualLength& length)
       : length_(length),
-        steps_(SymmetricFreeFlow(top.moments().x(), top.moments().z()), {&top}, task.begin,
+        steps_(SymmetricFreeFlow(top.moments().x(), top.moments().z()), {&top}, options.begin,
                start.attitude, start.angular_velocity, length.longest) {
-    steps_.give_up_after(task.most_evaluations);
+    steps_.give_up_after(options.max_evaluations);
   }
 
   void on_the_way(double t, double /*end*/, double* y) override {
@@ -53,15 +53,15 @@ class SplittingRun final : public Run {
     std::copy_n(there.data(), there.size(), y);
   }
 
-  [[nodiscard]] Effort effort() const override { return steps_.effort(); }
-  void pass(Bookmark& /*bookmark*/) override {}
+  [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
+  void pass(Checkpoint& /*checkpoint*/) override {}
 
  private:
   EqualLength length_;
   SplittingSteps<SymmetricFreeFlow, Weight> steps_;
 };
 
-[[nodiscard]] inline FixedRuns splitting_runs(const EulerTop& top, const Task& task,
+[[nodiscard]] inline FixedRuns splitting_runs(const EulerTop& top, const SolveOptions& options,
                                               const EulerTop::State& start) {
   // What the torque turns with on body axes.
   const Vector3<double>& I = top.moments();
@@ -71,7 +71,8 @@ class SplittingRun final : public Run {
   const double rate = std::max(nutation, spin) + std::sqrt(top.weight_moment().norm() / I.x());
   // Steps of 2/rate err by some 1e-9.
   return {Method::splitting, 8,
-          2 / rate * std::clamp(std::pow(task.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0), 0.02 / rate};
+          2 / rate * std::clamp(std::pow(options.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
+          0.02 / rate};
 }
 
 }  // namespace kreisel::detail

@@ -15,9 +15,9 @@
 
 #include <dynamics/decompositions.hpp>
 #include <dynamics/solve/run.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/accuracy.hpp>
-#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/checkpoint.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/shared.hpp>
 #include <dynamics/step/taylor.hpp>
@@ -26,8 +26,8 @@ namespace kreisel::detail {
 
 /// The eigenvalue of the greatest modulus of the Jacobian; 0 where that is not finite, because a failed
 /// look for stiffness must not end the run.
-[[nodiscard]] inline std::complex<double> fastest_rate(const SteppedScene& scene, bool other,
-                                                       double t, const Eigen::VectorXd& y) {
+[[nodiscard]] inline std::complex<double> dominant_eigenvalue(const SteppedScene& scene, bool other,
+                                                              double t, const Eigen::VectorXd& y) {
   Eigen::MatrixXd J(y.size(), y.size());
   scene.stiff_field(other)->jacobian(t, y, J);
   std::complex<double> fastest = 0;
@@ -41,13 +41,13 @@ namespace kreisel::detail {
 /// A run of radau13.
 class RadauRun final : public SteppedRun {
  public:
-  RadauRun(const SteppedScene& scene, bool other, const Task& task, const Eigen::VectorXd& start,
-           const Accuracy& accuracy)
-      : SteppedRun(scene.blocks(), task.smallest),
+  RadauRun(const SteppedScene& scene, bool other, const SolveOptions& options,
+           const Eigen::VectorXd& start, const Accuracy& accuracy)
+      : SteppedRun(scene.blocks(), options.absolute_scale),
         field_(scene.stiff_field(other)),
-        steps_(radau_coefficients<7>(), task.begin, start, accuracy, scene.blocks()),
-        from_(task.begin) {
-    steps_.stop_at(task.jumps);
+        steps_(radau_coefficients<7>(), options.begin, start, accuracy, scene.blocks()),
+        from_(options.begin) {
+    steps_.stop_at(options.discontinuities);
   }
 
   void step_towards(double end, double output) override {
@@ -79,12 +79,12 @@ class RadauRun final : public SteppedRun {
   }
   void know_sizes(std::span<const double> sizes) override { steps_.know_sizes(sizes); }
 
-  [[nodiscard]] Effort effort() const override { return steps_.effort(); }
+  [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
   [[nodiscard]] double noise() const override { return steps_.noise(); }
 
-  void pass(Bookmark& bookmark) override {
-    SteppedRun::pass(bookmark);
-    bookmark(from_, steps_);
+  void pass(Checkpoint& checkpoint) override {
+    SteppedRun::pass(checkpoint);
+    checkpoint(from_, steps_);
   }
 
  private:
@@ -102,9 +102,9 @@ class RadauRun final : public SteppedRun {
 /// oscillation that it would damp is greater than the accuracy.
 class SwitchingRun final : public SteppedRun {
  public:
-  SwitchingRun(const SteppedScene& scene, bool other, const Task& task, Method first,
+  SwitchingRun(const SteppedScene& scene, bool other, const SolveOptions& options, Method first,
                const Eigen::VectorXd& start, const Accuracy& accuracy)
-      : SteppedRun(scene.blocks(), task.smallest),
+      : SteppedRun(scene.blocks(), options.absolute_scale),
         scene_(scene),
         other_(other),
         accuracy_(accuracy),
@@ -113,9 +113,9 @@ class SwitchingRun final : public SteppedRun {
         method_(first),
         // Beyond 200 components factorisations would outweigh everything.
         looks_((first == Method::verner98 || scene.may_be_stiff()) && start.size() <= 200) {
-    here_.begin = task.begin;
-    here_.jumps = task.jumps;
-    here_.smallest = task.smallest;
+    here_.begin = options.begin;
+    here_.discontinuities = options.discontinuities;
+    here_.absolute_scale = options.absolute_scale;
     run_ = run_by(first, start);
   }
 
@@ -143,7 +143,9 @@ class SwitchingRun final : public SteppedRun {
   void read(double t, double* y) override { run_->read(t, y); }
   void know_sizes(std::span<const double> sizes) override { run_->know_sizes(sizes); }
 
-  [[nodiscard]] Effort effort() const override { return sum(finished_, run_->effort()); }
+  [[nodiscard]] IntegrationStatistics effort() const override {
+    return sum(finished_, run_->effort());
+  }
   /// That of the last method: a stiff, damped motion forgets the noise of explicit steps.
   [[nodiscard]] double noise() const override { return run_->noise(); }
   [[nodiscard]] std::optional<Method> changed_to() const override {
@@ -163,28 +165,28 @@ class SwitchingRun final : public SteppedRun {
     return text.str();
   }
 
-  void pass(Bookmark& bookmark) override {
+  void pass(Checkpoint& checkpoint) override {
     std::size_t count = changes_.size();
-    bookmark(count);
+    checkpoint(count);
     constexpr std::size_t most_changes = 1000000;
-    if (count > most_changes) refuse_task("the bookmark is not of this run");
+    if (count > most_changes) refuse_task("the checkpoint is not of this run");
     changes_.resize(count);
     for (Change& change : changes_) {
       auto to = static_cast<double>(change.to);
-      bookmark(change.t, to);
+      checkpoint(change.t, to);
       const bool known = to == static_cast<double>(Method::verner98) ||
                          to == static_cast<double>(Method::radau13) ||
                          to == static_cast<double>(first_);
-      if (!known) refuse_task("the bookmark is not of this run");
+      if (!known) refuse_task("the checkpoint is not of this run");
       change.to = static_cast<Method>(static_cast<int>(to));
       if (change.to != Method::radau13) explicit_ = change.to;
     }
     const Method now = changes_.empty() ? first_ : changes_.back().to;
     if (now != method_) run_ = run_by(now, vector_of<Eigen::VectorXd>(run_->state()));
     method_ = now;
-    SteppedRun::pass(bookmark);
-    bookmark(finished_, next_look_, needless_);
-    run_->pass(bookmark);
+    SteppedRun::pass(checkpoint);
+    checkpoint(finished_, next_look_, needless_);
+    run_->pass(checkpoint);
   }
 
  private:
@@ -193,7 +195,8 @@ class SwitchingRun final : public SteppedRun {
     Method to = Method::verner98;
   };
 
-  [[nodiscard]] static Effort sum(const Effort& a, const Effort& b) {
+  [[nodiscard]] static IntegrationStatistics sum(const IntegrationStatistics& a,
+                                                 const IntegrationStatistics& b) {
     return {a.steps + b.steps, a.rejected + b.rejected, a.evaluations + b.evaluations,
             a.jacobians + b.jacobians};
   }
@@ -201,7 +204,7 @@ class SwitchingRun final : public SteppedRun {
   /// A run from the present time on.
   [[nodiscard]] std::unique_ptr<SteppedRun> run_by(Method method, const Eigen::VectorXd& y) const {
     Accuracy accuracy = accuracy_;
-    accuracy.most_evaluations = std::max(1.0, accuracy_.most_evaluations - finished_.evaluations);
+    accuracy.max_evaluations = std::max(1.0, accuracy_.max_evaluations - finished_.evaluations);
     if (method == Method::taylor) return scene_.taylor_run(here_, y, accuracy, other_);
     if (method == Method::verner98) return scene_.explicit_run(here_, y, accuracy, other_);
     return radau_run(y, accuracy);
@@ -271,7 +274,7 @@ class SwitchingRun final : public SteppedRun {
   /// Goes over to radau13 where that pays; else says whether it may later on.
   [[nodiscard]] bool try_radau(double end, double output) {
     const Eigen::VectorXd y = present();
-    const std::complex<double> fastest = fastest_rate(scene_, other_, run_->t(), y);
+    const std::complex<double> fastest = dominant_eigenvalue(scene_, other_, run_->t(), y);
     const double speed = std::abs(fastest);
     constexpr double soon = 1e-3;  // of the time left
     const bool dies_soon =
@@ -309,10 +312,10 @@ class SwitchingRun final : public SteppedRun {
   Method explicit_;  ///< the last one before radau13
   Method method_;
   bool looks_;
-  Task here_;  ///< begins at the state from which the last method began
+  SolveOptions here_;  ///< begins at the state from which the last method began
   std::unique_ptr<SteppedRun> run_;
   std::vector<Change> changes_;
-  Effort finished_;  ///< of the methods before
+  IntegrationStatistics finished_;  ///< of the methods before
   double next_look_ = first_look;
   int needless_ = 0;  ///< steps of radau13 in turn that explicit ones could have made
 };

@@ -15,25 +15,25 @@ namespace kreisel {
 
 /// How exact an integration is to be.
 struct Accuracy {
-  /// Of the error made in one step, relative to each block of the state; 1e-16 to 1e-2. ExplicitSteps
+  /// Of the error made in one step, relative to each block of the state; 1e-16 to 1e-2. ExplicitRungeKutta
   /// and TaylorSteps go down to 1e-20: what a method errs by adds up, what is rounded hardly does.
   double relative = 1e-14;
 
   /// A block smaller than this (in its SI unit) counts as being so large. Set it to the size of the
   /// signal where that is smaller.
-  double smallest = 1e-3;
+  double absolute_scale = 1e-3;
 
   /// Evaluations of the field after which the integration gives up.
-  double most_evaluations = 1e8;
+  double max_evaluations = 1e8;
 
   /// By how many of its last digits the change in each step is made wrong, up or down at random
-  /// (ExplicitSteps, TaylorSteps). Beside a run that is not shaken, one that is tells what rounding
+  /// (ExplicitRungeKutta, TaylorSteps). Beside a run that is not shaken, one that is tells what rounding
   /// grows to.
   double shaken = 0;
 };
 
 /// What an integration has cost so far.
-struct Effort {
+struct IntegrationStatistics {
   double steps = 0;
   double rejected = 0;
   double evaluations = 0;
@@ -50,11 +50,11 @@ inline void check(const Accuracy& accuracy, double least = 1e-16) {
     refuse_steps("accuracy.relative = ", accuracy.relative, " lies outside [", least,
                  ", 1e-2], what these steps can keep");
   }
-  if (!(accuracy.smallest >= 0)) {
-    refuse_steps("accuracy.smallest = ", accuracy.smallest, " must be 0 or above");
+  if (!(accuracy.absolute_scale >= 0)) {
+    refuse_steps("accuracy.absolute_scale = ", accuracy.absolute_scale, " must be 0 or above");
   }
-  if (!(accuracy.most_evaluations > 0)) {
-    refuse_steps("accuracy.most_evaluations = ", accuracy.most_evaluations, " must be above 0");
+  if (!(accuracy.max_evaluations > 0)) {
+    refuse_steps("accuracy.max_evaluations = ", accuracy.max_evaluations, " must be above 0");
   }
   if (!(accuracy.shaken >= 0 && std::isfinite(accuracy.shaken))) {
     refuse_steps("accuracy.shaken = ", accuracy.shaken, " must be a finite number of 0 or above");
@@ -139,9 +139,9 @@ class BlockSizes {
     }
   }
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    for (Block& block : blocks_) bookmark(block.size, block.noise, block.wander);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    for (Block& block : blocks_) checkpoint(block.size, block.noise, block.wander);
   }
 
   /// What rounding of the state leaves uncertain of its rate. Each step makes an error of that times

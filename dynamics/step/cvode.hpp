@@ -58,7 +58,7 @@ using Sundials = std::unique_ptr<std::remove_pointer_t<Pointer>, SundialsFree>;
 
 }  // namespace detail
 
-/// SUNDIALS' CVODE behind the interface of ExplicitSteps, for comparison, and for stiff fields of many
+/// SUNDIALS' CVODE behind the interface of ExplicitRungeKutta, for comparison, and for stiff fields of many
 /// components.
 ///
 /// A field that is not finite makes CVODE try a shorter step; where none helps, the last good time and
@@ -67,9 +67,9 @@ using Sundials = std::unique_ptr<std::remove_pointer_t<Pointer>, SundialsFree>;
 /// components; errors add up to 10 to 1000 times as much.
 ///
 /// Vector : Eigen::Matrix<double, n, 1>; n may be Eigen::Dynamic
-/// Field  : as ExplicitSteps takes it
+/// Field  : as ExplicitRungeKutta takes it
 /// J      : callable (double t, Vector y) -> Jacobian<n>, for bdf; without one CVODE takes differences
-/// Blocks : as ExplicitSteps
+/// Blocks : as ExplicitRungeKutta
 /// Source : A. C. Hindmarsh et al., SUNDIALS, ACM TOMS 31 (2005) 363; its manual, release 6
 /// Cost   : about two evaluations a step, and some microseconds besides
 /// Throws : InvalidInput for an accuracy out of range or a start that is not finite;
@@ -92,7 +92,7 @@ class CvodeSteps {
         y_(y),
         rate_(y),
         allowed_(y),
-        sizes_(blocks, accuracy.smallest, y),
+        sizes_(blocks, accuracy.absolute_scale, y),
         context_(detail::sundials_context()),
         state_(N_VNew_Serial(count(), context_.get())) {
     detail::check(accuracy);
@@ -117,7 +117,7 @@ class CvodeSteps {
 
   [[nodiscard]] double t() const { return t_; }
   [[nodiscard]] const Vector& y() const { return y_; }
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Integrates to `end`, which is hit exactly; forwards or backwards.
   const Vector& advance_to(double end) {
@@ -230,8 +230,8 @@ class CvodeSteps {
     constexpr int give_up = -1;
     if (thrown_) return give_up;
     try {
-      if (effort_.evaluations > accuracy_.most_evaluations) {
-        detail::stop_integration(t_, accuracy_.most_evaluations, " evaluations are spent");
+      if (effort_.evaluations > accuracy_.max_evaluations) {
+        detail::stop_integration(t_, accuracy_.max_evaluations, " evaluations are spent");
       }
       return call() ? 0 : try_shorter;
     } catch (...) {
@@ -284,8 +284,8 @@ class CvodeSteps {
   double begin_ = t_;  ///< of the last step
   double direction_ = 1;
   bool broken_ = false;
-  Effort effort_;
-  Effort before_;  ///< when CVODE began
+  IntegrationStatistics effort_;
+  IntegrationStatistics before_;  ///< when CVODE began
   std::exception_ptr thrown_;
   detail::BlockSizes<Vector> sizes_;
   detail::Sundials<SUNContext> context_;

@@ -19,7 +19,7 @@ enum class Crossing { any, rising, falling };
 /// the next one, and a zero of g at the start does not count. A g that touches zero without
 /// crossing is no event, nor are two crossings within a sixteenth of a step.
 ///
-/// Steps  : has step_towards, t, y, at and back_to, as ExplicitSteps
+/// Steps  : has step_towards, t, y, at and back_to, as ExplicitRungeKutta
 /// Error  : of the time 4 units in its last place beside that of the trajectory
 ///          (tests/dynamics/step/events.cpp)
 /// Cost   : 16 evaluations of g a step, and 10 more of the field

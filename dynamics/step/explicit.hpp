@@ -44,19 +44,19 @@ namespace kreisel {
 /// Throws : InvalidInput for an accuracy out of range or a start that is not finite;
 ///          ComputationFailed naming the time where steps become too short or too many
 template <class Vector, class Field, class Tableau = Verner98>
-class ExplicitSteps {
+class ExplicitRungeKutta {
  public:
   using Scalar = detail::ScalarOf<typename Vector::Scalar>;
 
-  ExplicitSteps(Field field, const Scalar& t, const Vector& y, const Accuracy& accuracy = {},
-                std::span<const int> blocks = {})
+  ExplicitRungeKutta(Field field, const Scalar& t, const Vector& y, const Accuracy& accuracy = {},
+                     std::span<const int> blocks = {})
       : field_(std::move(field)),
         accuracy_(accuracy),
         time_{t, Scalar(0)},
         state_{y, zero(y)},
         allowed_(static_cast<Scalar>(accuracy.relative)),
         stage_(y),
-        sizes_(blocks, Scalar(accuracy.smallest), y),
+        sizes_(blocks, Scalar(accuracy.absolute_scale), y),
         before_{time_, state_, zero(y)} {
     coefficient_.fill(zero(y));
     detail::check(accuracy, detail::least_over_long_ways);
@@ -67,7 +67,7 @@ class ExplicitSteps {
 
   [[nodiscard]] const Scalar& t() const { return time_.value; }
   [[nodiscard]] const Vector& y() const { return state_.value; }
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Whether the last 20 steps that were looked at, every eighth, were as short as they were
   /// because the field is stiff, not because the solution bends: then RadauSteps is the better
@@ -127,7 +127,7 @@ class ExplicitSteps {
   /// The step that another run of the same field has made last, whatever this one errs by in it.
   ///
   /// Throws : ComputationFailed if the field has no rate at a point of that step
-  void follow(const ExplicitSteps& leader) {
+  void follow(const ExplicitRungeKutta& leader) {
     const Scalar h = leader.before_.length;
     last_stage_time_ = leader.last_stage_time_;
     begin_step(last_stage_time_);
@@ -185,12 +185,13 @@ class ExplicitSteps {
   [[nodiscard]] Scalar noise() const { return Scalar(0.5) * sizes_.wander(squares_); }
 
   /// What the steps go on from, outputs within the last step included.
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(time_, state_, step_, steps_taken_, squares_, log_worst_before_, rejected_.step,
-             rejected_.worst, rejected_.in_vain, allowed_, sizes_, last_stage_time_, before_.time,
-             before_.state, before_.rate, before_.length, polynomial_known_, short_steps_, effort_);
-    for (Vector& coefficient : coefficient_) bookmark(coefficient);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(time_, state_, step_, steps_taken_, squares_, log_worst_before_, rejected_.step,
+               rejected_.worst, rejected_.in_vain, allowed_, sizes_, last_stage_time_, before_.time,
+               before_.state, before_.rate, before_.length, polynomial_known_, short_steps_,
+               effort_);
+    for (Vector& coefficient : coefficient_) checkpoint(coefficient);
   }
 
  private:
@@ -392,8 +393,8 @@ class ExplicitSteps {
       failure_.tell(t());
       detail::stop_integration(t(), "the step has become too short to move time on");
     }
-    if (effort_.evaluations > accuracy_.most_evaluations) {
-      detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
+    if (effort_.evaluations > accuracy_.max_evaluations) {
+      detail::stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
     }
     const auto fill = [&] { fill_stages(h, std::make_index_sequence<Tableau::stages - 1>()); };
     if (!failure_.is_spared(t(), fill)) {
@@ -589,7 +590,7 @@ class ExplicitSteps {
   bool polynomial_known_ = false;
   int short_steps_ = 0;
   std::array<Vector, coefficients> coefficient_;  ///< the polynomial's coefficients
-  Effort effort_;
+  IntegrationStatistics effort_;
   detail::TrialFailure<Scalar> failure_;
 };
 

@@ -103,9 +103,9 @@ struct GaussCoefficients {
 /// Source : Hairer, McLachlan, Razakarivony, Achieving Brouwer's law with implicit Runge-Kutta
 ///          methods, BIT 48 (2008) 231; the ratios: Antonana, Makazaga, Murua, Numerical Algorithms
 ///          76 (2017) 861
-/// Field  : as ExplicitSteps takes it; smooth, not stiff
-/// Vector : as ExplicitSteps; of a size known at run time only, steps ask for memory
-/// Blocks : as ExplicitSteps; their sizes, those below `smallest` apart, say what of the stages' last
+/// Field  : as ExplicitRungeKutta takes it; smooth, not stiff
+/// Vector : as ExplicitRungeKutta; of a size known at run time only, steps ask for memory
+/// Blocks : as ExplicitRungeKutta; their sizes, those below `smallest` apart, say what of the stages' last
 ///          change may be rounding, and what noise is in proportion to
 /// Error  : pendulum of 0.1 rad, 6 to 12 steps a period, RMS of 6: after 1e4 periods energy 2e-14
 ///          relative, phase 1.5e-12 rad; after 1e5, 7e-14 and 2e-11: as sqrt(t) and t
@@ -114,14 +114,14 @@ struct GaussCoefficients {
 /// Throws : InvalidInput for a step or a start that is none; ComputationFailed naming the time
 ///          where the stages do not converge: the last good time and state stay readable
 template <class Vector, class Field, int stages = 8>
-class GaussSteps {
+class GaussIRK {
  public:
   using Scalar = typename Vector::Scalar;
 
   static constexpr int order = 2 * stages;
 
-  GaussSteps(Field field, const Scalar& t, const Vector& y, double step,
-             std::span<const int> blocks = {}, double smallest = 0)
+  GaussIRK(Field field, const Scalar& t, const Vector& y, double step,
+           std::span<const int> blocks = {}, double smallest = 0)
       : field_(std::move(field)),
         step_(step),
         time_{t, Scalar(0)},
@@ -149,7 +149,7 @@ class GaussSteps {
 
   [[nodiscard]] const Scalar& t() const { return time_.value; }
   [[nodiscard]] const Vector& y() const { return state_.value; }
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// The greatest size of each block so far.
   [[nodiscard]] std::vector<Scalar> sizes() const { return sizes_.sizes(); }
@@ -196,9 +196,10 @@ class GaussSteps {
   }
 
   /// What the steps go on from.
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(step_, h_, time_, state_, stage_, continues_, sizes_, squares_, steps_taken_, effort_);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(step_, h_, time_, state_, stage_, continues_, sizes_, squares_, steps_taken_,
+               effort_);
   }
 
  private:
@@ -313,7 +314,7 @@ class GaussSteps {
   Scalar squares_{0};         ///< of steps, summed since noise was looked at
   unsigned steps_taken_ = 0;  ///< or what is left of their number
   double most_evaluations_ = std::numeric_limits<double>::infinity();
-  Effort effort_;
+  IntegrationStatistics effort_;
 };
 
 }  // namespace kreisel

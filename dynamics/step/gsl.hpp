@@ -80,7 +80,7 @@ class GslControl {
   }
 
   [[nodiscard]] double allowed(const Block& block) const {
-    return accuracy_.relative * std::max(block.size, accuracy_.smallest);
+    return accuracy_.relative * std::max(block.size, accuracy_.absolute_scale);
   }
 
   /// GSL's rule for the next step, with its constants.
@@ -115,7 +115,7 @@ class GslControl {
 
 }  // namespace detail
 
-/// GSL's steppers behind the interface of ExplicitSteps, for comparison and for stiff fields.
+/// GSL's steppers behind the interface of ExplicitRungeKutta, for comparison and for stiff fields.
 ///
 /// GSL returns success with a NaN in the state. Here a field that is not finite makes GSL try a
 /// shorter step; where none helps, the last good time and state stay readable. What the field
@@ -169,7 +169,7 @@ class GslSteps {
 
   [[nodiscard]] double t() const { return t_; }
   [[nodiscard]] const Vector& y() const { return y_; }
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Integrates to `end`, which is hit exactly; forwards or backwards.
   const Vector& advance_to(double end) {
@@ -214,7 +214,7 @@ class GslSteps {
     effort_.steps += 1;
   }
 
-  /// A hundredth of the time in which a block changes by its own size, as ExplicitSteps does.
+  /// A hundredth of the time in which a block changes by its own size, as ExplicitRungeKutta does.
   [[nodiscard]] double first_length() {
     effort_.evaluations += 1;
     const Vector rate = field_(t_, y_);
@@ -227,8 +227,8 @@ class GslSteps {
   template <class Call>
   [[nodiscard]] int guarded(const Call& call) {
     try {
-      if (effort_.evaluations > accuracy_.most_evaluations) {
-        detail::stop_integration(t_, accuracy_.most_evaluations, " evaluations are spent");
+      if (effort_.evaluations > accuracy_.max_evaluations) {
+        detail::stop_integration(t_, accuracy_.max_evaluations, " evaluations are spent");
       }
       return call() ? GSL_SUCCESS : GSL_ERANGE;  // GSL answers the latter with a shorter step
     } catch (...) {
@@ -269,7 +269,7 @@ class GslSteps {
   double t_;
   Vector y_;
   double length_ = 0;  ///< of the next step; 0 asks for a first one
-  Effort effort_;
+  IntegrationStatistics effort_;
   std::exception_ptr thrown_;
   detail::GslControl control_;
   gsl_odeiv2_control gsl_control_ = detail::GslControl::gsl(&control_);

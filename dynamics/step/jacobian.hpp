@@ -49,7 +49,7 @@ template <int n, class Field>
 
 /// (t, y) -> Jacobian of any field, by differences: for fields that know no dual numbers.
 ///
-/// Field  : as ExplicitSteps takes it; n may be Eigen::Dynamic
+/// Field  : as ExplicitRungeKutta takes it; n may be Eigen::Dynamic
 /// Error  : of of_state some 1e-8 of each column: good enough for the iterations of RadauSteps.
 ///          of_time stays 0
 /// Cost   : one evaluation and one for each component

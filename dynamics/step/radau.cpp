@@ -128,7 +128,7 @@ RadauIntegrator::RadauIntegrator(const RadauCoefficients& coefficients, double t
                                  std::span<const int> blocks)
     : coefficients_(&coefficients),
       accuracy_(accuracy),
-      sizes_(blocks, accuracy.smallest, y),
+      sizes_(blocks, accuracy.absolute_scale, y),
       time_{t, 0},
       state_{y, Eigen::VectorXd::Zero(y.size())},
       before_{time_, state_},
@@ -385,8 +385,8 @@ bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool a
     failure_.tell(t());
     stop_integration(t(), "the step has become too short to move time on");
   }
-  if (effort_.evaluations > accuracy_.most_evaluations) {
-    stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
+  if (effort_.evaluations > accuracy_.max_evaluations) {
+    stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
   }
   kept_ = stages_.value;
   stages_.factorise(tangent_, h);

@@ -112,7 +112,7 @@ class KREISEL_API RadauIntegrator {
 
   [[nodiscard]] const double& t() const { return time_.value; }
   [[nodiscard]] const Eigen::VectorXd& y() const { return state_.value; }
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Takes over the sizes that blocks have had before, which errors are measured by.
   void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
@@ -140,13 +140,13 @@ class KREISEL_API RadauIntegrator {
   void back_to(StiffField& field, double time);
   [[nodiscard]] double noise() const;
 
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
-             step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst, rate_,
-             stages_.value, tangent_, noise_, added_, effort_, rates_of_field_, fastest_, growth_,
-             steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
-             barrier_.patience);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
+               step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst,
+               rate_, stages_.value, tangent_, noise_, added_, effort_, rates_of_field_, fastest_,
+               growth_, steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
+               barrier_.patience);
   }
 
  private:
@@ -267,7 +267,7 @@ class KREISEL_API RadauIntegrator {
   double looked_at_ = 0;            ///< length of the step for which they were
   int quiet_ = 0;                   ///< steps for which nothing unresolved is taken to live
   Barrier barrier_;
-  Effort effort_;
+  IntegrationStatistics effort_;
   TrialFailure<double> failure_;
 };
 
@@ -285,9 +285,9 @@ template <int stages>
 /// A step is as long as what is slow allows: how hard a damped bearing is does not matter, from
 /// 1e3 to 1e12 N m/rad. A growing motion is resolved. An oscillation that is faster than the steps and
 /// does not die out before the next output is resolved too, if it is greater than the accuracy, and
-/// ExplicitSteps does that at less cost; a smaller one is damped.
+/// ExplicitRungeKutta does that at less cost; a smaller one is damped.
 ///
-/// Interface and meaning of the arguments as ExplicitSteps; output within a step is of full order
+/// Interface and meaning of the arguments as ExplicitRungeKutta; output within a step is of full order
 /// and takes a part of the step anew. Steps ask for memory.
 ///
 /// J      : callable (t, y) -> Jacobian<n>; forward_jacobian() or difference_jacobian() makes one.
@@ -314,7 +314,7 @@ class RadauSteps {
 
   [[nodiscard]] const double& t() const { return steps_.t(); }
   [[nodiscard]] const Vector& y() const { return y_; }
-  [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
 
   /// Times at which the field jumps, in any order. Steps end there exactly.
   void stop_at(std::vector<double> jumps) { steps_.stop_at(std::move(jumps)); }
@@ -349,9 +349,9 @@ class RadauSteps {
   [[nodiscard]] double noise() const { return steps_.noise(); }
 
   /// What the steps go on from, outputs within the last step included.
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    steps_.pass(bookmark);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    steps_.pass(checkpoint);
     y_ = steps_.y();
   }
 

@@ -93,7 +93,7 @@ struct KahanLi8 {
 /// Steps that meet share their drift.
 ///
 /// Flow   : SymmetricFreeFlow, or one of yours. A body with three moments has elliptic functions to
-///          evaluate at each drift, and ExplicitSteps is faster on it
+///          evaluate at each drift, and ExplicitRungeKutta is faster on it
 /// Scheme : Blanes864 for fast tops, KahanLi8 for the last digits, Strang for 1e-4
 /// Error  : top of 3000 rad/s (A = 3e-4, C = 1e-4 kg m^2, 0.049 N m) after 10 s, in rad: Blanes864
 ///          1.3e-8 and, in smaller steps, 2.2e-10; KahanLi8 8e-15
@@ -123,7 +123,7 @@ class SplittingSteps {
   /// On body axes.
   [[nodiscard]] Vector3<double> angular_velocity() const { return flow_.angular_velocity(state_); }
 
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Evaluations after which the integration gives up.
   void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
@@ -184,7 +184,7 @@ class SplittingSteps {
   detail::Compensated<double> time_;
   typename Flow::State state_;
   double most_evaluations_ = std::numeric_limits<double>::infinity();
-  Effort effort_;
+  IntegrationStatistics effort_;
 };
 
 }  // namespace kreisel

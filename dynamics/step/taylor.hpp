@@ -35,13 +35,13 @@ struct SeriesFailed : ComputationFailed {
 ///          with the coefficients of the solution in powers of (time - t)/h, from column 0, which is
 ///          the state at t; Series::most_order is the greatest order it is asked for, and
 ///          Series::relative_order, if there, the best order over that of most
-/// Blocks : as ExplicitSteps
+/// Blocks : as ExplicitRungeKutta
 /// Source : order and step: A. Jorba, M. Zou, A software package for the numerical integration of
 ///          ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99
 /// Error  : that of a step, relative, is about `accuracy.relative`
 /// Cost   : a series of order 9 to 24 a step, by the accuracy, and the field at the step's end; the
 ///          coefficients count as evaluations
-/// Throws : as ExplicitSteps; SeriesFailed where the field is finite and the series cannot go on
+/// Throws : as ExplicitRungeKutta; SeriesFailed where the field is finite and the series cannot go on
 template <class Vector, class Series>
 class TaylorSteps {
  public:
@@ -53,7 +53,7 @@ class TaylorSteps {
         accuracy_(accuracy),
         time_{t, 0},
         state_{y, Vector::Zero(y.size())},
-        sizes_(blocks, accuracy.smallest, y),
+        sizes_(blocks, accuracy.absolute_scale, y),
         before_{time_, state_} {
     detail::check(accuracy, detail::least_over_long_ways);
     if (!std::isfinite(t)) detail::refuse_steps("the start time is not finite");
@@ -71,7 +71,7 @@ class TaylorSteps {
 
   [[nodiscard]] const double& t() const { return time_.value; }
   [[nodiscard]] const Vector& y() const { return state_.value; }
-  [[nodiscard]] const Effort& effort() const { return effort_; }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Takes over the sizes that blocks have had before, which errors are measured by.
   void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
@@ -101,7 +101,7 @@ class TaylorSteps {
     next_scale_ = reach < std::numeric_limits<double>::max() ? reach : length();
   }
 
-  /// As ExplicitSteps::follow().
+  /// As ExplicitRungeKutta::follow().
   void follow(const TaylorSteps& leader) {
     const double h = leader.time_.value - leader.before_.time.value;
     scale_ = leader.scale_;
@@ -154,14 +154,14 @@ class TaylorSteps {
            sizes_.relative(middle, part * coefficient_.col(1)) < accuracy_.relative / 10;
   }
 
-  /// As ExplicitSteps::noise().
+  /// As ExplicitRungeKutta::noise().
   [[nodiscard]] double noise() const { return 0.5 * sizes_.wander(squares_); }
 
   /// What the steps go on from, outputs within the last step included.
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(time_, state_, before_.time, before_.state, scale_, reach_, next_scale_, sizes_,
-             squares_, rounding_, coefficient_, effort_);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(time_, state_, before_.time, before_.state, scale_, reach_, next_scale_, sizes_,
+               squares_, rounding_, coefficient_, effort_);
   }
 
  private:
@@ -191,8 +191,8 @@ class TaylorSteps {
   /// The series from here on, in a unit of time in which its coefficients stay within the range of
   /// numbers: the last step, at most `left`, or what their own decay says where that is far from it.
   void expand(double left) {
-    if (effort_.evaluations > accuracy_.most_evaluations) {
-      detail::stop_integration(t(), accuracy_.most_evaluations, " evaluations are spent");
+    if (effort_.evaluations > accuracy_.max_evaluations) {
+      detail::stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
     }
     coefficient_.col(0) = y();
     constexpr double farthest = 1e4;  // to the power of 24 and squared still a number
@@ -362,7 +362,7 @@ class TaylorSteps {
   double squares_ = 0;   ///< of steps, summed since noise was looked at
   double rounding_ = 0;  ///< in the difference of two rates, per second
   Doubted doubted_;
-  Effort effort_;
+  IntegrationStatistics effort_;
   detail::TrialFailure<double> failure_;
 };
 

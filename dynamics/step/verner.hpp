@@ -28,7 +28,7 @@ constexpr std::array<long double, 26> row_of_later_stage(
 /// skipped at compile time by whoever adds up the stages.
 ///
 /// Ten stages more make a polynomial of degree 9 through a step, of order 9 all along: see
-/// ExplicitSteps::at().
+/// ExplicitRungeKutta::at().
 ///
 /// Source : J. H. Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical
 ///          Algorithms 53 (2010) 383; the coefficients of his web page, 40 digits. Checked by their

@@ -2,26 +2,26 @@
 
 #include <algorithm>
 
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 
 namespace kreisel {
 
 /// The greatest distance, component by component, of an approximate motion from the exact one that
 /// starts with it: both are run side by side from t_begin to t_end and compared at `samples` times.
 ///
-/// Scene  : has exact(), exact_state(State) and approximated(exact state) beside what Advance
+/// Scene  : has exact(), exact_state(State) and approximated(exact state) beside what Integrator
 ///          needs
 /// Units  : those of the scene's state
 /// Error  : that of the steps: their accuracy has to be finer than what is looked for
-/// Throws : as Advance does
+/// Throws : as Integrator does
 template <class Scene>
 [[nodiscard]] typename Scene::Vector departure(const Scene& scene,
                                                const typename Scene::State& start, double t_begin,
                                                double t_end, int samples = 200,
                                                const Accuracy& accuracy = {}) {
   const auto exact = scene.exact();
-  Advance approximate(scene, t_begin, start, accuracy);
-  Advance true_run(exact, t_begin, scene.exact_state(start), accuracy);
+  Integrator approximate(scene, t_begin, start, accuracy);
+  Integrator true_run(exact, t_begin, scene.exact_state(start), accuracy);
   typename Scene::Vector most = Scene::Vector::Zero();
   for (int i = 1; i <= samples; ++i) {
     const double t = t_begin + (t_end - t_begin) * i / samples;

@@ -16,7 +16,7 @@ namespace kreisel {
 
 /// What a search for an equilibrium leaves alone; places count in eta, where each quaternion is
 /// three angles (study/tangent.hpp).
-struct EquilibriumSearch {
+struct EquilibriumOptions {
   std::vector<int> held = {};     ///< keep their value from the guess: a speed that is given
   std::vector<int> running = {};  ///< may have a rate: cyclic angles of a steady motion
   std::vector<int> quaternions = {};
@@ -25,7 +25,7 @@ struct EquilibriumSearch {
 
 /// A state in which nothing changes, but for what runs.
 template <class Vector>
-struct FoundEquilibrium {
+struct EquilibriumResult {
   Vector state;
   double residual = 0;  ///< of the rates, greatest
   double step = 0;      ///< the last one of Newton's, greatest component: the error
@@ -100,9 +100,9 @@ struct NewtonStep {
 /// Throws : InvalidInput for places that are none; ComputationFailed with residual and state where
 ///          there is no equilibrium near, as where a body falls freely, or none that the steps reach
 template <class Scene>
-[[nodiscard]] FoundEquilibrium<typename Scene::Vector> find_equilibrium(
+[[nodiscard]] EquilibriumResult<typename Scene::Vector> find_equilibrium(
     const Scene& scene, double t, const typename Scene::Vector& guess,
-    const EquilibriumSearch& search = {}) {
+    const EquilibriumOptions& search = {}) {
   const Tangent tangent = detail::tangent_of(scene, guess.size(), search.quaternions);
   const std::vector<int> unknown = detail::others(tangent.dimension(), search.held);
   const std::vector<int> wanted = detail::others(tangent.dimension(), search.running);
@@ -112,7 +112,7 @@ template <class Scene>
   };
   const auto greatest = [](const Eigen::VectorXd& v) { return v.lpNorm<Eigen::Infinity>(); };
 
-  FoundEquilibrium<typename Scene::Vector> result;
+  EquilibriumResult<typename Scene::Vector> result;
   result.state = guess;
   Eigen::VectorXd f = rates(guess);
   for (; result.iterations < search.most_iterations; ++result.iterations) {

@@ -52,7 +52,7 @@ template <class Scene>
   Eigen::VectorXd start(n + d * d);
   start.head(n) = y;
   Eigen::Map<Eigen::MatrixXd>(start.data() + n, d, d).setIdentity();
-  ExplicitSteps steps(field, t_begin, start, accuracy, blocks);
+  ExplicitRungeKutta steps(field, t_begin, start, accuracy, blocks);
   return steps.advance_to(t_end);
 }
 
@@ -63,7 +63,7 @@ template <class Scene>
 ///
 /// Scene  : Differentiable, with a tree() or quaternions(), and blocks()
 /// Error  : reported entry by entry
-/// Throws : as ExplicitSteps and the scene's rates() do
+/// Throws : as ExplicitRungeKutta and the scene's rates() do
 template <class Scene>
 [[nodiscard]] TangentTransition tangent_transition(const Scene& scene, double t_begin,
                                                    const Eigen::VectorXd& y, double t_end,
@@ -97,7 +97,7 @@ struct PeriodicMotion {
 template <class Scene>
 [[nodiscard]] PeriodicMotion periodic_motion(const Scene& scene, double t, double period,
                                              const Eigen::VectorXd& guess,
-                                             const EquilibriumSearch& search = {},
+                                             const EquilibriumOptions& search = {},
                                              const Accuracy& accuracy = {.relative = 1e-12}) {
   const Tangent tangent = detail::tangent_of(scene, guess.size(), {});
   const std::vector<int> unknown = detail::others(tangent.dimension(), search.held);

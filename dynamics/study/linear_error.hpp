@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/displacement.hpp>
 
 namespace kreisel {
@@ -22,14 +22,14 @@ struct LinearError {
 /// accuracy of the steps has to be finer than the error that is looked for.
 ///
 /// Scene  : has State with displacement and angles, exact() and exact_state(State)
-/// Throws : as Advance does
+/// Throws : as Integrator does
 template <class Linear>
 [[nodiscard]] LinearError linear_error(const Linear& linear, const typename Linear::State& start,
                                        double t_begin, double t_end, int samples = 200,
                                        const Accuracy& accuracy = {.relative = 1e-10}) {
   const auto exact = linear.exact();
-  Advance approximate(linear, t_begin, start, accuracy);
-  Advance true_run(exact, t_begin, Linear::exact_state(start), accuracy);
+  Integrator approximate(linear, t_begin, start, accuracy);
+  Integrator true_run(exact, t_begin, Linear::exact_state(start), accuracy);
   LinearError error;
   for (int i = 0; i <= samples; ++i) {
     const double t = t_begin + (t_end - t_begin) * i / samples;

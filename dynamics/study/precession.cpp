@@ -132,7 +132,7 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
   z << place, N.transpose() * u;
   std::vector<int> blocks = model.blocks();
   blocks.insert(blocks.end(), static_cast<std::size_t>(kept), 1);
-  ExplicitSteps steps(field, t_begin, z, options.accuracy, blocks);
+  ExplicitRungeKutta steps(field, t_begin, z, options.accuracy, blocks);
 
   TechnicalMotion motion;
   motion.kept = static_cast<int>(kept);
@@ -215,9 +215,9 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
       w_kept = x.tail(kept);
       note(times[i + 2], states[i + 2], points[i + 2]);
     }
-    while (motion.slow && motion.outputs.size() < options.times.size() &&
-           steps.covers(options.times[motion.outputs.size()])) {
-      const double t = options.times[motion.outputs.size()];
+    while (motion.slow && motion.outputs.size() < options.output_times.size() &&
+           steps.covers(options.output_times[motion.outputs.size()])) {
+      const double t = options.output_times[motion.outputs.size()];
       const VectorXd there = steps.at(t);
       motion.outputs.push_back(
           {t, there.head(n), point(t, there).u, {}, {}, motion.samples.back().bound});

@@ -38,7 +38,7 @@ struct TechnicalOptions {
   /// For the time up to which the equations are good enough. Unit of the coordinates
   double tolerated_error = 1e-2;
   /// From the start on, in order: samples at these are wanted.
-  std::vector<double> times = {};
+  std::vector<double> output_times = {};
 };
 
 /// A motion by the technical equations, at the end of a step.
@@ -62,7 +62,7 @@ struct TechnicalMotion {
   double smallness = 0;    ///< of the slow motion's rates against the nutations', greatest
   bool slow = true;        ///< false: broken off where the motion is no longer slow, smallness 1/2
   double valid_until = 0;  ///< as long as the bound is below what is tolerated
-  Effort effort;
+  IntegrationStatistics effort;
   double seconds = 0;  ///< of computing
 };
 
@@ -99,7 +99,7 @@ class TechnicalModel {
     return Eigen::VectorXd::Zero(e.size());
   }
 
-  /// Of components of a place whose error is told as one, as ExplicitSteps takes them.
+  /// Of components of a place whose error is told as one, as ExplicitRungeKutta takes them.
   [[nodiscard]] virtual std::vector<int> blocks() const = 0;
 };
 
@@ -124,7 +124,7 @@ class TechnicalModel {
 ///          From rest it falls with the momenta L as L^-2, from the technical velocity as L^-3; as
 ///          L^-1 and L^-2 where inertia couples the kernel of G to the rest; as L^-1 where the
 ///          kernel turns away from the directions kept, which are those at the start
-/// Throws : ComputationFailed where G + D (across N) is singular at the start; and as ExplicitSteps
+/// Throws : ComputationFailed where G + D (across N) is singular at the start; and as ExplicitRungeKutta
 ///          does
 KREISEL_API [[nodiscard]] TechnicalMotion technical_motion(const TechnicalModel& model,
                                                            double t_begin,

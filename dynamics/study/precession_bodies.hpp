@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/tree/rotor_matrices.hpp>
 #include <dynamics/study/precession.hpp>
+#include <dynamics/tree/rotor_matrices.hpp>
 #include <motor/attitude.hpp>
 
 namespace kreisel {
@@ -130,7 +130,7 @@ class TechnicalBodies final : public TechnicalModel {
       if (detail::rate_count(link.kind) == 1) result[link.q] += v[link.v];
       if (detail::rate_count(link.kind) < 3) continue;
       const Eigen::Quaterniond q(Eigen::Vector4d(place.segment<4>(link.q)));
-      result.segment<4>(link.q) = turned(q, Vector3<double>(v.segment<3>(link.v))).coeffs();
+      result.segment<4>(link.q) = rotated(q, Vector3<double>(v.segment<3>(link.v))).coeffs();
       if (link.kind == detail::LinkKind::free) {
         result.segment<3>(link.q + 4) += v.segment<3>(link.v + 3);
       }

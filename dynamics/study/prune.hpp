@@ -18,9 +18,9 @@
 
 #include <dynamics/model/structure.hpp>
 #include <dynamics/solve/error_measure.hpp>
-#include <dynamics/solve/task.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/explicit.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -30,9 +30,9 @@ struct Pruning {
   double tolerance = 1e-6;  ///< of what all that is left out does, as RunReport::error_estimate
   double horizon = 0;       ///< s
   double begin = 0;         ///< s
-  std::vector<double> jumps = {};  ///< as Task has them
-  double smallest = 1e-3;          ///< as Task has it
-  double most_evaluations = 1e7;   ///< of either field in one run
+  std::vector<double> discontinuities = {};  ///< as SolveOptions has them
+  double absolute_scale = 1e-3;              ///< as SolveOptions has it
+  double max_evaluations = 1e7;              ///< of either field in one run
 };
 
 /// A term of a scene that may be left out, and what that would do.
@@ -79,8 +79,8 @@ class PruningEffect {
   using Pair = Eigen::Matrix<double, 2 * n, 1>;
 
  public:
-  PruningEffect(const Scene& scene, const typename Scene::State& start, const Pruning& task)
-      : scene_(scene), task_(task), start_(scene.to_vector(start)), scale_(start_) {
+  PruningEffect(const Scene& scene, const typename Scene::State& start, const Pruning& options)
+      : scene_(scene), task_(options), start_(scene.to_vector(start)), scale_(start_) {
     for (const auto& blocks : {blocks_of(scene), blocks_of(scene)}) {
       blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
     }
@@ -100,11 +100,11 @@ class PruningEffect {
   [[nodiscard]] double bound(const std::function<Vector(double, const Vector&)>& rates) {
     const Run fine = run(rates, exact);
     const Run coarse = run(rates, rough);
-    ErrorMeasure<Scene> distance(scene_, task_.smallest);
+    ErrorMeasure<Scene> distance(scene_, task_.absolute_scale);
     double off = 0;
     for (std::size_t i = 0; i < fine.states.size(); ++i) {
       const Vector& x = fine.states[i];
-      off = worse(off, distance(x + coarse.departures[i], x + fine.departures[i]));
+      off = max_or_nan(off, distance(x + coarse.departures[i], x + fine.departures[i]));
     }
     return caution * fine.worst + 2 * off + error_of_pair(0, times_finer, rounding, fine.steps);
   }
@@ -137,7 +137,7 @@ class PruningEffect {
       return rate;
     }
   };
-  using Steps = ExplicitSteps<Pair, Field>;
+  using Steps = ExplicitRungeKutta<Pair, Field>;
 
   struct Run {
     std::vector<Vector> states = {};
@@ -163,7 +163,7 @@ class PruningEffect {
     Vector sizes;
     int begin = 0;
     for (const int components : blocks_of(scene_)) {
-      const double size = std::max(norm(y, begin, components), task_.smallest);
+      const double size = std::max(norm(y, begin, components), task_.absolute_scale);
       for (int i = begin; i < begin + components; ++i) sizes[i] = size;
       begin += components;
     }
@@ -173,17 +173,17 @@ class PruningEffect {
   [[nodiscard]] Steps started(const Rates* rates, double accuracy) const {
     Pair both = Pair::Zero();
     both.template head<n>() = start_.cwiseQuotient(scale_);
-    Steps steps({this, rates}, task_.begin, both, {accuracy, 1, task_.most_evaluations}, blocks_);
-    steps.stop_at(task_.jumps);
+    Steps steps({this, rates}, task_.begin, both, {accuracy, 1, task_.max_evaluations}, blocks_);
+    steps.stop_at(task_.discontinuities);
     return steps;
   }
 
   [[nodiscard]] Run run(const Rates& rates, double accuracy) {
     Run result;
-    ErrorMeasure<Scene> distance(scene_, task_.smallest);
+    ErrorMeasure<Scene> distance(scene_, task_.absolute_scale);
     const auto note = [&](const Pair& both) {
       const Vector x = scene_part(both);
-      result.worst = worse(result.worst, distance(x + departure(both), x));
+      result.worst = max_or_nan(result.worst, distance(x + departure(both), x));
     };
     Steps steps = started(&rates, accuracy);
     note(steps.y());
@@ -221,8 +221,8 @@ inline constexpr bool is_droppable = requires(const Scene& scene) {
 };
 
 template <class Scene, class Quantity>
-[[nodiscard]] auto without(const Scene& scene, const Pruning& task) {
-  return scene.without(Quantity{}, task.begin, task.begin + task.horizon);
+[[nodiscard]] auto without(const Scene& scene, const Pruning& options) {
+  return scene.without(Quantity{}, options.begin, options.begin + options.horizon);
 }
 
 template <class... Kinds>
@@ -267,10 +267,11 @@ class Pruner {
   using Chosen = std::array<bool, sizeof...(Quantities)>;
 
  public:
-  Pruner(const Scene& scene, const std::vector<typename Scene::State>& starts, const Pruning& task)
-      : scene_(scene), task_(task) {
+  Pruner(const Scene& scene, const std::vector<typename Scene::State>& starts,
+         const Pruning& options)
+      : scene_(scene), task_(options) {
     effects_.reserve(starts.size());
-    for (const auto& start : starts) effects_.emplace_back(scene, start, task);
+    for (const auto& start : starts) effects_.emplace_back(scene, start, options);
   }
 
   [[nodiscard]] typename Kinds::Result result() {
@@ -360,26 +361,26 @@ class Pruner {
   double together_ = 0;
 };
 
-inline void check(const Pruning& task) {
-  if (!(task.horizon >= 0 && std::isfinite(task.horizon))) {
-    refuse_task("pruning: horizon = ", task.horizon, " s must be finite, 0 or above");
+inline void check(const Pruning& options) {
+  if (!(options.horizon >= 0 && std::isfinite(options.horizon))) {
+    refuse_task("pruning: horizon = ", options.horizon, " s must be finite, 0 or above");
   }
-  check(Task{.begin = task.begin,
-             .times = {task.begin + task.horizon},
-             .jumps = task.jumps,
-             .tolerance = task.tolerance,
-             .smallest = task.smallest,
-             .most_evaluations = task.most_evaluations});
+  check(SolveOptions{.begin = options.begin,
+                     .output_times = {options.begin + options.horizon},
+                     .discontinuities = options.discontinuities,
+                     .tolerance = options.tolerance,
+                     .absolute_scale = options.absolute_scale,
+                     .max_evaluations = options.max_evaluations});
 }
 
 template <class... Quantities>
 struct PrunedQuantities {
   template <class Scene>
   [[nodiscard]] static auto of(const Scene& scene, const std::vector<typename Scene::State>& starts,
-                               const Pruning& task) {
-    check(task);
+                               const Pruning& options) {
+    check(options);
     if (starts.empty()) refuse_task("pruning: no motion is given by its start");
-    return Pruner<Scene, Quantities...>(scene, starts, task).result();
+    return Pruner<Scene, Quantities...>(scene, starts, options).result();
   }
 };
 
@@ -391,7 +392,7 @@ struct PrunedQuantities {
 ///   const auto pruned = prune(gyro, start, {.tolerance = 1e-6, .horizon = 60});
 ///   std::cout << pruned.terms;
 ///   const auto run = std::visit(
-///       [&](const auto& scene) { return solve(scene, start, {.times = {60}}); }, pruned.scene);
+///       [&](const auto& scene) { return solve(scene, start, {.output_times = {60}}); }, pruned.scene);
 ///
 /// Without Quantities it tries, in this order, what the scene offers of GuideRate,
 /// GuideUnsteadiness, RotorAsymmetry, ProductsOfInertia, CentrifugalForce and RingInertia; named
@@ -412,8 +413,8 @@ struct PrunedQuantities {
 /// over the ends of steps and 32 times. A term is left out while the sum of these bounds stays below
 /// the tolerance, and where there are several so does the bound of all together.
 ///
-/// Scene  : HeldBody, FreeBody, CardanGyro; or what has without(Quantity, begin, end) -> a scene of
-///          the same State, beside what Advance needs
+/// Scene  : FixedPointBody, FreeBody, CardanGyro; or what has without(Quantity, begin, end) -> a scene of
+///          the same State, beside what Integrator needs
 /// Units  : radian, second; parts of the state that are no attitudes: relative
 /// Error  : measured, no theorem: true effect / bound is <= 0.83 in 1050 random scenes and for 1165
 ///          terms left out, tolerances of 1e-9 to 1e-2, and above 0.1 in 703 of 709
@@ -431,7 +432,7 @@ struct PrunedQuantities {
 ///          cannot be made, is kept, with the reason
 template <class... Quantities, class Scene>
 [[nodiscard]] auto prune(const Scene& scene, const std::vector<typename Scene::State>& starts,
-                         const Pruning& task) {
+                         const Pruning& options) {
   using Chosen =
       std::conditional_t<sizeof...(Quantities) == 0,
                          detail::PrunedQuantities<GuideRate, GuideUnsteadiness, RotorAsymmetry,
@@ -439,14 +440,14 @@ template <class... Quantities, class Scene>
                          detail::PrunedQuantities<Quantities...>>;
   static_assert((detail::is_droppable<Scene, Quantities> && ...),
                 "the scene does not have a term that is to be left out");
-  return Chosen::of(scene, starts, task);
+  return Chosen::of(scene, starts, options);
 }
 
 /// The same for one motion.
 template <class... Quantities, class Scene>
 [[nodiscard]] auto prune(const Scene& scene, const typename Scene::State& start,
-                         const Pruning& task) {
-  return prune<Quantities...>(scene, std::vector{start}, task);
+                         const Pruning& options) {
+  return prune<Quantities...>(scene, std::vector{start}, options);
 }
 
 }  // namespace kreisel

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <dynamics/decompositions.hpp>
-#include <dynamics/tree/rotor_matrices.hpp>
 #include <dynamics/study/spectrum.hpp>
+#include <dynamics/tree/rotor_matrices.hpp>
 
 namespace kreisel {
 

@@ -76,7 +76,7 @@ class Tangent {
       copy(at);
       const Eigen::Quaterniond q(y[at + 3], y[at], y[at + 1], y[at + 2]);
       const Eigen::Quaterniond after =
-          turned(q, Vector3<double>(eta[from], eta[from + 1], eta[from + 2]));
+          rotated(q, Vector3<double>(eta[from], eta[from + 1], eta[from + 2]));
       for (int k = 0; k < 4; ++k) result[at + k] = after.coeffs()[k];
       to += 4;
       from += 3;

@@ -40,7 +40,7 @@ template <int n, class Field>
   // Every column has the units of the state.
   std::vector<int> all;
   for (int i = 0; i <= n; ++i) all.insert(all.end(), blocks.begin(), blocks.end());
-  ExplicitSteps<WithTransition<n>, Field> steps(field, t_begin, start, accuracy, all);
+  ExplicitRungeKutta<WithTransition<n>, Field> steps(field, t_begin, start, accuracy, all);
   return steps.advance_to(t_end);
 }
 
@@ -65,10 +65,10 @@ template <int n, class Field>
 /// The transition matrix of  x' = A(t) x  from t_begin to t_end:  X' = A X,  X(t_begin) = 1.
 ///
 /// Coefficients : callable (double t) -> Eigen::Matrix<double, n, n>
-/// Blocks       : of x, as ExplicitSteps takes them; by default each component for itself
+/// Blocks       : of x, as ExplicitRungeKutta takes them; by default each component for itself
 /// Error        : reported entry by entry
 /// Cost         : 1.7 integrations of n^2 components
-/// Throws       : as ExplicitSteps does
+/// Throws       : as ExplicitRungeKutta does
 template <int n, class Coefficients>
 [[nodiscard]] Transition<n> linear_transition(const Coefficients& A, double t_begin, double t_end,
                                               const Accuracy& accuracy = {},
@@ -97,7 +97,7 @@ template <int n, class Coefficients>
 ///
 /// Scene  : has Vector, blocks and rates(t, y), which takes dual numbers too
 /// Error  : reported entry by entry
-/// Throws : as ExplicitSteps does
+/// Throws : as ExplicitRungeKutta does
 template <class Scene, int n = int(Scene::Vector::RowsAtCompileTime)>
 [[nodiscard]] Transition<n> transition(const Scene& scene, double t_begin,
                                        const Eigen::Matrix<double, n, 1>& y, double t_end,

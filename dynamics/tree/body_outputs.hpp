@@ -9,8 +9,8 @@ namespace kreisel {
 ///
 /// Units  : N, N m; kg m/s, kg m^2/s; J; W
 template <class S = double>
-struct ReadOut {
-  Situation<S> situation;
+struct BodyOutputs {
+  LoadContext<S> situation;
   Rate<Body, Velocity<Body, Guide, Body, S>> dV_rel;  ///< *V'
 
   /// The left side of the law by cause: relative, guide and Coriolis part.
@@ -37,14 +37,14 @@ struct ReadOut {
 namespace detail {
 
 template <class S, class... Loads>
-[[nodiscard]] Force<Body, S> total_load(const Situation<S>& s, const Loads&... loads) {
+[[nodiscard]] Force<Body, S> total_load(const LoadContext<S>& s, const Loads&... loads) {
   Force<Body, S> sum;
   ((sum = sum + loads(s)), ...);
   return sum;
 }
 
 template <class S, class L>
-[[nodiscard]] S potential(const Situation<S>& s, const L& load) {
+[[nodiscard]] S potential(const LoadContext<S>& s, const L& load) {
   if constexpr (requires { load.potential(s); }) {
     return load.potential(s);
   } else {
@@ -53,13 +53,13 @@ template <class S, class L>
 }
 
 template <class S, class... Loads>
-[[nodiscard]] ReadOut<S> read_out(const Situation<S>& s,
-                                  const Rate<Body, Velocity<Body, Guide, Body, S>>& dV_rel,
-                                  const Loads&... loads) {
+[[nodiscard]] BodyOutputs<S> body_outputs(const LoadContext<S>& s,
+                                          const Rate<Body, Velocity<Body, Guide, Body, S>>& dV_rel,
+                                          const Loads&... loads) {
   const Displacement<Body, Guide, S> X = s.X.inverse();
   const Velocity<Guide, Inertial, Body, S> F = X * s.guide.V;
   const auto V = s.V_rel + F;
-  ReadOut<S> r;
+  BodyOutputs<S> r;
   r.situation = s;
   r.dV_rel = dV_rel;
   r.parts = equation_of_motion(s.inertia, s.V_rel, F, dV_rel, X * s.guide.dV);

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/passes.hpp>
 #include <dynamics/tree/series.hpp>
-#include <dynamics/guide/resting.hpp>
-#include <dynamics/rigid/apparent_field.hpp>
 
 namespace kreisel {
 
@@ -225,7 +225,8 @@ class BodySystem {
   }
 
   /// Where the body is and how it moves: what a Load is given.
-  [[nodiscard]] Situation<> situation(double t, const Vector& y, int body, BodyWorkspace& w) const {
+  [[nodiscard]] LoadContext<> situation(double t, const Vector& y, int body,
+                                        BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
     return detail::situation(tree_, at(t), y, body, w);
   }

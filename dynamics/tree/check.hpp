@@ -7,8 +7,8 @@
 #include <string>
 
 #include <dynamics/tree/description.hpp>
-#include <motor/absent.hpp>
 #include <motor/error.hpp>
+#include <motor/static_zero.hpp>
 
 /// What a single body's description may hold.
 

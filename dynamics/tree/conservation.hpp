@@ -16,7 +16,7 @@
 namespace kreisel::detail {
 
 /// The energy of weight and loads of one body.
-[[nodiscard]] inline double potential(const Situation<>& s, const Gravity& gravity,
+[[nodiscard]] inline double potential(const LoadContext<>& s, const Gravity& gravity,
                                       const BodyDescription& body) {
   double sum = 0;
   if (body.inertia.value.mass > 0) {

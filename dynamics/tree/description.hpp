@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <dynamics/inertia.hpp>
-#include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/load/load.hpp>
+#include <dynamics/model/dual_numbers.hpp>
 
 namespace kreisel {
 
@@ -102,7 +102,7 @@ using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
 ///
 /// One : AlongOne; a parameter, so that nothing of it is compiled where this is not called
 template <class One, class Dual>
-[[nodiscard]] Situation<One> along_one(const Situation<Dual>& s, Eigen::Index k) {
+[[nodiscard]] LoadContext<One> along_one(const LoadContext<Dual>& s, Eigen::Index k) {
   const auto number = [k](const Dual& x) {
     One one(x.value());
     one.derivatives()[0] = x.derivatives()[k];
@@ -140,19 +140,19 @@ class BodyLoad {
   template <class L>
   requires(!std::same_as<L, BodyLoad> && Load<L>) BodyLoad(L load)
       : force_(load) {  // NOLINT: a load is meant where a load is taken
-    if constexpr (requires(const Situation<>& s) { load.potential(s); }) {
-      potential_ = [load](const Situation<>& s) { return load.potential(s); };
+    if constexpr (requires(const LoadContext<>& s) { load.potential(s); }) {
+      potential_ = [load](const LoadContext<>& s) { return load.potential(s); };
     }
     if constexpr (requires { load.keeps_energy(); }) keeps_energy_ = load.keeps_energy();
     if constexpr (Load<L, detail::AlongOne>) along_ = load;
     if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
   }
 
-  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const { return force_(s); }
+  [[nodiscard]] Force<Body> operator()(const LoadContext<>& s) const { return force_(s); }
 
   /// Of dual numbers: a derivative at a time. Asks for takes_dual_numbers().
   template <class Dual>
-  [[nodiscard]] Force<Body, Dual> operator()(const Situation<Dual>& s) const {
+  [[nodiscard]] Force<Body, Dual> operator()(const LoadContext<Dual>& s) const {
     Force<Body, Dual> result;
     for (Eigen::Index k = 0; k < s.t.derivatives().size(); ++k) {
       const auto P = along_(detail::along_one<detail::AlongOne>(s, k)).value;
@@ -171,15 +171,15 @@ class BodyLoad {
 
   /// Whether it does no work but that of its potential on a guide at rest: see Load.
   [[nodiscard]] bool keeps_energy() const { return keeps_energy_; }
-  [[nodiscard]] double potential(const Situation<>& s) const {
+  [[nodiscard]] double potential(const LoadContext<>& s) const {
     return potential_ ? potential_(s) : 0;
   }
   [[nodiscard]] bool ignores_spin() const { return ignores_spin_; }
 
  private:
-  std::function<Force<Body>(const Situation<>&)> force_;
-  std::function<double(const Situation<>&)> potential_;
-  std::function<Force<Body, detail::AlongOne>(const Situation<detail::AlongOne>&)> along_;
+  std::function<Force<Body>(const LoadContext<>&)> force_;
+  std::function<double(const LoadContext<>&)> potential_;
+  std::function<Force<Body, detail::AlongOne>(const LoadContext<detail::AlongOne>&)> along_;
   bool keeps_energy_ = false;
   bool ignores_spin_ = false;
 };

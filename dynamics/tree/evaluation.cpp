@@ -40,7 +40,7 @@ namespace detail {
 }
 
 /// The terms of (26) of one body, from the absolute accelerations in w, from which g was taken off.
-[[nodiscard]] inline ForceParts<Body> terms_of_body(const BodyTree& tree, const Situation<>& s,
+[[nodiscard]] inline ForceParts<Body> terms_of_body(const BodyTree& tree, const LoadContext<>& s,
                                                     int body, const Vector3<double>& g,
                                                     const BodyWorkspace& w) {
   const std::size_t link = tree.link(body);
@@ -86,7 +86,7 @@ void require_dual_loads(const BodyTree& tree) {
     refuse_body(tree.body(body).name,
                 "a load of it takes no dual numbers, so it has no linear equations: make "
                 "it a template on the number type N,  Force<Body, N> operator()(const "
-                "Situation<N>&) const");
+                "LoadContext<N>&) const");
   }
 }
 
@@ -215,8 +215,8 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   note(&ReactionParts::forces);
 }
 
-Situation<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
-                      int body, BodyWorkspace& w) {
+LoadContext<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                        int body, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses(tree, y.data(), w);
   set_places(tree, v, w);

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/law/relative.hpp>
+#include <dynamics/model/terms.hpp>
 #include <dynamics/tree/balance.hpp>
 #include <dynamics/tree/loads.hpp>
 #include <dynamics/tree/reaction.hpp>
 #include <dynamics/tree/workspace.hpp>
-#include <dynamics/law/relative.hpp>
-#include <dynamics/model/terms.hpp>
 #include <motor/api.hpp>
 
 /// What a BodySystem computes once it is known how its guide moves, of whatever kind that is; what
@@ -71,9 +71,9 @@ KREISEL_API void reaction_parts(const BodyTree& tree, const Surroundings& now,
                                 const Eigen::VectorXd& y, std::vector<ReactionParts>& result,
                                 BodyWorkspace& w);
 
-KREISEL_API [[nodiscard]] Situation<> situation(const BodyTree& tree, const Surroundings& now,
-                                                const Eigen::VectorXd& y, int body,
-                                                BodyWorkspace& w);
+KREISEL_API [[nodiscard]] LoadContext<> situation(const BodyTree& tree, const Surroundings& now,
+                                                  const Eigen::VectorXd& y, int body,
+                                                  BodyWorkspace& w);
 
 KREISEL_API [[nodiscard]] ForceParts<Body> terms(const BodyTree& tree, const Surroundings& now,
                                                  const Eigen::VectorXd& y, int body,

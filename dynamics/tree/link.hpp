@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dynamics/tree/description.hpp>
-#include <motor/absent.hpp>
+#include <motor/static_zero.hpp>
 
 namespace kreisel {
 

@@ -2,8 +2,8 @@
 
 #include <variant>
 
-#include <dynamics/tree/rotors.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/tree/rotors.hpp>
 
 /// Where the bodies of a tree are, and what acts on them from outside.
 
@@ -45,8 +45,8 @@ void set_places(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
 
 /// Needs poses and places in w.
 template <class S>
-[[nodiscard]] Situation<S> situation(const BodyTree& tree, const S& t, const GuideNow<S>& guide,
-                                     int body, const MotionSpace<S>& w) {
+[[nodiscard]] LoadContext<S> situation(const BodyTree& tree, const S& t, const GuideNow<S>& guide,
+                                       int body, const MotionSpace<S>& w) {
   const std::size_t link = tree.link(body);
   const auto& [x, V] = w.place[link];
   const Matrix3<S>& R = w.pose[link].R;
@@ -66,7 +66,7 @@ void take_off_loads(const BodyTree& tree, const S& t, const GuideNow<S>& guide, 
   for (const int body : tree.loaded()) {
     const std::size_t link = tree.link(body);
     if (is_rotor(tree, link)) set_place_without_angle(tree, link, v, w);
-    const Situation<S> s = situation(tree, t, guide, body, w);
+    const LoadContext<S> s = situation(tree, t, guide, body, w);
     for (const BodyLoad& load : tree.body(body).loads) {
       const Motor<S> P = load(s).value;
       w.force[link] -= Motor<S>{w.pose[link].R * P.resultant, w.pose[link].R * P.moment};

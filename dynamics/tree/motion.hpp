@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include <dynamics/tree/tree.hpp>
-#include <motor/absent.hpp>
+#include <motor/static_zero.hpp>
 
 /// How the links of a tree move. All on the GUIDE's axes, each link about its own origin: then
 /// nothing is turned between the links, and inertias only shift.

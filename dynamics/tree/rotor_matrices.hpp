@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <dynamics/tree/rotor_forces.hpp>
 #include <dynamics/decompositions.hpp>
 #include <dynamics/tree/body_system.hpp>
+#include <dynamics/tree/rotor_forces.hpp>
 
 namespace kreisel {
 

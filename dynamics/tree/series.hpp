@@ -7,10 +7,10 @@
 #include <functional>
 #include <vector>
 
-#include <dynamics/tree/workspace.hpp>
 #include <dynamics/guide/series.hpp>
 #include <dynamics/rigid/diagonals.hpp>
 #include <dynamics/rigid/tensor_of_four.hpp>
+#include <dynamics/tree/workspace.hpp>
 #include <motor/api.hpp>
 
 namespace kreisel::detail {

@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include <dynamics/tree/tree.hpp>
 #include <dynamics/model/terms.hpp>
+#include <dynamics/tree/tree.hpp>
 
 namespace kreisel::detail {
 

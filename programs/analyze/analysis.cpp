@@ -276,7 +276,7 @@ double field_misses(const kreisel::StudySystem& system, const VectorXd& start, d
 
 Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, double period,
                     double t_of_guide) {
-  constexpr double most_evaluations = 2e5;  // of one period: seconds, and 20 periods at the most
+  constexpr double max_evaluations = 2e5;  // of one period: seconds, and 20 periods at the most
   Floquet floquet;
   floquet.period = period;
   const Directions directions(system);
@@ -288,7 +288,7 @@ Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, d
                                  {.held = list(joined(directions.held, cyclic)),
                                   .running = list(joined(directions.running, cyclic)),
                                   .most_iterations = 20},
-                                 {.relative = 1e-12, .most_evaluations = most_evaluations});
+                                 {.relative = 1e-12, .max_evaluations = max_evaluations});
     floquet.start = motion.start;
     floquet.residual = motion.residual;
     const std::vector<int> kept =

@@ -82,14 +82,15 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     const kreisel::SceneFile file =
         kreisel::parse_scene(scene.numbers.with(member.varied), request.scene, request.solve);
     const auto model = make_model(file);
-    kreisel::Task task;
-    task.times = file.output_times;
-    if (task.times.empty() || task.times.back() < file.t_end) task.times.push_back(file.t_end);
-    task.tolerance = file.tolerance;
-    task.method = file.method;
+    kreisel::SolveOptions options;
+    options.output_times = file.output_times;
+    if (options.output_times.empty() || options.output_times.back() < file.t_end)
+      options.output_times.push_back(file.t_end);
+    options.tolerance = file.tolerance;
+    options.method = file.method;
     const auto ends = [&stop] { return stop || signals::caught() != 0; };
     const auto run = model->solve(
-        task, start_of(file), [&](double, const kreisel::JointState&) { return !ends(); }, ends);
+        options, start_of(file), [&](double, const kreisel::JointState&) { return !ends(); }, ends);
     if (ends() && run.report.status != RunStatus::complete) return member;
     member.status = run.report.status;
     member.message = run.report.message;
@@ -115,7 +116,7 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
 std::vector<Member> compute(const Scene& scene) {
   std::vector<Member> members(scene.request.members);
   Progress progress;
-  [[maybe_unused]] const bool all = kreisel::detail::share_out(
+  [[maybe_unused]] const bool all = kreisel::detail::parallel_for(
       members.size(), scene.request.threads,
       [&](double share) {
         progress.report(share, [&] { return fmt::format("of {} members", members.size()); });

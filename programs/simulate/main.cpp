@@ -34,7 +34,7 @@ constexpr double before_all = -std::numeric_limits<double>::infinity();
 
 /// Where a run begins, or goes on.
 struct Begin {
-  kreisel::Task task;
+  kreisel::SolveOptions options;
   kreisel::JointState state;
   double latest = before_all;                  ///< time of the rows that are there
   std::vector<std::vector<double>> rows = {};  ///< those that are kept
@@ -42,12 +42,12 @@ struct Begin {
 
 Begin from_the_start(const kreisel::SceneFile& scene) {
   Begin begin{{}, start_of(scene)};
-  begin.task.times = scene.output_times;
-  if (begin.task.times.empty() || begin.task.times.back() < scene.t_end) {
-    begin.task.times.push_back(scene.t_end);
+  begin.options.output_times = scene.output_times;
+  if (begin.options.output_times.empty() || begin.options.output_times.back() < scene.t_end) {
+    begin.options.output_times.push_back(scene.t_end);
   }
-  begin.task.tolerance = scene.tolerance;
-  begin.task.method = scene.method;
+  begin.options.tolerance = scene.tolerance;
+  begin.options.method = scene.method;
   return begin;
 }
 
@@ -56,10 +56,10 @@ Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scen
                const std::vector<double>& row) {
   Begin begin = from_the_start(scene);
   begin.latest = row.front();
-  begin.task.begin = begin.latest;
+  begin.options.begin = begin.latest;
   begin.state = state_of(model.tree(), row);
-  std::erase_if(begin.task.times, [&](double t) { return t <= begin.latest; });
-  if (begin.task.times.empty()) begin.task.times.push_back(scene.t_end);
+  std::erase_if(begin.options.output_times, [&](double t) { return t <= begin.latest; });
+  if (begin.options.output_times.empty()) begin.options.output_times.push_back(scene.t_end);
   return begin;
 }
 
@@ -125,7 +125,7 @@ std::optional<Begin> from_checkpoint(const kreisel::SceneSolver& model,
   if (checkpoint.begin > 0 && first == nullptr) return std::nullopt;
   Begin begin = first != nullptr ? from_row(model, scene, first->values) : from_the_start(scene);
   begin.latest = checkpoint.t;
-  begin.task.bookmark = std::move(checkpoint.numbers);
+  begin.options.checkpoint = std::move(checkpoint.numbers);
   file.go_on(first != nullptr ? std::optional(first->end) : std::nullopt, last->end);
   fmt::print(stderr, "simulate: going on from t = {:.17g} s\n", begin.latest);
   return begin;
@@ -193,16 +193,19 @@ void put_before(kreisel::Trajectory<kreisel::JointState>& run, const kreisel::Sc
 kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene,
                                                  const kreisel::SceneSolver& model, Begin& begin,
                                                  std::optional<Record>& record, double& latest) {
-  kreisel::Task& task = begin.task;
+  kreisel::SolveOptions& options = begin.options;
   const bool end_is_a_row = !scene.output_times.empty() && scene.output_times.back() == scene.t_end;
   if (record) {
-    task.offer_bookmark = [&](const auto& take) { record->offer(task.begin, latest, take); };
+    options.offer_checkpoint = [&](const auto& take) {
+      record->offer(options.begin, latest, take);
+    };
   }
   Progress progress;
   const auto listener = [&](double t, const kreisel::JointState& state) {
-    if (record && t <= latest) record->begin_again(task.begin);
+    if (record && t <= latest) record->begin_again(options.begin);
     latest = t;
-    const bool is_there = task.begin > 0 && t == task.begin;  // the end of a run that was complete
+    const bool is_there =
+        options.begin > 0 && t == options.begin;  // the end of a run that was complete
     if (record && !is_there && (end_is_a_row || t < scene.t_end)) {
       record->rows.write(row(model, t, state, scene.reactions));
     }
@@ -211,7 +214,7 @@ kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene
     return signals::caught() == 0;
   };
   try {
-    auto run = model.solve(task, begin.state, listener, [] { return signals::caught() != 0; });
+    auto run = model.solve(options, begin.state, listener, [] { return signals::caught() != 0; });
     if (record) record->rows.close();
     return run;
   } catch (const std::exception&) {

@@ -114,7 +114,7 @@ struct Step {
 };
 
 /// Adaptive steps to the times; those that were taken go into `taken`.
-void run(const Scene& scene, const std::vector<double>& times, double most_evaluations,
+void run(const Scene& scene, const std::vector<double>& times, double max_evaluations,
          ReferenceMotion& motion, std::vector<Step>& taken) {
   constexpr Real tolerance = 1e-15L;
   Tree tree(scene);
@@ -123,7 +123,7 @@ void run(const Scene& scene, const std::vector<double>& times, double most_evalu
   Real h = Real(times.back()) / 64;
   for (const double time : times) {
     while (t < Real(time)) {
-      if (steps.evaluations() > most_evaluations) return;
+      if (steps.evaluations() > max_evaluations) return;
       const bool last = t + h * Real(1.01) >= Real(time);
       const Real length = last ? Real(time) - t : h;
       const Real off = steps.attempt(t, length);

@@ -44,11 +44,11 @@ JointValues values(const kreisel::BodyTree& tree, const Scene& scene,
 Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreisel::SceneFile& file,
               const std::string& method, const Limits& limits) {
   Answer answer{.asked = method};
-  kreisel::Task task;
-  task.times = file.output_times;
-  task.tolerance = file.tolerance;
-  task.method = *kreisel::method_named(method);
-  task.most_evaluations = limits.evaluations;
+  kreisel::SolveOptions options;
+  options.output_times = file.output_times;
+  options.tolerance = file.tolerance;
+  options.method = *kreisel::method_named(method);
+  options.max_evaluations = limits.evaluations;
   const double end = processor_seconds() + limits.seconds;
   unsigned calls = 0;
   bool late = false;
@@ -58,7 +58,7 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
   };
   try {
     const auto run = model.solve(
-        task, start_of(file), [](double, const kreisel::JointState&) { return true; }, too_long);
+        options, start_of(file), [](double, const kreisel::JointState&) { return true; }, too_long);
     const kreisel::RunReport& report = run.report;
     answer.answered = report.status == kreisel::RunStatus::complete;
     answer.message = report.message;

@@ -413,14 +413,14 @@ BOOST_AUTO_TEST_CASE(names_the_nearest_legal_tensor) {
   for (const double e : {1e-3, 1e-6, 1e-11}) {
     for (const bool is_turned : {false, true}) {
       const Symmetric3<> disc{0.5, 0.5, 1 + e};
-      const Symmetric3<> t = is_turned ? disc.turned(R) : disc;
+      const Symmetric3<> t = is_turned ? disc.rotated(R) : disc;
       const Symmetric3<> legal = named(t);
       BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, legal}) == "");
       BOOST_TEST(std::abs(norm(legal - t) - e / std::sqrt(3.0)) <= 1e-3 * e + 1e-13);
     }
   }
   // A needle with a moment below 0 by rounding: both others become equal.
-  const Symmetric3<> needle = Symmetric3<>{-1e-4, 1, 1}.turned(R);
+  const Symmetric3<> needle = Symmetric3<>{-1e-4, 1, 1}.rotated(R);
   const Symmetric3<> legal = named(needle);
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, legal}) == "");
   BOOST_TEST(std::abs(norm(legal - needle) - 1e-4) <= 1e-12);

@@ -8,20 +8,20 @@
 #include <vector>
 
 #include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/gimbal/foeppl.hpp>
+#include <dynamics/gimbal/unsymmetric_rotor.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/gimbal/foeppl.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/pendulum/pendulum_departure.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/rigid/small_oscillations.hpp>
-#include <dynamics/gimbal/unsymmetric_rotor.hpp>
-#include <dynamics/solve/task.hpp>
+#include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/gauss.hpp>
 #include <dynamics/step/splitting.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 using namespace kreisel;
 
@@ -139,7 +139,8 @@ BOOST_AUTO_TEST_CASE(of_single_numbers) {
   const CardanBearings rigid{{}, {.stiffness = infinite}};
   BOOST_CHECK_THROW(CardanGyro({{1, 1, 1}}, rigid, RestingFrame<>{}), InvalidInput);
   BOOST_TEST(std::isinf(detail::norm(Eigen::Vector2d(1, infinite), 0, 2)));
-  BOOST_CHECK_THROW(detail::check(Task{.times = {1}, .tolerance = 0.1}), InvalidInput);
+  BOOST_CHECK_THROW(detail::check(SolveOptions{.output_times = {1}, .tolerance = 0.1}),
+                    InvalidInput);
 }
 
 // Which invariants a top has depends on which of its numbers are 0.
@@ -178,7 +179,7 @@ BOOST_AUTO_TEST_CASE(of_gimbals_that_keep_less) {
 // A brake takes from the energy that a steady guide leaves.
 BOOST_AUTO_TEST_CASE(of_loads_that_keep_less) {
   const auto kept_by = [](double damping) {
-    const HeldBody body(
+    const FixedPointBody body(
         InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},
         RotatingFrame<>{{0, 0, 1}}, Spring<>{{1, 0, 0}, {0, 1, 0}, 1.0, 0.5, damping});
     return kept(body, {});
@@ -224,11 +225,11 @@ BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
 BOOST_AUTO_TEST_CASE(of_nearly_singular_bodies) {
   const auto body = [](double least) {
     Matrix3<double> Theta = Vector3<double>(1, 1, least).asDiagonal();
-    return HeldBody(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
-                    RestingFrame<>{});
+    return FixedPointBody(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
+                          RestingFrame<>{});
   };
-  BOOST_TEST(!body(1e-3).off_by_last_digits().has_value());
-  BOOST_TEST(body(1e-5).off_by_last_digits().has_value());
+  BOOST_TEST(!body(1e-3).perturbed_by_ulps().has_value());
+  BOOST_TEST(body(1e-5).perturbed_by_ulps().has_value());
 }
 
 // A tensor is symmetric in each of its three pairs, and a body without mass has none anywhere.
@@ -248,7 +249,7 @@ BOOST_AUTO_TEST_CASE(of_tensors) {
 // A spring without length whose ends meet pulls at nothing; one with a length has no direction.
 BOOST_AUTO_TEST_CASE(of_springs_whose_ends_meet) {
   const auto pulled_by = [](double rest_length) {
-    const HeldBody body(
+    const FixedPointBody body(
         InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},
         RestingFrame<>{}, Spring<>{{0, 0, 0}, {0, 0, 0}, 1.0, rest_length});
     return body.rates(0, body.to_vector({}));

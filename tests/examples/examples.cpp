@@ -108,7 +108,8 @@ BOOST_AUTO_TEST_CASE(gyro_on_ship_follows_an_axis_that_stays_in_space) {
                             2 * degree * yaw * std::cos(yaw * t));
     return Vector3<double>(n.cross(u));
   };
-  ExplicitSteps axis(field, 0.0, Vector3<double>(std::sin(30 * degree), 0, std::cos(30 * degree)));
+  ExplicitRungeKutta axis(field, 0.0,
+                          Vector3<double>(std::sin(30 * degree), 0, std::cos(30 * degree)));
   for (const auto& row : table) {
     const Vector3<double> n = axis.advance_to(row.at(0));
     BOOST_TEST(std::abs(row.at(1) - std::atan2(-n.y(), n.z()) / degree) < 0.005);
@@ -165,8 +166,8 @@ BOOST_AUTO_TEST_CASE(tumbling_brick_agrees_with_the_closed_form) {
     const Real pull = -GM / (r2 * std::sqrt(r2)) * (1 + 1.5L * J2 * R * R / r2);
     return State(y[2], y[3], pull * y[0], pull * y[1]);
   };
-  ExplicitSteps fall(orbit, Real(0), State(r0, 0, 0, u * r0), {.relative = 1e-16},
-                     std::array<int, 2>{2, 2});
+  ExplicitRungeKutta fall(orbit, Real(0), State(r0, 0, 0, u * r0), {.relative = 1e-16},
+                          std::array<int, 2>{2, 2});
 
   // North, east and down at longitude 0 on inertial axes; then turned about the pole.
   const Matrix3<double> level0 = (Matrix3<double>() << 0, 0, -1, 0, 1, 0, 1, 0, 0).finished();

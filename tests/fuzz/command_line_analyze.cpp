@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <programs/analyze/request.hpp>
 #include <optional>
+#include <programs/analyze/request.hpp>
 
 #include "command_line.hpp"
 

@@ -2,8 +2,8 @@
 // of the reader's memory.
 
 #include <cstdlib>
-#include <programs/ensemble/request.hpp>
 #include <optional>
+#include <programs/ensemble/request.hpp>
 
 #include "command_line.hpp"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <programs/pendulum_deviation/request.hpp>
 #include <optional>
+#include <programs/pendulum_deviation/request.hpp>
 
 #include "command_line.hpp"
 

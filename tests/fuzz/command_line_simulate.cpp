@@ -1,8 +1,8 @@
 // The command line of simulate.
 
 #include <cstdlib>
-#include <programs/simulate/request.hpp>
 #include <optional>
+#include <programs/simulate/request.hpp>
 
 #include "command_line.hpp"
 

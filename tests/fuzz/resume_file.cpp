@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <programs/simulate/resume_file.hpp>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <programs/simulate/resume_file.hpp>
 #include <string>
 #include <unistd.h>
 

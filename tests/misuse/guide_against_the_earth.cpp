@@ -12,4 +12,4 @@ using Motion = kreisel::RestingFrame<kreisel::Guide, Earth>;
 using Motion = kreisel::RestingFrame<kreisel::Guide, kreisel::Inertial>;
 #endif
 
-const kreisel::HeldBody body(kreisel::InertiaTensor<kreisel::Body>{}, {0, 0, 0}, Motion{});
+const kreisel::FixedPointBody body(kreisel::InertiaTensor<kreisel::Body>{}, {0, 0, 0}, Motion{});

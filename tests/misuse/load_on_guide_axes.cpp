@@ -1,5 +1,5 @@
 // A user's load written in the guide: on other axes, its torque about another point than the body's.
-// refused: a load takes a Situation and returns a Force<Body>
+// refused: a load takes a LoadContext and returns a Force<Body>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/rigid/free_body.hpp>
 
@@ -9,6 +9,6 @@ using Load = kreisel::Force<kreisel::Guide>;
 using Load = kreisel::Force<kreisel::Body>;
 #endif
 
-const auto wind = [](const kreisel::Situation<>&) { return Load{}; };
+const auto wind = [](const kreisel::LoadContext<>&) { return Load{}; };
 const kreisel::FreeBody body(kreisel::InertiaTensor<kreisel::Body>{}, kreisel::RestingFrame<>{},
                              wind);

@@ -37,7 +37,7 @@ BOOST_DATA_TEST_CASE(is_turned_by_the_exponential, data::xrange(300u), seed) {
   const Vector3<double> w = sample.magnitude(-12, 1.5) * sample.direction();
   const Matrix3<Digits50> exact =
       rotation(q) * exp(Motor<Digits50>{test::cast<Digits50>(w), {}}).rotation;
-  const Matrix3<double> found = Pose<double>::from(turned(q, w)).rotation;
+  const Matrix3<double> found = Pose<double>::from(rotated(q, w)).rotation;
   // The turn's sine and cosine carry the rounding of their argument |w|.
   BOOST_TEST(near(found, test::cast<double>(exact), std::max(1.0, w.norm()), 12));
 }
@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_CASE(does_not_drift_in_a_million_turns) {
   const Vector3<double> w(0.001, -0.002, 0.0015);
   constexpr int n = 1000000;
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  for (int i = 0; i < n; ++i) q = turned(q, w);
+  for (int i = 0; i < n; ++i) q = rotated(q, w);
   const Vector3<Digits50> whole = test::cast<Digits50>(w) * Digits50(n);
   const Matrix3<Digits50> exact = exp(Motor<Digits50>{whole, {}}).rotation;
   const Matrix3<Digits50> off = exact.transpose() * rotation(q);

@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(go_round) {
 }
 
 BOOST_AUTO_TEST_CASE(take_absent_components_for_0) {
-  const Four a = detail::four(detail::Components<double, detail::Absent, double>{2, {}, -1});
+  const Four a = detail::four(detail::Components<double, detail::StaticZero, double>{2, {}, -1});
   BOOST_TEST((a[0] == 2 && a[1] == 0 && a[2] == -1 && a[3] == 0));
 }
 

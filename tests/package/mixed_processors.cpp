@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 using namespace kreisel;
 
@@ -20,7 +20,7 @@ Angles RUN(const BodyDescription& rod) {
   second.parent = 0;
   const BodySystem system(RotatingFrame<>{{0, 0, 0.1}}, {rod, second},
                           UniformGravity<Guide>{{0, 0, -9.81}});
-  const auto motion = solve(system, system.rest(), {.times = {1, 2, 3}});
+  const auto motion = solve(system, system.rest(), {.output_times = {1, 2, 3}});
   return {motion.states.back().coordinates, motion.report.error_estimate};
 }
 

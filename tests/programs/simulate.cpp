@@ -13,8 +13,8 @@
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/json.hpp>
 #include <support/program.hpp>
@@ -228,12 +228,12 @@ BOOST_AUTO_TEST_CASE(answers_as_the_library_does_to_the_bit) {
                           {{.name = "upper", .joint = joint, .inertia = rod},
                            {.name = "lower", .parent = "upper", .joint = hinge, .inertia = rod}},
                           UniformGravity<Guide>{{0, 0, -9.81}});
-  Task task;
-  task.tolerance = 1e-9;
-  for (int i = 0; i <= 200; ++i) task.times.push_back(std::min(i * 0.01, 2.0));
+  SolveOptions options;
+  options.tolerance = 1e-9;
+  for (int i = 0; i <= 200; ++i) options.output_times.push_back(std::min(i * 0.01, 2.0));
   auto start = system.rest();
   start.coordinates[0] = 0.5;
-  const auto wanted = kreisel::solve(system, start, task);
+  const auto wanted = kreisel::solve(system, start, options);
 
   const Scratch folder;
   const auto file = folder.write("scene.toml", two_rods);
@@ -283,7 +283,7 @@ BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
   const Scratch folder;
   std::string longer = two_rods;
   longer.replace(longer.find("output_step = 0.01"), 18, "output_step = 0.05");
-  // Until this machine takes more than a second for it, which is five bookmarks.
+  // Until this machine takes more than a second for it, which is five checkpoints.
   int t_end = 400;
   std::string file;
   json whole;
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
     whole = answer(file + " --csv " + (folder.path() / "whole.csv").string());
   } while (whole.at("run_time_s") < 1.2);
   const std::string csv = (folder.path() / "part.csv").string();
-  // Once it has taken down a bookmark that is not of its first row, or a later one than before.
+  // Once it has taken down a checkpoint that is not of its first row, or a later one than before.
   const auto kill = [&](const std::string& option, const std::string& after) {
     return test::run("( " + std::string(KREISEL_SIMULATE) + " " + file + option + " --csv " + csv +
                      " & pid=$!; until awk 'NR == 1 && $3 > " + after +
@@ -320,7 +320,7 @@ BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
   BOOST_TEST(!std::filesystem::exists(csv + ".resume"));
 }
 
-// Rows without a bookmark: what was cut off is computed again from the last whole one, to the
+// Rows without a checkpoint: what was cut off is computed again from the last whole one, to the
 // tolerance.
 BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
   const Scratch folder;

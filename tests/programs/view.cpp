@@ -9,8 +9,8 @@
 #include <string>
 
 #include <dynamics/file/scene_system.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/json.hpp>
 #include <support/program.hpp>
@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_where_the_library_has_it) {
     for (const double x : joint.coordinates) start.coordinates[q++] = x;
     for (const double x : joint.rates) start.rates[v++] = x;
   }
-  const auto run = solve(system, start, {.times = {0, 0.51}, .tolerance = 1e-10});
+  const auto run = solve(system, start, {.output_times = {0, 0.51}, .tolerance = 1e-10});
   auto workspace = system.workspace();
   // At 0.51 s between two rows, where a cubic is off by (0.02 s)^4 / 384 of a fourth derivative.
   for (std::size_t k = 0; k < 2; ++k) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <dynamics/ensemble/ensemble.hpp>
-#include <dynamics/rigid/axisymmetric_body.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/solve.hpp>
 
@@ -20,7 +20,7 @@ namespace {
 using Gyro = CardanGyro<RestingFrame<>>;
 
 const EulerTop top({0.002, 0.002, 0.003}, {0, 0, 0.05});
-const Task task{.times = {0.1, 0.2}};
+const SolveOptions options{.output_times = {0.1, 0.2}};
 
 EulerTop::State scattered(std::size_t /*index*/, MemberRandom& random) {
   const double tilt = random.normal(0.5, 0.1);
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_SUITE(an_ensemble)
 
 BOOST_AUTO_TEST_CASE(is_the_same_to_the_last_bit_for_any_number_of_threads) {
   const auto with = [](int threads) {
-    const auto result = ensemble(top, {.count = 37, .threads = threads}, scattered, task);
+    const auto result = ensemble(top, {.count = 37, .threads = threads}, scattered, options);
     BOOST_TEST((result.status == RunStatus::complete));
     BOOST_TEST(result.failed == 0U);
     return numbers<EulerTop>(result);
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(is_the_same_to_the_last_bit_for_any_number_of_threads) {
   BOOST_TEST((with(2) == once));
   BOOST_TEST((with(3) == once));
   const auto gyros = [](int threads) {
-    return numbers<Gyro>(ensemble({.count = 19, .threads = threads}, scattered_gyro, task));
+    return numbers<Gyro>(ensemble({.count = 19, .threads = threads}, scattered_gyro, options));
   };
   const auto gyros_once = gyros(1);
   BOOST_TEST((gyros(2) == gyros_once));
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(is_the_same_to_the_last_bit_for_any_number_of_threads) {
 
 BOOST_AUTO_TEST_CASE(is_the_same_in_parts) {
   const auto part = [](std::size_t first, std::size_t count) {
-    return numbers<EulerTop>(ensemble(top, {.count = count, .first = first}, scattered, task));
+    return numbers<EulerTop>(ensemble(top, {.count = count, .first = first}, scattered, options));
   };
   auto parts = part(0, 16);
   const auto rest = part(16, 11);
@@ -102,14 +102,14 @@ BOOST_AUTO_TEST_CASE(is_the_same_in_parts) {
 // Each is within its own estimate of the truth; that of a run alone held to 1e-14 counts as it.
 BOOST_AUTO_TEST_CASE(goes_where_each_member_goes_alone) {
   for (const double tolerance : {1e-6, 1e-10}) {
-    const Task asked{.times = {0.1, 0.2}, .tolerance = tolerance};
+    const SolveOptions asked{.output_times = {0.1, 0.2}, .tolerance = tolerance};
     const auto result = ensemble(top, {.count = 24, .seed = 3}, scattered, asked);
     const auto alone = ensemble<double>(top, {.count = 24, .seed = 3}, scattered, asked);
     for (std::size_t i = 0; i < result.members.size(); ++i) {
       const auto& [times, states, report, errors] = result.members[i];
       BOOST_REQUIRE(times.size() == 2U);
       MemberRandom random(3, i);
-      Advance truth(top, 0, scattered(i, random), {1e-15});
+      Integrator truth(top, 0, scattered(i, random), {1e-15});
       double off = 0, off_alone = 0;
       for (std::size_t k = 0; k < 2; ++k) {
         const EulerTop::State state = truth.to(times[k]);
@@ -154,22 +154,22 @@ BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
   };
   const auto check = [](const auto& make, auto scene) {
     using Scene = typename decltype(scene)::Scene;
-    const auto result = ensemble({.count = 30, .seed = 3}, make, task);
+    const auto result = ensemble({.count = 30, .seed = 3}, make, options);
     int beyond = 0;
     for (std::size_t i = 0; i < result.members.size(); ++i) {
       const auto& [times, states, report, errors] = result.members[i];
       BOOST_REQUIRE((report.status == RunStatus::complete));
       MemberRandom random(3, i);
       const auto own = make(i, random);
-      Advance truth(own.scene, 0, own.start, {1e-15});
-      detail::ErrorMeasure<Scene> distance(task.smallest);
+      Integrator truth(own.scene, 0, own.start, {1e-15});
+      detail::ErrorMeasure<Scene> distance(options.absolute_scale);
       for (std::size_t k = 0; k < times.size(); ++k) {
         const double error =
             distance(Scene::to_vector(states[k]), Scene::to_vector(truth.to(times[k])));
         beyond += error > report.error_estimate ? 1 : 0;
         BOOST_TEST(error <= 1.1 * report.error_estimate);
       }
-      BOOST_TEST(report.error_estimate <= task.tolerance);
+      BOOST_TEST(report.error_estimate <= options.tolerance);
     }
     BOOST_TEST(beyond <= 1);
     // A pack has one course of steps.
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
 
 BOOST_AUTO_TEST_CASE(takes_other_members_with_another_seed) {
   const auto with = [](std::uint64_t seed) {
-    return numbers<EulerTop>(ensemble(top, {.count = 8, .seed = seed}, scattered, task));
+    return numbers<EulerTop>(ensemble(top, {.count = 8, .seed = seed}, scattered, options));
   };
   BOOST_TEST((with(1) == with(1)));
   BOOST_TEST((with(1) != with(2)));
@@ -197,7 +197,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_a_member_failed_by) {
     const double beta = index == 9 ? std::acos(0.0) : random.uniform(0, 1);
     return Gyro::State{.beta = beta, .phi_rate = 10};
   };
-  const auto result = ensemble(gyro, {.count = 17, .threads = 2}, make, task);
+  const auto result = ensemble(gyro, {.count = 17, .threads = 2}, make, options);
   BOOST_TEST((result.status == RunStatus::complete));
   BOOST_TEST(result.failed == 2U);
   for (std::size_t i = 0; i < 17; ++i) {
@@ -217,7 +217,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_a_member_failed_by) {
 }
 
 BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
-  const auto all = ensemble(top, {.count = 400}, scattered, task);
+  const auto all = ensemble(top, {.count = 400}, scattered, options);
   for (const int threads : {1, 3}) {
     Sampling sampling{.count = 400, .threads = threads};
     double last = 0;
@@ -227,7 +227,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
       last = share;
       return share < 0.25;
     };
-    const auto result = ensemble(top, sampling, scattered, task);
+    const auto result = ensemble(top, sampling, scattered, options);
     BOOST_TEST((result.status == RunStatus::cancelled));
     BOOST_TEST(grows);
     BOOST_TEST(last >= 0.25);
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(tells_its_progress_up_to_the_end) {
     shares.push_back(share);
     return true;
   };
-  const auto result = ensemble(top, sampling, scattered, task);
+  const auto result = ensemble(top, sampling, scattered, options);
   BOOST_TEST((result.status == RunStatus::complete));
   BOOST_TEST(shares.size() == std::size_t((50 + Pack::lanes - 1) / Pack::lanes));
   BOOST_TEST(shares.back() == 1);
@@ -263,7 +263,7 @@ BOOST_AUTO_TEST_CASE(hands_on_what_the_progress_callback_throws) {
   for (const int threads : {1, 3}) {
     Sampling sampling{.count = 50, .threads = threads};
     sampling.progress = [](double) -> bool { throw std::runtime_error("enough"); };
-    BOOST_CHECK_THROW(static_cast<void>(ensemble(top, sampling, scattered, task)),
+    BOOST_CHECK_THROW(static_cast<void>(ensemble(top, sampling, scattered, options)),
                       std::runtime_error);
   }
 }
@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(tries_again_where_members_err_by_too_much) {
     return EulerTop::State{Eigen::Quaterniond::Identity(), {x, y, random.normal(0, 1e-4)}};
   };
   for (const double tolerance : {1e-7, 1e-9, 1e-12}) {
-    const Task to_end{.times = {15, 30}, .tolerance = tolerance};
+    const SolveOptions to_end{.output_times = {15, 30}, .tolerance = tolerance};
     const auto result = ensemble(free, {.count = 16, .seed = 5}, beside_middle_axis, to_end);
     int again = 0;
     int kept = 0;
@@ -307,9 +307,9 @@ BOOST_AUTO_TEST_CASE(tries_again_where_members_err_by_too_much) {
 
 BOOST_AUTO_TEST_CASE(without_estimates_takes_half_the_work) {
   Sampling sampling{.count = 16};
-  const auto with = ensemble(top, sampling, scattered, task);
+  const auto with = ensemble(top, sampling, scattered, options);
   sampling.estimates_errors = false;
-  const auto without = ensemble(top, sampling, scattered, task);
+  const auto without = ensemble(top, sampling, scattered, options);
   for (std::size_t i = 0; i < 16; ++i) {
     BOOST_TEST(std::isnan(without.members[i].report.error_estimate));
     BOOST_TEST(!without.members[i].report.tolerance_kept);
@@ -321,8 +321,8 @@ BOOST_AUTO_TEST_CASE(without_estimates_takes_half_the_work) {
 
 // Its load takes doubles alone.
 BOOST_AUTO_TEST_CASE(runs_other_scenes_one_by_one) {
-  const auto load = [](const Situation<>&) { return Force<Body>{}; };
-  using Top = HeldBody<RestingFrame<>, decltype(load)>;
+  const auto load = [](const LoadContext<>&) { return Force<Body>{}; };
+  using Top = FixedPointBody<RestingFrame<>, decltype(load)>;
   static_assert(detail::takes_packs<EulerTop, Pack>);
   static_assert(detail::takes_packs<AxisymmetricBody<RestingFrame<>>, Pack>);
   static_assert(!detail::takes_packs<Top, Pack>);
@@ -330,7 +330,7 @@ BOOST_AUTO_TEST_CASE(runs_other_scenes_one_by_one) {
   const auto make = [](std::size_t, MemberRandom& random) {
     return Top::State{.angular_velocity = {random.normal(), 0, 10}};
   };
-  const auto result = ensemble(body, {.count = 3, .seed = 4}, make, task);
+  const auto result = ensemble(body, {.count = 3, .seed = 4}, make, options);
   for (std::size_t i = 0; i < 3; ++i) {
     MemberRandom random(4, i);
     const auto w = make(i, random).angular_velocity;
@@ -342,16 +342,18 @@ BOOST_AUTO_TEST_CASE(runs_other_scenes_one_by_one) {
 }
 
 BOOST_AUTO_TEST_CASE(refuses_what_makes_no_sense) {
-  const auto run = [](const Sampling& sampling, const Task& asked) {
+  const auto run = [](const Sampling& sampling, const SolveOptions& asked) {
     static_cast<void>(ensemble(top, sampling, scattered, asked));
   };
-  BOOST_CHECK_THROW(run({.count = 2}, {.times = {}}), InvalidInput);
-  BOOST_CHECK_THROW(run({.count = 2, .first = 1}, task), InvalidInput);
-  BOOST_CHECK_THROW(run({.count = 2, .threads = -1}, task), InvalidInput);
-  BOOST_CHECK_THROW(run({.count = 2}, {.times = {1}, .method = Method::radau13}), InvalidInput);
-  BOOST_CHECK_THROW(run({.count = 2}, {.times = {1}, .progress = [](double) { return true; }}),
+  BOOST_CHECK_THROW(run({.count = 2}, {.output_times = {}}), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2, .first = 1}, options), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2, .threads = -1}, options), InvalidInput);
+  BOOST_CHECK_THROW(run({.count = 2}, {.output_times = {1}, .method = Method::radau13}),
                     InvalidInput);
-  BOOST_TEST(ensemble(top, {.count = 0}, scattered, task).members.empty());
+  BOOST_CHECK_THROW(
+      run({.count = 2}, {.output_times = {1}, .progress = [](double) { return true; }}),
+      InvalidInput);
+  BOOST_TEST(ensemble(top, {.count = 0}, scattered, options).members.empty());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -7,11 +7,11 @@
 #include <string>
 
 #include <dynamics/ensemble/packed_steps.hpp>
-#include <dynamics/guide/rotating.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/guide/rotating.hpp>
 #include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 
 #include <support/heap.hpp>
 #include <support/near.hpp>
@@ -135,9 +135,9 @@ BOOST_AUTO_TEST_CASE(move_scenes_as_numbers_do) {
     return motion;
   };
   BOOST_TEST(rates_differ_by(CardanGyro(rotor_with_blades, {}, moving)) < 256 * eps);
-  BOOST_TEST(
-      rates_differ_by(HeldBody(brick, {0, 0, 0.1}, moving, UniformGravity<Guide>{{0, 0, -9.81}},
-                               ViscousDrag<>{0.1, 0})) < 256 * eps);
+  BOOST_TEST(rates_differ_by(FixedPointBody(brick, {0, 0, 0.1}, moving,
+                                            UniformGravity<Guide>{{0, 0, -9.81}},
+                                            ViscousDrag<>{0.1, 0})) < 256 * eps);
   BOOST_TEST(rates_differ_by(FreeBody(brick, moving, UniformGravity<Guide>{{0, 0, -9.81}})) <
              256 * eps);
 }
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(are_each_held_to_the_accuracy_in_their_own_size) {
   field.frequency.set_lane(lanes - 1, 10);
   Oscillators::Vector start(1, 0);
   start[0].set_lane(lanes - 1, 1e-6);
-  ExplicitSteps steps(field, 0.0, start, {accuracy, 0});
+  ExplicitRungeKutta steps(field, 0.0, start, {accuracy, 0});
   const double end = 20;
   const auto y = steps.advance_to(end);
   for (int k = 0; k < lanes; ++k) {
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(are_each_held_to_the_accuracy_in_their_own_size) {
     BOOST_TEST(std::abs(y[0].lane(k) - x) <= accuracy * steps.effort().steps * amplitude);
   }
   // It takes about as many steps as the fast one does alone.
-  ExplicitSteps alone(
+  ExplicitRungeKutta alone(
       [](double, const Eigen::Vector2d& v) { return Eigen::Vector2d(10 * v[1], -10 * v[0]); }, 0.0,
       Eigen::Vector2d(1e-6, 0), {accuracy, 0});
   alone.advance_to(end);
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(go_where_each_goes_alone) {
   }();
   const auto end = run.to(1);
   for (std::size_t k = 0; k < starts.size(); ++k) {
-    Advance alone(top, 0, starts[k], accuracy);
+    Integrator alone(top, 0, starts[k], accuracy);
     const auto differ = [](const EulerTop::State& a, const EulerTop::State& b) {
       return (EulerTop::to_vector(a) - EulerTop::to_vector(b)).norm() / 100;
     };

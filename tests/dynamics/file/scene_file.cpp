@@ -291,7 +291,7 @@ BOOST_AUTO_TEST_CASE(carry_loads) {
   const auto read = scene(one_body(
       "joint = { kind = \"free\" }\n"
       "load = { force = [1, 0, 0], torque = [0, 0, 7], point = [0, 2, 0], axes = \"body\" }"));
-  const Force<Body> P = read.bodies.at(0).loads.at(0)(Situation<>{});
+  const Force<Body> P = read.bodies.at(0).loads.at(0)(LoadContext<>{});
   BOOST_TEST((P.value.resultant == Vector3<double>(1, 0, 0)));
   BOOST_TEST((P.value.moment == Vector3<double>(0, 0, 5)));
 }
@@ -303,7 +303,7 @@ BOOST_AUTO_TEST_CASE(carry_loads_on_any_axes) {
                "{ torque = [1, 0, 0], axes = \"inertial\" }, { force = [1, 0, 0] } ]"));
   const Matrix3<double> quarter =
       Eigen::AngleAxisd(std::acos(-1.0) / 2, Vector3<double>::UnitZ()).toRotationMatrix();
-  Situation<> s;
+  LoadContext<> s;
   s.X.value.rotation = quarter;
   s.guide.X.value.rotation = quarter;
   const auto& loads = read.bodies.at(0).loads;

@@ -379,7 +379,7 @@ BOOST_AUTO_TEST_CASE(bodies_stand_on_their_parent) {
   }
   // A quarter about z, then one about the new x: the child's joint lies along the turned x.
   const std::string quarter = "0.70710678118654757";
-  AtStart turned(
+  AtStart rotated(
       one("joint = { kind = \"fixed\", orientation = [" + quarter + ", 0, 0, " + quarter + "] }\n",
           child +
               "joint = { kind = \"revolute\", axis = [0, 0, 1], position = [2, 0, 0], "

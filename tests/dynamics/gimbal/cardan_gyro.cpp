@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/step/jacobian.hpp>
 
 #include <support/json.hpp>
@@ -243,7 +243,7 @@ Worst follow(const Json& c, M guide, Rotor rotor) {
   const CardanGyro gyro(moments(c.at("parameters")), bearings(c.at("parameters")), std::move(guide),
                         std::move(rotor));
   using Gyro = decltype(gyro);
-  Advance run(gyro, 0, std::decay_t<Gyro>::from_vector(state(c.at("q0"), c.at("qd0"))));
+  Integrator run(gyro, 0, std::decay_t<Gyro>::from_vector(state(c.at("q0"), c.at("qd0"))));
   Worst worst;
   double angle_size = 0;
   double rate_size = 0;
@@ -535,7 +535,7 @@ template <class Gyro>
 std::vector<std::string> kept(const Gyro& gyro, double t_end = 5) {
   const typename Gyro::State start{0.1, -0.2, 0.3, 0.5, -0.4, 60};
   const auto before = gyro.conserved(0, start);
-  Advance run(gyro, 0, start);
+  Integrator run(gyro, 0, start);
   std::vector<std::string> found;
   for (const auto& [name, value] : before) found.emplace_back(name);
   for (int i = 1; i <= 20; ++i) {
@@ -581,7 +581,7 @@ BOOST_AUTO_TEST_CASE(is_told_of_each_kind) {
 BOOST_AUTO_TEST_CASE(balances_momentum_and_energy_on_a_moving_base) {
   const HarmonicFrame<> base({{0.3, -0.2, 0.5}, {{{0.1, 0.2, -0.1}, 3, 0.4}}}, {}, 0, 2);
   const CardanGyro gyro(unsymmetric, brakes, base, RegulatedRotor{0.001});
-  Advance run(gyro, 0, {0.1, -0.2, 0.3, 0.5, -0.4, 60});
+  Integrator run(gyro, 0, {0.1, -0.2, 0.3, 0.5, -0.4, 60});
   const double h = 2.5e-4;
   for (int i = 1; i <= 5; ++i) {
     const double t = 0.3 * i;

@@ -10,12 +10,12 @@
 #include <type_traits>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/step/advance.hpp>
 
 #include <support/sample.hpp>
 #include <support/worst.hpp>
@@ -68,7 +68,7 @@ Vector6 counted_from_zero(const CardanBearings& b, Vector6 y) {
   return y;
 }
 
-Vector3<double> turned(int axis, double angle, const Vector3<double>& v) {
+Vector3<double> rotated(int axis, double angle, const Vector3<double>& v) {
   return Eigen::AngleAxisd(angle, Vector3<double>::Unit(axis)) * v;
 }
 
@@ -98,8 +98,8 @@ void compare(const CardanMoments& m, const CardanBearings& b, const M& guide, co
   const auto moment = [&](std::size_t i) { return theirs.on_body[i].value.moment; };
   const std::array<Vector3<double>, 4> off{
       mine.guide_on_outer_ring - moment(0),
-      mine.inner_ring_on_outer_ring + turned(1, z[1], moment(1)),
-      mine.rotor_on_inner_ring + turned(2, z[2], moment(2)),
+      mine.inner_ring_on_outer_ring + rotated(1, z[1], moment(1)),
+      mine.rotor_on_inner_ring + rotated(2, z[2], moment(2)),
       {std::is_same_v<Rotor, RegulatedRotor> ? mine.motor_torque - theirs.drive[2] : 0, 0, 0}};
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i) size = std::max(size, moment(i).cwiseAbs().maxCoeff());
@@ -172,8 +172,8 @@ BOOST_AUTO_TEST_CASE(move_together) {
   const CardanGyro gyro(m, b, guide, DrivenRotor{0.005, 0.0001});
   const auto bodies = as_bodies(m, b, guide, DrivenRotor{0.005, 0.0001});
   const Vector6 start = (Vector6() << 0.1, -0.2, 0.3, 0.5, -0.4, 60).finished();
-  Advance run(gyro, 0, gyro.from_vector(start));
-  Advance bodies_run(bodies, 0, bodies.from_vector(counted_from_zero(b, start)));
+  Integrator run(gyro, 0, gyro.from_vector(start));
+  Integrator bodies_run(bodies, 0, bodies.from_vector(counted_from_zero(b, start)));
   double worst = 0;
   for (int i = 1; i <= 8; ++i) {
     const Vector6 y = counted_from_zero(b, gyro.to_vector(run.to(0.25 * i)));

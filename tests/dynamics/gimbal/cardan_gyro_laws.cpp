@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/guide/rotating.hpp>
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/cardan_gyro_laws.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/displacement.hpp>
 
 #include <support/json.hpp>
@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(drifts_as_the_reference_says) {
     const double mean = number(c.at("mean"));
     for (const int periods : {1, 100}) {
       const double t = periods * period;
-      Advance run(gyro, 0, drift_start(c));
+      Integrator run(gyro, 0, drift_start(c));
       const double off = std::abs(run.to(t).alpha / t / mean - 1);
       worst = test::worst_of(worst, off);
       BOOST_TEST(off < 1e-10, c.at("b") << ", " << periods << " periods: " << off);
@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_CASE(shows_the_kinematic_gimbal_error) {
   BOOST_TEST(close(s0.beta_rate, number(c->at("qd0").at(1)), 1e-15));
   BOOST_TEST(close(s0.phi_rate, number(c->at("qd0").at(2)), 1e-15));
   const CardanGyro gyro({symmetric.rotor}, {}, RotatingFrame<>{u});
-  Advance run(gyro, 0, {s0.alpha, s0.beta, s0.phi, s0.alpha_rate, s0.beta_rate, s0.phi_rate});
+  Integrator run(gyro, 0, {s0.alpha, s0.beta, s0.phi, s0.alpha_rate, s0.beta_rate, s0.phi_rate});
   for (const Json& point : c->at("points")) {
     const double t = number(point.at("t"));
     const Matrix3<double> back = exp(Motor<double>{-u * t, {0, 0, 0}}).rotation;
@@ -403,7 +403,7 @@ BOOST_AUTO_TEST_CASE(equation_40_has_the_sine_not_its_square) {
 // E4: at 90 degrees all is finite if the rings have mass. det M = C_1 (A_3 + C_2)(B_2 + Q) there.
 BOOST_AUTO_TEST_CASE(equations_keep_their_meaning_at_90_degrees) {
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
-  const auto at = [&gyro](double t) { return Advance(gyro, 0, {0, 1.2, 0, 0, 6, 50}).to(t); };
+  const auto at = [&gyro](double t) { return Integrator(gyro, 0, {0, 1.2, 0, 0, 6, 50}).to(t); };
   const auto moment_at = [&](double beta) {  // bisection for the time at which beta is reached
     double low = 0, high = 0.08;
     for (int i = 0; i < 60; ++i) {

@@ -7,12 +7,12 @@
 #include <string>
 #include <type_traits>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/analytic.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/guide/translating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <motor/attitude.hpp>
 
 #include <support/series.hpp>

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <dynamics/gimbal/gyro_platform.hpp>
+#include <dynamics/step/explicit.hpp>
 #include <dynamics/tree/rotor_matrices.hpp>
 #include <dynamics/tree/rotors_reference.hpp>
-#include <dynamics/step/explicit.hpp>
 
 #include <support/sample.hpp>
 #include <support/worst.hpp>
@@ -267,8 +267,8 @@ BOOST_AUTO_TEST_CASE(follows_a_moved_platform_by_27) {
       rate.resize(10);
       rate << dq, p.linear_accelerations(which, W, dW, q, dq, Q);
     };
-    ExplicitSteps steps(field, 0.0, Eigen::VectorXd(Eigen::VectorXd::Zero(10)),
-                        {.relative = 1e-12, .smallest = 1e-3}, std::vector<int>(10, 1));
+    ExplicitRungeKutta steps(field, 0.0, Eigen::VectorXd(Eigen::VectorXd::Zero(10)),
+                             {.relative = 1e-12, .absolute_scale = 1e-3}, std::vector<int>(10, 1));
     double off = 0;
     double from_exact = 0;
     std::size_t row = 0;

@@ -284,7 +284,8 @@ BOOST_DATA_TEST_CASE(is_what_gyros_and_accelerometers_say, data::xrange(8u), see
   State start;
   start << Eigen::Quaternion<Real>(test::cast<Real>(X.rotation)).coeffs(),
       test::cast<Real>(X.translation), test::cast<Real>(v);
-  ExplicitSteps steps(field, Real(begin), start, {.relative = 1e-16}, std::array<int, 3>{4, 3, 3});
+  ExplicitRungeKutta steps(field, Real(begin), start, {.relative = 1e-16},
+                           std::array<int, 3>{4, 3, 3});
   for (const double t : {-2.0, -1.9, 0.0, 7.3, 30.0, 59.99, 60.0}) {
     const State y = steps.advance_to(t);
     const Eigen::Quaternion<Real> q(Eigen::Matrix<Real, 4, 1>(y.head<4>()));

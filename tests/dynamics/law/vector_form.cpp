@@ -90,7 +90,7 @@ void check_20(const MovingBody& body) {
 }
 
 /// A body that turns about a point held in a moving guide.
-MovingBody held_body(unsigned seed) {
+MovingBody fixed_point_body(unsigned seed) {
   test::Sample sample(seed);
   const std::vector<test::PointMass> masses = sample.solid_masses();
   test::Motion relative = test::motion(sample);
@@ -165,7 +165,7 @@ BOOST_DATA_TEST_CASE(twenty_as_printed_holds_for_true_rates, data::xrange(100u),
 BOOST_AUTO_TEST_CASE(forty_eight_needs_the_velocity_of_the_guide) {
   double largest = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
-    const MovingBody body = held_body(seed);
+    const MovingBody body = fixed_point_body(seed);
     const Typed<double> b = body.numbers();
     BOOST_TEST(b.V_rel.value.moment.norm() <= 1e-30);
     const Motor<> sum = momentum(body.truth.J.value).value + momentum(body.truth.J_f.value).value;

@@ -7,10 +7,10 @@
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/load/earth_gravitation.hpp>
-#include <dynamics/rigid/free_body.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/load/oblate_gravitation.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <motor/attitude.hpp>
 
@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_CASE(turns_as_the_pendulum_has_it) {
 BOOST_AUTO_TEST_CASE(deflects_a_falling_body_to_the_east) {
   const FreeBody body(ball, earth_frame(munich), EarthGravitation{});
   const double t = 4;
-  const auto end = Advance(body, 0, {}).to(t);  // x down, y north, z east
+  const auto end = Integrator(body, 0, {}).to(t);  // x down, y north, z east
   const double g = normal_gravity(munich).magnitude;
   const double expected =
       munich.rotation_rate * g * std::cos(48.1 * std::acos(-1.0) / 180) * t * t * t / 3;
@@ -70,8 +70,8 @@ BOOST_AUTO_TEST_CASE(shows_the_fall_that_the_inertial_frame_shows) {
   from.attitude = Eigen::Quaterniond(start.X.value.rotation);
   from.position = start.X.value.translation;
   from.velocity.value = start.V.value;
-  const auto a = Advance(on_earth, 0, {}).to(60);
-  const auto b = Advance(in_space, 0, from).to(60);
+  const auto a = Integrator(on_earth, 0, {}).to(60);
+  const auto b = Integrator(in_space, 0, from).to(60);
   // Twice the last place of an earth radius, accumulated over the steps.
   BOOST_TEST(near(earth(60).X.point(a.position), b.position, 6.4e6, 16));
 }
@@ -82,11 +82,11 @@ BOOST_AUTO_TEST_CASE(keeps_the_energy_of_an_orbit) {
   start.position = {7e6, 0, 1e6};
   start.velocity.value = {{0, 0, 0.001}, {0, 5000, 5500}};
   const auto energy = [&](const auto& state) {
-    const auto r = body.read_out(0, state);
+    const auto r = body.body_outputs(0, state);
     return r.kinetic_energy + r.potential_energy;
   };
   const double e0 = energy(start);
-  BOOST_TEST(near(energy(Advance(body, 0, start).to(6000)), e0, std::abs(e0), 200));
+  BOOST_TEST(near(energy(Integrator(body, 0, start).to(6000)), e0, std::abs(e0), 200));
 }
 
 // In linear equations: the free-air gradient, with the centrifugal part of the guide in it, and half

@@ -7,22 +7,22 @@
 #include <string>
 #include <string_view>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/gimbal/foeppl.hpp>
+#include <dynamics/gimbal/gyro_platform.hpp>
+#include <dynamics/gimbal/gyro_small_oscillations.hpp>
+#include <dynamics/gimbal/unsymmetric_rotor.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/guide/translating.hpp>
 #include <dynamics/law/relative.hpp>
-#include <dynamics/rigid/axisymmetric_body.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/gimbal/foeppl.hpp>
-#include <dynamics/rigid/free_body.hpp>
-#include <dynamics/gimbal/gyro_platform.hpp>
-#include <dynamics/gimbal/gyro_small_oscillations.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
-#include <dynamics/pendulum/pendulum.hpp>
 #include <dynamics/model/terms.hpp>
-#include <dynamics/gimbal/unsymmetric_rotor.hpp>
+#include <dynamics/pendulum/pendulum.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 
 #include <support/sample.hpp>
 
@@ -65,7 +65,7 @@ template <class Scene>
 void check_body(const Scene& scene, const typename Scene::State& state, bool held,
                 const Vector3<double>& field) {
   const Terms all = terms(scene);
-  const Situation<> s = scene.situation(0.3, state);
+  const LoadContext<> s = scene.situation(0.3, state);
   const Inertia<>& T = s.inertia.value;
   const Matrix3<double> R_t = s.X.value.rotation.transpose();
   const FrameMotion<Guide, Inertial>& guide = s.guide;
@@ -109,7 +109,7 @@ void check_on(const M& guide, test::Sample& sample, const Vector3<double>& gravi
   const Eigen::Quaterniond q(Eigen::Vector4d(Eigen::Vector4d(1, 2, 3, 4) +
                                              sample.uniform(0, 1) * Eigen::Vector4d::Ones()));
   const auto check = [&](const InertiaTensor<Body>& T, const auto&... parts) {
-    const HeldBody held(T, sample.direction(), guide, parts...);
+    const FixedPointBody held(T, sample.direction(), guide, parts...);
     check_body(held, {q, sample.direction()}, true, gravity);
     const FreeBody free(T, guide, parts...);
     check_body(free, {q, sample.direction(), {{sample.direction(), sample.direction()}}}, false,
@@ -351,9 +351,9 @@ BOOST_AUTO_TEST_CASE(lack_a_centrifugal_force_that_is_left_out) {
 
 BOOST_AUTO_TEST_CASE(print_as_a_table) {
   std::ostringstream text;
-  text << terms(HeldBody(body({0, 0, 0.2}, 0), {0, 0, 0}, RestingFrame<>{},
-                         UniformGravity<Guide>{{0, 0, -9.81}}, ViscousDrag<>{0.02},
-                         Without<ProductsOfInertia>{}, Without<FirstMoment, Axis::x, Axis::y>{}));
+  text << terms(FixedPointBody(
+      body({0, 0, 0.2}, 0), {0, 0, 0}, RestingFrame<>{}, UniformGravity<Guide>{{0, 0, -9.81}},
+      ViscousDrag<>{0.02}, Without<ProductsOfInertia>{}, Without<FirstMoment, Axis::x, Axis::y>{}));
   const std::string expected = R"(
 relative  u' x (Theta u')                                   kept
 relative  products of inertia in Theta                      dropped: said by Without<ProductsOfInertia>

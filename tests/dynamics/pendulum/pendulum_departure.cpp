@@ -77,8 +77,8 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
     const double end = 30;
     const Real w2 = Real(earth_rate) * earth_rate;
     const Real truth = swing(amplitude, w2, end) - swing(amplitude, 0, end);
-    const auto run =
-        solve(pendulum, {amplitude}, {.times = {end}, .tolerance = 1e-12, .smallest = 0});
+    const auto run = solve(pendulum, {amplitude},
+                           {.output_times = {end}, .tolerance = 1e-12, .absolute_scale = 0});
     const double d = run.states[0].departure;
     const double off = static_cast<double>(abs(d - truth) / abs(truth));
     BOOST_TEST_MESSAGE("amplitude " << amplitude << ": departure " << d << ", off by " << off);
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(is_what_the_disturbed_pendulum_has_more) {
 BOOST_AUTO_TEST_CASE(does_not_depart_undisturbed) {
   const PendulumDeparture pendulum(
       k, []<class S>(const S& /*t*/, const S& /*angle*/, const S& /*rate*/) -> S { return S(0); });
-  const auto run = solve(pendulum, {0.3}, {.times = {10}, .tolerance = 1e-10});
+  const auto run = solve(pendulum, {0.3}, {.output_times = {10}, .tolerance = 1e-10});
   BOOST_TEST(run.states[0].departure == 0);
 }
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include <dynamics/pendulum/physical_pendulum.hpp>
 #include <dynamics/model/structure.hpp>
+#include <dynamics/pendulum/physical_pendulum.hpp>
 #include <dynamics/solve/solve.hpp>
 
 #include <support/series.hpp>
@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(moves_the_pendulum_in_a_turn) {
   const PhysicalPendulum pendulum(crooked, in_a_turn);
   const auto by = [&](Method method) {
     return solve(pendulum, {.angle = 0.5, .rate = 2},
-                 {.times = {1, 30}, .tolerance = 1e-12, .method = method});
+                 {.output_times = {1, 30}, .tolerance = 1e-12, .method = method});
   };
   const auto run = by(Method::automatic);
   const auto other = by(Method::verner98);

@@ -89,14 +89,14 @@ BOOST_DATA_TEST_CASE(on_the_earth_reaches_the_reference,
                      boost::unit_test::data::make({false, true}), by_series) {
   const auto reference = test::reference_file("ode-scenes.json").at("scenes").at("S3_earthpend");
   const PhysicalPendulum pendulum(rod, meridian());
-  Task task{.times = {}, .tolerance = 1e-14};
-  if (by_series) task.method = Method::taylor;
-  for (const auto& t : reference["times"]) task.times.push_back(t.get<double>());
-  const auto run = solve(pendulum, {.angle = 0.1}, task);
+  SolveOptions options{.output_times = {}, .tolerance = 1e-14};
+  if (by_series) options.method = Method::taylor;
+  for (const auto& t : reference["times"]) options.output_times.push_back(t.get<double>());
+  const auto run = solve(pendulum, {.angle = 0.1}, options);
   BOOST_TEST(run.report.method == (by_series ? "taylor" : "energy integral, Fourier series"));
   BOOST_TEST(run.report.tolerance_kept != by_series);
   BOOST_TEST(run.report.error_estimate <= (by_series ? 1e-12 : 1e-14));
-  BOOST_REQUIRE(run.states.size() == task.times.size());
+  BOOST_REQUIRE(run.states.size() == options.output_times.size());
   double worst = 0;
   for (std::size_t i = 0; i < run.states.size(); ++i) {
     const auto& truth = reference["states"][i];
@@ -127,8 +127,9 @@ BOOST_AUTO_TEST_CASE(errs_at_the_start_by_what_its_numbers_are_rounded) {
 BOOST_AUTO_TEST_CASE(begins_when_it_is_told_to) {
   const PhysicalPendulum pendulum(rod, room);
   const auto start = decltype(pendulum)::State{1.5, 0.5};
-  const auto now = solve(pendulum, start, {.times = {0.25, 7}, .tolerance = 1e-13});
-  const auto later = solve(pendulum, start, {.begin = 3, .times = {3.25, 10}, .tolerance = 1e-13});
+  const auto now = solve(pendulum, start, {.output_times = {0.25, 7}, .tolerance = 1e-13});
+  const auto later =
+      solve(pendulum, start, {.begin = 3, .output_times = {3.25, 10}, .tolerance = 1e-13});
   BOOST_TEST(later.report.method == "energy integral, Fourier series");
   for (std::size_t i = 0; i < 2; ++i) {
     BOOST_TEST(std::abs(later.states[i].angle - now.states[i].angle) <= 16 * u);
@@ -148,9 +149,9 @@ BOOST_AUTO_TEST_CASE(held_still_moves_as_elliptic_functions_say) {
     const double period = truth.period();
     const auto run =
         solve(pendulum, start,
-              {.times = {0.01 * period, 0.25 * period, 10.7 * period, 12345.6 * period},
+              {.output_times = {0.01 * period, 0.25 * period, 10.7 * period, 12345.6 * period},
                .tolerance = 1e-12,
-               .smallest = 0});
+               .absolute_scale = 0});
     BOOST_TEST(run.report.method == "energy integral, Fourier series");
     double greatest_angle = 0;
     double greatest_rate = 0;
@@ -173,7 +174,7 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_leaves) {
   const PhysicalPendulum pendulum(rod, room);
   std::vector<double> times;
   for (int i = 1; i <= 40; ++i) times.push_back(0.02 * i);
-  const auto run = solve(pendulum, {.angle = 0.1}, {.times = times, .tolerance = 1e-14});
+  const auto run = solve(pendulum, {.angle = 0.1}, {.output_times = times, .tolerance = 1e-14});
   BOOST_TEST(run.report.method == "energy integral, Fourier series");
   double worst = 0;
   double greatest_rate = 0;
@@ -193,7 +194,7 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_leaves) {
   constexpr double begin = 0x1p20;
   for (double& t : times) t += begin;
   const auto later =
-      solve(pendulum, {.angle = 0.1}, {.begin = begin, .times = times, .tolerance = 1e-14});
+      solve(pendulum, {.angle = 0.1}, {.begin = begin, .output_times = times, .tolerance = 1e-14});
   BOOST_TEST(later.errors.back() <= 1.01 * run.errors.back());
 }
 
@@ -242,7 +243,7 @@ BOOST_AUTO_TEST_CASE(nearly_stands_as_elliptic_functions_say) {
     const exact::PendulumMotion truth(19.62, 0, rate);
     std::vector<double> times;
     for (int i = 1; i < 400; ++i) times.push_back(0.00713 * i);
-    const auto run = solve(pendulum, {.rate = rate}, {.times = times, .tolerance = 1e-9});
+    const auto run = solve(pendulum, {.rate = rate}, {.output_times = times, .tolerance = 1e-9});
     BOOST_TEST(run.report.method == "energy integral, Fourier series");
     double worst = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
@@ -301,7 +302,7 @@ BOOST_AUTO_TEST_CASE(tells_what_a_phase_is_worth) {
 BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_the_series_ends) {
   const PhysicalPendulum pendulum(rod, room);
   for (const double rate : {2 * std::sqrt(19.62), 2 * std::sqrt(19.62) * (1 + 1e-9), 0.0}) {
-    const auto run = solve(pendulum, {.rate = rate}, {.times = {0.1, 3}, .tolerance = 1e-8});
+    const auto run = solve(pendulum, {.rate = rate}, {.output_times = {0.1, 3}, .tolerance = 1e-8});
     BOOST_TEST(run.report.method == "taylor");
     BOOST_TEST(run.report.tolerance_kept);
     const auto truth = exact::PendulumMotion(19.62, 0, rate).at(3);
@@ -313,8 +314,8 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_the_series_ends) {
 BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
   const auto brake = [](const auto& rate) { return 0.1 * rate; };
   const PhysicalPendulum damped(rod, room, brake);
-  const auto slow =
-      solve(damped, {.angle = 1e-6}, {.times = {2}, .tolerance = 1e-10, .smallest = 1e-12});
+  const auto slow = solve(damped, {.angle = 1e-6},
+                          {.output_times = {2}, .tolerance = 1e-10, .absolute_scale = 1e-12});
   // Small: a damped oscillation in closed form.
   const double w = std::sqrt(19.62 - 0.05 * 0.05);
   const double angle = 1e-6 * std::exp(-0.1) * (std::cos(2 * w) + 0.05 / w * std::sin(2 * w));
@@ -330,20 +331,22 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
   };
   const PhysicalPendulum carried(rod, turning);
   BOOST_TEST(carried.conserved(0, {.angle = 0.2}).empty());
-  const auto run = solve(carried, {.angle = 0.2, .rate = 1}, {.times = {5}, .tolerance = 1e-12});
+  const auto run =
+      solve(carried, {.angle = 0.2, .rate = 1}, {.output_times = {5}, .tolerance = 1e-12});
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(std::abs(run.states[0].angle - (0.2 + 5 - 0.15 * 25)) <= 1e-11);
 
   // Gravity across: the same swing, a quarter of a turn further on.
   const PhysicalPendulum across(rod, PendulumGuide<>{.effective_gravity = {0, 39.24, 0}});
   const double quarter = std::acos(-1.0) / 2;
-  const auto turned = solve(across, {.angle = 0.4 + quarter}, {.times = {5}, .tolerance = 1e-12});
+  const auto turned =
+      solve(across, {.angle = 0.4 + quarter}, {.output_times = {5}, .tolerance = 1e-12});
   const auto straight =
-      solve(PhysicalPendulum(rod, room), {.angle = 0.4}, {.times = {5}, .tolerance = 1e-12});
+      solve(PhysicalPendulum(rod, room), {.angle = 0.4}, {.output_times = {5}, .tolerance = 1e-12});
   BOOST_TEST(turned.report.method == straight.report.method);
   BOOST_TEST(std::abs(turned.states[0].angle - quarter - straight.states[0].angle) <= 1e-14);
   // Turning over so fast that of its series one sine is left, or one cosine.
-  const Task soon{.times = {0.3, 0.5}, .tolerance = 1e-12};
+  const SolveOptions soon{.output_times = {0.3, 0.5}, .tolerance = 1e-12};
   const auto whirled = solve(across, {.angle = 0.4 + quarter, .rate = 3e4}, soon);
   const auto upright = solve(PhysicalPendulum(rod, room), {.angle = 0.4, .rate = 3e4}, soon);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -355,7 +358,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
   const auto angle_at_5 = [](double push) {
     const PhysicalPendulum floating(rod, PendulumGuide<>{.angular_acceleration = {0, 0, push}});
     BOOST_TEST(floating.conserved(0, {}).empty() == (push != 0));
-    const auto found = solve(floating, {.angle = 0.2, .rate = 1}, {.times = {5}});
+    const auto found = solve(floating, {.angle = 0.2, .rate = 1}, {.output_times = {5}});
     BOOST_TEST(found.report.tolerance_kept);
     return found.states[0].angle;
   };
@@ -372,7 +375,7 @@ BOOST_AUTO_TEST_CASE(swings_about_across_the_axis_that_its_guide_turns_about) {
         rod, PendulumGuide<>{.angular_velocity = {u * std::cos(axis), u * std::sin(axis), 0}});
     const double middle = axis - std::acos(0.0);
     const auto run =
-        solve(weightless, {.angle = middle + 0.4}, {.times = {1, 20}, .tolerance = 1e-12});
+        solve(weightless, {.angle = middle + 0.4}, {.output_times = {1, 20}, .tolerance = 1e-12});
     BOOST_TEST(run.report.method == "energy integral, Fourier series");
     for (std::size_t i = 0; i < 2; ++i) {
       const double found = 2 * (run.states[i].angle - middle);
@@ -391,7 +394,7 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
                     InvalidInput);
   for (const PendulumState<>& start : {PendulumState<>(NAN, 0), PendulumState<>(0, HUGE_VAL)}) {
     BOOST_CHECK_THROW((void)solve(PhysicalPendulum(rod, room),
-                                  {.angle = start[0], .rate = start[1]}, {.times = {1}}),
+                                  {.angle = start[0], .rate = start[1]}, {.output_times = {1}}),
                       InvalidInput);
   }
 }

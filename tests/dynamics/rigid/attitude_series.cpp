@@ -49,29 +49,31 @@ BOOST_AUTO_TEST_SUITE(attitude_series)
 
 BOOST_AUTO_TEST_CASE(is_that_of_held_bodies) {
   const Vector3<double> none = Vector3<double>::Zero();
-  hold_samples("at rest, free", HeldBody(inertia(), point, RestingFrame<>{}));
-  hold_samples("at rest, heavy", HeldBody(inertia(), point, RestingFrame<>{}, inertial));
-  hold_samples("turning", HeldBody(inertia(), point, turntable));
-  hold_samples("turning, gravity on it", HeldBody(inertia(), point, turntable, in_guide));
-  hold_samples("turning, gravity turns", HeldBody(inertia(), point, turntable, inertial));
-  hold_samples("turning, both", HeldBody(inertia(), point, turntable, inertial, in_guide));
-  hold_samples("turning about a slanting axis, gravity turns",
-               HeldBody(inertia(), point,
-                        RotatingFrame<>{{0.3, -0.8, 0.5},
-                                        none,
-                                        {{Pose<>::from(Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2))}}},
-                        inertial));
+  hold_samples("at rest, free", FixedPointBody(inertia(), point, RestingFrame<>{}));
+  hold_samples("at rest, heavy", FixedPointBody(inertia(), point, RestingFrame<>{}, inertial));
+  hold_samples("turning", FixedPointBody(inertia(), point, turntable));
+  hold_samples("turning, gravity on it", FixedPointBody(inertia(), point, turntable, in_guide));
+  hold_samples("turning, gravity turns", FixedPointBody(inertia(), point, turntable, inertial));
+  hold_samples("turning, both", FixedPointBody(inertia(), point, turntable, inertial, in_guide));
+  hold_samples(
+      "turning about a slanting axis, gravity turns",
+      FixedPointBody(
+          inertia(), point,
+          RotatingFrame<>{
+              {0.3, -0.8, 0.5}, none, {{Pose<>::from(Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2))}}},
+          inertial));
   SteadyFrame<> screw;
   screw.V.value = {{0.2, 0.1, -0.4}, {1, 2, 3}};
-  hold_samples("in a steady screw", HeldBody(inertia(), point, screw, in_guide));
+  hold_samples("in a steady screw", FixedPointBody(inertia(), point, screw, in_guide));
 }
 
 BOOST_AUTO_TEST_CASE(is_that_of_bodies_on_analytic_guides) {
   HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}, {{0.1, 0.5, 0.2}, 2.9, 1}}};
   HarmonicSeries<> a{{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, 0.2}}};
   const HarmonicFrame<> harmonic(u, a, 0, 2);
-  hold_samples("on a harmonic guide", HeldBody(inertia(), point, harmonic, inertial, in_guide));
-  hold_samples("at the guide's origin", HeldBody(inertia(), {0, 0, 0}, harmonic, inertial));
+  hold_samples("on a harmonic guide",
+               FixedPointBody(inertia(), point, harmonic, inertial, in_guide));
+  hold_samples("at the guide's origin", FixedPointBody(inertia(), {0, 0, 0}, harmonic, inertial));
   const auto ship = analytic([](const auto& t) {
     using std::exp;
     using std::sin;
@@ -79,8 +81,8 @@ BOOST_AUTO_TEST_CASE(is_that_of_bodies_on_analytic_guides) {
     const YawPitchRoll<T> turn{T(0.3 * t), T(0.1 * sin(1.3 * t + 0.4)), T(0.2 * sin(0.9 * t))};
     return Pose<T>{turn.rotation(), Vector3<T>(T(5.0 * t), T(0.5 * sin(0.7 * t)), T(exp(-t)))};
   });
-  hold_samples("on a ship", HeldBody(inertia(), point, ship, inertial, in_guide));
-  hold_samples("on a ship, without gravity", HeldBody(inertia(), point, ship));
+  hold_samples("on a ship", FixedPointBody(inertia(), point, ship, inertial, in_guide));
+  hold_samples("on a ship, without gravity", FixedPointBody(inertia(), point, ship));
   hold_samples("body of revolution on a ship",
                AxisymmetricBody(1, -0.3, 0.25, 0.06, point, ship, inertial));
 }
@@ -89,7 +91,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_bodies_on_analytic_guides) {
 BOOST_AUTO_TEST_CASE(follows_a_guide_beyond_the_reach_of_its_series) {
   const HarmonicFrame<> slow({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}},
                              {{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, 0.2}}}, 0, 60);
-  const HeldBody body(inertia(), point, slow, inertial);
+  const FixedPointBody body(inertia(), point, slow, inertial);
   constexpr int order = decltype(body.series())::most_order;
   Eigen::Matrix<double, 7, order + 1> followed;
   followed.col(0) << 0.1, -0.2, 0.3, 0.9, 1, 2, 3;
@@ -156,11 +158,11 @@ BOOST_AUTO_TEST_CASE(leaves_out_what_the_body_does) {
   const InertiaTensor<Body> balanced{
       {1, Vector3<double>::Zero(), {0.25, 0.27, 0.06, 0.01, 0.02, 0.03}}};
   hold_samples("principal axes",
-               HeldBody(principal_inertia(), point, turntable, inertial, Principal{}));
+               FixedPointBody(principal_inertia(), point, turntable, inertial, Principal{}));
   hold_samples("at its centre of mass",
-               HeldBody(balanced, point, turntable, inertial, Without<FirstMoment>{}));
-  hold_samples("slow guide", HeldBody(inertia(), point, RotatingFrame<>{{0, 0, 0.8}}, in_guide,
-                                      Without<GuideRate, Axis::x, Axis::y>{}));
+               FixedPointBody(balanced, point, turntable, inertial, Without<FirstMoment>{}));
+  hold_samples("slow guide", FixedPointBody(inertia(), point, RotatingFrame<>{{0, 0, 0.8}},
+                                            in_guide, Without<GuideRate, Axis::x, Axis::y>{}));
 }
 
 BOOST_AUTO_TEST_CASE(is_that_of_bodies_of_revolution) {

@@ -41,15 +41,15 @@ BOOST_AUTO_TEST_SUITE(axisymmetric_body)
 // The same body in its own axes, on a ship that rolls and heaves, with weight and drag.
 BOOST_AUTO_TEST_CASE(moves_as_a_body_in_its_own_axes_does) {
   const InertiaTensor<Body> inertia{{0.1, {0, 0, 5e-3}, {3e-4, 3e-4, 1e-4}}};
-  const HeldBody held(inertia, place, rolling_ship(), weight, drag);
+  const FixedPointBody held(inertia, place, rolling_ship(), weight, drag);
   const AxisymmetricBody<HarmonicFrame<>, UniformGravity<Guide>, ViscousDrag<>> round(
       0.1, 0.05, 3e-4, 1e-4, place, rolling_ship(), weight, drag);
   for (unsigned seed = 0; seed < 5; ++seed) {
     test::Sample sample(seed);
     const Eigen::Quaterniond q(Eigen::AngleAxisd(sample.uniform(0, 1), sample.direction()));
     const Vector3<double> u = Vector3<double>(0, 0, 200) + 5 * sample.direction();
-    Advance own_axes(held, 0, {q, u}, {.relative = 1e-13});
-    Advance resal(round, 0, {q, u, 0}, {.relative = 1e-13});
+    Integrator own_axes(held, 0, {q, u}, {.relative = 1e-13});
+    Integrator resal(round, 0, {q, u, 0}, {.relative = 1e-13});
     for (const double t : {0.5, 1.0, 3.0}) {
       const auto expected = own_axes.to(t);
       const auto found = round.on_body_axes(resal.to(t));
@@ -57,8 +57,8 @@ BOOST_AUTO_TEST_CASE(moves_as_a_body_in_its_own_axes_does) {
       BOOST_TEST(angle_between(found.attitude, expected.attitude) <= 1e-13 * angle + 1e-12);
       BOOST_TEST((found.angular_velocity - expected.angular_velocity).norm() <= 1e-10);
     }
-    const auto a = held.read_out(0.3, {q, u});
-    const auto b = round.read_out(0.3, {q, u, 0});
+    const auto a = held.body_outputs(0.3, {q, u});
+    const auto b = round.body_outputs(0.3, {q, u, 0});
     BOOST_TEST((a.reaction.value.resultant - b.reaction.value.resultant).norm() <= 1e-14);
   }
 }
@@ -71,10 +71,10 @@ BOOST_AUTO_TEST_CASE(does_not_resolve_the_spin) {
   const exact::LagrangeTop truth(3e-4, 1e-4, weight_moment, w, q);
   const AxisymmetricBody round(0.1, 0.05, 3e-4, 1e-4, Vector3<double>::Zero(), RestingFrame<>{},
                                weight);
-  const HeldBody held(InertiaTensor<Body>{{0.1, {0, 0, 5e-3}, {3e-4, 3e-4, 1e-4}}},
-                      Vector3<double>::Zero(), RestingFrame<>{}, weight);
-  Advance resal(round, 0, {q, w, 0}, {.relative = 1e-12});
-  Advance own_axes(held, 0, {q, w}, {.relative = 1e-12});
+  const FixedPointBody held(InertiaTensor<Body>{{0.1, {0, 0, 5e-3}, {3e-4, 3e-4, 1e-4}}},
+                            Vector3<double>::Zero(), RestingFrame<>{}, weight);
+  Integrator resal(round, 0, {q, w, 0}, {.relative = 1e-12});
+  Integrator own_axes(held, 0, {q, w}, {.relative = 1e-12});
   const double t = 1;
   const double error =
       angle_between(round.on_body_axes(resal.to(t)).attitude, truth.at(t).attitude);
@@ -94,7 +94,8 @@ BOOST_AUTO_TEST_CASE(costs_what_the_nutation_costs) {
     const double C = 3e-2 / spin;
     const AxisymmetricBody round(0.1, 0.05, 3e-3, C, Vector3<double>::Zero(), RestingFrame<>{},
                                  weight);
-    const auto found = solve(round, {q, {0, 0, spin}, 0}, {.times = {5, 10}, .tolerance = 1e-9});
+    const auto found =
+        solve(round, {q, {0, 0, spin}, 0}, {.output_times = {5, 10}, .tolerance = 1e-9});
     BOOST_TEST(found.report.tolerance_kept);
     BOOST_TEST_MESSAGE(spin << " rad/s: " << found.report.effort.evaluations << " evaluations");
     if (slow == 0) slow = found.report.effort.evaluations;

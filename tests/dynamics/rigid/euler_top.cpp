@@ -8,7 +8,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 
 #include <support/near.hpp>
 #include <support/worst.hpp>
@@ -24,7 +24,7 @@ const Eigen::Quaterniond tilted(std::cos(0.25), std::sin(0.25), 0, 0);
 TopInvariants<> drift(const EulerTop& top, const EulerTop::State& start, double t_end) {
   const TopInvariants<> at_start = top.invariants(start);
   TopInvariants<> most{0, 0, 0, 0, {0, 0, 0}};
-  Advance run(top, 0, start);
+  Integrator run(top, 0, start);
   for (int i = 1; i <= 100; ++i) {
     const TopInvariants<> now = top.invariants(run.to(t_end * i / 100));
     const auto note = [](double& worst, double off) {
@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(turns_for_ever_about_a_principal_axis) {
   const EulerTop top({1, 2, 3});
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3<double> w = 3 * Vector3<double>::Unit(axis);
-    BOOST_TEST(Advance(top, 0, {tilted, w}).to(1000).angular_velocity == w);
+    BOOST_TEST(Integrator(top, 0, {tilted, w}).to(1000).angular_velocity == w);
   }
 }
 
@@ -61,11 +61,11 @@ BOOST_AUTO_TEST_CASE(turns_for_ever_about_a_principal_axis) {
 BOOST_AUTO_TEST_CASE(keeps_what_its_symmetry_keeps) {
   const Vector3<double> w(0.1, 0.7, -0.3);
   const EulerTop sphere({2, 2, 2});
-  BOOST_TEST(Advance(sphere, 0, {tilted, w}).to(100).angular_velocity == w);
+  BOOST_TEST(Integrator(sphere, 0, {tilted, w}).to(100).angular_velocity == w);
   const EulerTop symmetric({2, 2, 3});
-  BOOST_TEST(Advance(symmetric, 0, {tilted, w}).to(100).angular_velocity.z() == w.z());
+  BOOST_TEST(Integrator(symmetric, 0, {tilted, w}).to(100).angular_velocity.z() == w.z());
   const EulerTop lagrange({2, 2, 3}, {0, 0, 5});
-  BOOST_TEST(Advance(lagrange, 0, {tilted, w}).to(100).angular_velocity.z() == w.z());
+  BOOST_TEST(Integrator(lagrange, 0, {tilted, w}).to(100).angular_velocity.z() == w.z());
 }
 
 BOOST_AUTO_TEST_CASE(keeps_kovalevskayas_invariant) {
@@ -119,12 +119,12 @@ BOOST_AUTO_TEST_CASE(sleeps_above_the_critical_spin) {
   const double critical = std::sqrt(4 * A * k) / C;
   const EulerTop top({A, A, C}, {0, 0, k});
   const auto upright =
-      Advance(top, 0, {Eigen::Quaterniond::Identity(), {0, 0, critical / 2}}).to(100);
+      Integrator(top, 0, {Eigen::Quaterniond::Identity(), {0, 0, critical / 2}}).to(100);
   BOOST_TEST(upright.attitude.x() == 0);
   const Eigen::Quaterniond nearly(1, 1e-6, 0, 0);
   const auto tilt = [&](double spin) {
     double most = 0;
-    Advance run(top, 0, {nearly, {0, 0, spin}});
+    Integrator run(top, 0, {nearly, {0, 0, spin}});
     for (int i = 1; i <= 200; ++i) {
       const auto s = run.to(0.2 * i);
       most =
@@ -151,10 +151,10 @@ BOOST_AUTO_TEST_CASE(is_the_held_body_on_a_guide_at_rest) {
   const double m = 2, g = 9.81;
   const auto T = InertiaTensor<Body>::about_origin(m, r_s, Matrix3<double>(moments.asDiagonal()));
   const EulerTop top(moments, m * g * r_s);
-  const HeldBody held(T, {0, 0, 0}, RestingFrame<>{}, UniformGravity<Inertial>{{0, 0, -g}});
+  const FixedPointBody held(T, {0, 0, 0}, RestingFrame<>{}, UniformGravity<Inertial>{{0, 0, -g}});
   const Vector3<double> w(1, 2, 8);
-  const auto a = Advance(top, 0, {tilted, w}).to(2);
-  const auto b = Advance(held, 0, {tilted, w}).to(2);
+  const auto a = Integrator(top, 0, {tilted, w}).to(2);
+  const auto b = Integrator(held, 0, {tilted, w}).to(2);
   BOOST_TEST(near(a.angular_velocity, b.angular_velocity, 10.0, 1e-12 / test::u<>));
   BOOST_TEST(near(Eigen::Vector4d(a.attitude.coeffs()), Eigen::Vector4d(b.attitude.coeffs()), 1.0,
                   1e-12 / test::u<>));

@@ -16,7 +16,7 @@
 #include <dynamics/guide/tabulated.hpp>
 #include <dynamics/law/vector_form.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <motor/attitude.hpp>
 
 #include <support/json.hpp>
@@ -81,12 +81,12 @@ struct ReferenceGuide {
 std::vector<Json> reference_cases() { return test::reference_file("fixed-point.json").at("cases"); }
 
 auto reference_body(const Json& c) {
-  return HeldBody(InertiaTensor<Body>::about_origin(number(c.at("mass")), vector(c.at("r_s")),
-                                                    matrix(c.at("Theta"))),
-                  vector(c.at("rho")), posed(ReferenceGuide(c.at("guide"))),
-                  UniformGravity<Inertial>{vector(c.at("g"))},
-                  ViscousDrag<>{number(c.at("damping"))},
-                  ConstantLoad<Guide>{.torque = vector(c.at("tau_guide"))});
+  return FixedPointBody(InertiaTensor<Body>::about_origin(number(c.at("mass")), vector(c.at("r_s")),
+                                                          matrix(c.at("Theta"))),
+                        vector(c.at("rho")), posed(ReferenceGuide(c.at("guide"))),
+                        UniformGravity<Inertial>{vector(c.at("g"))},
+                        ViscousDrag<>{number(c.at("damping"))},
+                        ConstantLoad<Guide>{.torque = vector(c.at("tau_guide"))});
 }
 
 template <class B>
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(moves_as_the_references_say) {
   BOOST_TEST(cases.size() == 3U);
   for (const Json& c : cases) {
     const auto body = reference_body(c);
-    Advance run(body, 0, reference_start(body, c));
+    Integrator run(body, 0, reference_start(body, c));
     const double t = number(c.at("t_end"));
     const auto end = run.to(t);
     const auto s = body.situation(t, end);
@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(moves_as_the_references_say) {
 BOOST_AUTO_TEST_CASE(reads_out_its_parts) {
   const Json c = reference_cases().at(2);
   const auto body = reference_body(c);
-  const auto r = body.read_out(1.3, reference_start(body, c));
+  const auto r = body.body_outputs(1.3, reference_start(body, c));
   const double size = 20;
   BOOST_TEST(near(r.reaction.value.moment, Vector3<double>(0, 0, 0), size, 8));
   BOOST_TEST(near(r.parts.total().value, (r.applied + r.reaction).value, size, 2));
@@ -164,7 +164,7 @@ BOOST_DATA_TEST_CASE(balances_its_power, data::xrange(3), number) {
   const auto body = reference_body(c);
   const auto start = reference_start(body, c);
   for (const double t : {0.0, 0.5, 2.0}) {
-    const auto r = body.read_out(t, start);
+    const auto r = body.body_outputs(t, start);
     const double rate = reciprocal(r.dV_rel.value, r.relative_momentum.value);
     const double scale = std::abs(r.applied_power) + std::abs(r.guide_power) + std::abs(rate);
     BOOST_TEST(near(rate, r.applied_power - r.guide_power, scale, 40));
@@ -176,7 +176,7 @@ BOOST_DATA_TEST_CASE(balances_its_power, data::xrange(3), number) {
 BOOST_DATA_TEST_CASE(is_eulers_top_on_a_guide_at_rest, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const auto T = lopsided_body();
-  const HeldBody body(T, {1, 2, 3}, RestingFrame<>{});
+  const FixedPointBody body(T, {1, 2, 3}, RestingFrame<>{});
   const Vector3<double> u = sample.magnitude(-2, 2) * sample.direction();
   const Vector3<double> du =
       body.acceleration(body.situation(0, {Eigen::Quaterniond::Identity(), u}));
@@ -195,16 +195,16 @@ BOOST_AUTO_TEST_CASE(does_not_feel_the_guide_when_held_at_its_centre_of_mass) {
   Matrix3<double> Theta = Vector3<double>(1, 2, 2.5).asDiagonal();
   const auto T = InertiaTensor<Body>::about_centre(3, {0, 0, 0}, Theta);
   const auto moving = posed(swing);
-  const HeldBody watched(T, {1, -1, 0.5}, moving);
-  const HeldBody euler(T, {1, -1, 0.5}, RestingFrame<>{});
+  const FixedPointBody watched(T, {1, -1, 0.5}, moving);
+  const FixedPointBody euler(T, {1, -1, 0.5}, RestingFrame<>{});
   const Vector3<double> w(0.4, 1.7, -0.3);  // absolute
   const auto start = moving(0);
   const auto end = moving(5);
   const Eigen::Quaterniond q0(start.X.value.rotation.transpose());
   decltype(watched)::State state{q0, w - start.X.value.rotation * start.V.value.resultant};
   state.angular_velocity = w - Pose<>::from(q0).rotation.transpose() * start.V.value.resultant;
-  const auto a = Advance(watched, 0, state).to(5);
-  const auto b = Advance(euler, 0, {Eigen::Quaterniond::Identity(), w}).to(5);
+  const auto a = Integrator(watched, 0, state).to(5);
+  const auto b = Integrator(euler, 0, {Eigen::Quaterniond::Identity(), w}).to(5);
   const Matrix3<double> found = end.X.value.rotation * Pose<>::from(a.attitude).rotation;
   BOOST_TEST(near(found, Pose<>::from(b.attitude).rotation, 1.0, 1e-12 / test::u<>));
 }
@@ -214,8 +214,8 @@ BOOST_DATA_TEST_CASE(at_rest_in_the_guide_needs_what_22_says, data::xrange(50u),
   test::Sample sample(seed);
   const auto T = lopsided_body();
   const RotatingFrame<> guide{sample.direction(), sample.direction(), {}, sample.direction()};
-  const HeldBody body(T, {0, 0, 0}, guide);
-  const auto r = body.read_out(0.7, {});
+  const FixedPointBody body(T, {0, 0, 0}, guide);
+  const auto r = body.body_outputs(0.7, {});
   const auto motion = guide(0.7);
   const Velocity<Body, Inertial, Body> F{motion.V.value};
   const Rate<Body, Velocity<Body, Inertial, Body>> dF{motion.dV.value};
@@ -227,9 +227,9 @@ namespace {
 
 template <class M>
 Eigen::Matrix<double, 7, 1> swung(M guide) {
-  const HeldBody body(lopsided_body(), {0.1, 0.2, 0.3}, guide,
-                      UniformGravity<Inertial>{{0, 0, -9.81}}, ViscousDrag<>{0.01});
-  const auto end = Advance(body, 0, {Eigen::Quaterniond(0.8, 0.6, 0, 0), {0.5, 1, 0.2}}).to(2);
+  const FixedPointBody body(lopsided_body(), {0.1, 0.2, 0.3}, guide,
+                            UniformGravity<Inertial>{{0, 0, -9.81}}, ViscousDrag<>{0.01});
+  const auto end = Integrator(body, 0, {Eigen::Quaterniond(0.8, 0.6, 0, 0), {0.5, 1, 0.2}}).to(2);
   return decltype(body)::to_vector(end);
 }
 
@@ -268,8 +268,9 @@ BOOST_AUTO_TEST_CASE(bears_a_guide_that_hardly_turns) {
 BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
   const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
   const auto on = [](const auto& guide) {
-    return HeldBody(lopsided_body(), Vector3<double>(0.4, -0.1, 0.2), guide,
-                    UniformGravity<Inertial>{{0.1, 0.2, -9.81}}, UniformGravity<Guide>{{4, 5, 6}});
+    return FixedPointBody(lopsided_body(), Vector3<double>(0.4, -0.1, 0.2), guide,
+                          UniformGravity<Inertial>{{0.1, 0.2, -9.81}},
+                          UniformGravity<Guide>{{4, 5, 6}});
   };
   const auto known = on(steady);
   const auto felt = on([steady](double t) { return steady(t); });
@@ -286,16 +287,18 @@ BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
   const Vector3<double> point(0.4, -0.1, 0.2);
   const UniformGravity<Inertial> gravity{{0.1, 0.2, -9.81}};
   const RotatingFrame<> guide{u, a};
-  const HeldBody body(lopsided_body(), point, guide, gravity);
-  const HeldBody same(lopsided_body(), point, RestingFrame<>{guide(2).X}, gravity,
-                      UniformGravity<Guide>{-a - u.cross(u.cross(point))});
+  const FixedPointBody body(lopsided_body(), point, guide, gravity);
+  const FixedPointBody same(lopsided_body(), point, RestingFrame<>{guide(2).X}, gravity,
+                            UniformGravity<Guide>{-a - u.cross(u.cross(point))});
   const auto y = body.to_vector({Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5), {0.4, -1, 2}});
   BOOST_TEST(near(body.without(GuideRate{}, 1, 3).rates(0, y), same.rates(0, y), 10.0, 8));
 }
 
 BOOST_AUTO_TEST_CASE(is_refused_when_its_rotation_is_not_determined) {
   const RestingFrame<> guide;
-  const auto held = [&](const InertiaTensor<Body>& T) { return HeldBody(T, {0, 0, 0}, guide); };
+  const auto held = [&](const InertiaTensor<Body>& T) {
+    return FixedPointBody(T, {0, 0, 0}, guide);
+  };
   const Matrix3<double> needle = Vector3<double>(1, 1, 0).asDiagonal();
   BOOST_CHECK_THROW(held(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, needle)), InvalidInput);
   BOOST_CHECK_THROW(held(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Zero())),
@@ -303,7 +306,7 @@ BOOST_AUTO_TEST_CASE(is_refused_when_its_rotation_is_not_determined) {
   // Aside of the held point the same needle is a good body.
   BOOST_CHECK_NO_THROW(held(InertiaTensor<Body>::about_centre(1, {0.1, 0, 0}, needle)));
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  BOOST_CHECK_THROW(HeldBody(lopsided_body(), {nan, 0, 0}, guide), InvalidInput);
+  BOOST_CHECK_THROW(FixedPointBody(lopsided_body(), {nan, 0, 0}, guide), InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -10,10 +10,10 @@
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/law/vector_form.hpp>
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/load/oblate_gravitation.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/step/integrator.hpp>
+#include <dynamics/tree/body_system.hpp>
 #include <motor/attitude.hpp>
 
 #include <support/near.hpp>
@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(goes_straight_whatever_the_guide_does) {
   const decltype(body)::State start{
       Eigen::Quaterniond(0.5, 0.1, -0.7, 0.2), {1, 2, -1}, {{{0.3, -2, 1}, {0.5, 0.1, -0.2}}}};
   const auto momentum = [&](double t, const auto& state) {
-    const auto r = body.read_out(t, state);
+    const auto r = body.body_outputs(t, state);
     const auto to_inertial = (r.situation.guide.X * r.situation.X).value;
     return to_inertial * r.momentum.value;  // about the inertial origin
   };
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(goes_straight_whatever_the_guide_does) {
   };
   const Motor<double> J = momentum(0, start);
   const Vector3<double> c = centre(0, start);
-  Advance run(body, 0, start);
+  Integrator run(body, 0, start);
   for (const double t : {1.0, 2.5, 5.0}) {
     const auto state = run.to(t);
     BOOST_TEST(near(momentum(t, state), J, 100.0, tight));
@@ -100,10 +100,10 @@ BOOST_AUTO_TEST_CASE(keeps_its_energy_on_springs) {
                                     {0.1, 0.2, -0.1},
                                     {{{0.3, -2, 1}, {0.5, 0.1, -0.2}}}};
   const auto energy = [&](double t, const auto& state) {
-    const auto r = body.read_out(t, state);
+    const auto r = body.body_outputs(t, state);
     return r.kinetic_energy + r.potential_energy;
   };
-  Advance run(body, 0, start);
+  Integrator run(body, 0, start);
   BOOST_TEST(near(energy(5, run.to(5)), energy(0, start), 100.0, tight));
 }
 
@@ -111,14 +111,14 @@ BOOST_AUTO_TEST_CASE(keeps_its_energy_on_springs) {
 // and places a little before and after, whose differences err by (3 h)^2/6 and by 1e-14/h.
 BOOST_DATA_TEST_CASE(loses_to_dampers_what_they_resist, data::xrange(20u), seed) {
   test::Sample sample(seed);
-  Situation<> s;
+  LoadContext<> s;
   s.inertia = lopsided_body();
   s.X.value = exp(Motor<double>{2 * sample.direction(), sample.direction()});
   s.V_rel.value = {2 * sample.direction(), 2 * sample.direction()};
   const auto rate = [&s](const auto& of) {
     const double h = 1e-5;
     const auto after = [&s](double t) {
-      Situation<> moved = s;
+      LoadContext<> moved = s;
       moved.X.value = s.X.value * exp(t * s.V_rel.value);
       return moved;
     };
@@ -126,14 +126,14 @@ BOOST_DATA_TEST_CASE(loses_to_dampers_what_they_resist, data::xrange(20u), seed)
   };
   const auto given = [&](const auto& load) {
     return power(load(s), s.V_rel) +
-           rate([&](const Situation<>& at) { return load.potential(at); });
+           rate([&](const LoadContext<>& at) { return load.potential(at); });
   };
   const double tolerance = 1e-9 / test::u<>;
 
   const Vector3<double> end(0.1, 0.2, 0);
   const Vector3<double> from(0, 0.5, 3);
   const double stretching =
-      rate([&](const Situation<>& at) { return (at.place<Guide>(end) - from).norm(); });
+      rate([&](const LoadContext<>& at) { return (at.place<Guide>(end) - from).norm(); });
   BOOST_TEST(
       near(given(Spring<>{from, end, 40, 0.5, 3}), -3 * stretching * stretching, 200.0, tolerance));
 
@@ -141,11 +141,11 @@ BOOST_DATA_TEST_CASE(loses_to_dampers_what_they_resist, data::xrange(20u), seed)
   Matrix3<double> D;
   D << 3, 0.2, 0, 0.2, 2, 0.1, 0, 0.1, 2.5;
   const Vector3<double> velocity =
-      rate([&](const Situation<>& at) -> Vector3<double> { return at.place<Guide>(end); });
+      rate([&](const LoadContext<>& at) -> Vector3<double> { return at.place<Guide>(end); });
   BOOST_TEST(near(given(ElasticMount<>{from, end, K, D, {1, 2, 3}}), -velocity.dot(D * velocity),
                   200.0, tolerance));
 
-  const Vector3<double> origin = rate([&](const Situation<>& at) -> Vector3<double> {
+  const Vector3<double> origin = rate([&](const LoadContext<>& at) -> Vector3<double> {
     return at.place<Guide>({0, 0, 0});
   });
   BOOST_TEST(near(power(ViscousDrag<>{2, 3}(s), s.V_rel),
@@ -164,12 +164,12 @@ BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_turntable) {
                                     {0.1, 0.2, -0.1},
                                     {{{0.3, -2, 1}, {0.5, 0.1, -0.2}}}};
   const auto integral = [&](double t, const auto& state) {
-    const auto r = body.read_out(t, state);
+    const auto r = body.body_outputs(t, state);
     const auto F = r.situation.X.inverse() * r.situation.guide.V;
     return r.relative_kinetic_energy + r.potential_energy -
            reciprocal((r.situation.inertia * F).value, F.value) / 2;
   };
-  Advance run(body, 0, start);
+  Integrator run(body, 0, start);
   BOOST_TEST(near(integral(5, run.to(5)), integral(0, start), 100.0, tight));
 }
 
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_turntable) {
 BOOST_AUTO_TEST_CASE(takes_loads_on_any_axes) {
   const Pose<double> tilt{YawPitchRoll<>{0.3, -0.5, 1.1}.rotation(), {1, 2, 3}};
   const Pose<double> lean{YawPitchRoll<>{-0.7, 0.2, 0.4}.rotation(), {-1, 0, 2}};
-  Situation<> s;
+  LoadContext<> s;
   s.inertia = lopsided_body();
   s.guide.X = {tilt};
   s.X = {lean};
@@ -194,10 +194,10 @@ BOOST_AUTO_TEST_CASE(takes_loads_on_any_axes) {
 }
 
 BOOST_AUTO_TEST_CASE(takes_a_users_function_as_a_load) {
-  const auto thrust = [](const Situation<>& s) { return Force<Body>{{{s.t, 0, 0}, {0, 0, 0}}}; };
+  const auto thrust = [](const LoadContext<>& s) { return Force<Body>{{{s.t, 0, 0}, {0, 0, 0}}}; };
   const auto T = InertiaTensor<Body>::about_centre(2, {0, 0, 0}, Matrix3<double>::Identity());
   const FreeBody body(T, RestingFrame<>{}, thrust);
-  const auto end = Advance(body, 0, {}).to(3);
+  const auto end = Integrator(body, 0, {}).to(3);
   BOOST_TEST(near(end.position, Vector3<double>(27.0 / 12, 0, 0), 2.25, 100));  // t^3 / (6 m)
 }
 
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
 }
 
 BOOST_AUTO_TEST_CASE(says_that_a_spring_without_length_has_no_direction) {
-  Situation<> s;
+  LoadContext<> s;
   s.inertia = lopsided_body();
   BOOST_CHECK_THROW((void)(Spring<>{{0, 0, 0}, {0, 0, 0}, 10, 0.5}(s)), ComputationFailed);
   BOOST_TEST((Spring<>{{0, 0, 0}, {0, 0, 0}, 10, 0}(s).value.resultant) ==
@@ -264,7 +264,7 @@ BOOST_DATA_TEST_CASE(has_a_potential, data::xrange(20u), seed) {
   const OblateGravitation<> field;
   const Vector3<double> p = sample.uniform(6.3e6, 3e7) * sample.direction();
   const auto potential = [&](const Vector3<double>& place) {
-    Situation<> s;
+    LoadContext<> s;
     s.inertia = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Identity());
     s.X.value.translation = place;
     return field.potential(s);

@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(have_the_period_of_a_mass_on_a_spring) {
   const auto T = InertiaTensor<Body>::about_centre(2, {0, 0, 0}, Matrix3<double>::Identity());
   const ElasticMount<> mount{{0, 0, 0}, {0, 0, 0}, 50 * Matrix3<double>::Identity()};
   const SmallOscillations linear(T, RestingFrame<>{}, {mount});
-  const auto end = Advance(linear, 0, {{0.1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}})
+  const auto end = Integrator(linear, 0, {{0.1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}})
                        .to(2 * std::acos(-1.0) / 5);
   BOOST_TEST(near(end.displacement, Vector3<double>(0.1, 0, 0), 0.1, 1e-12 / test::u<>));
 }

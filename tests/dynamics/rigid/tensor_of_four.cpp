@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(know_a_body_of_revolution) {
 // By four roundings, and neighbours the other way, so that their difference moves by as much.
 BOOST_AUTO_TEST_CASE(move_by_last_digits) {
   const detail::GeneralTensor T({2, 3, 4, 0, 0, 0});
-  const detail::GeneralTensor moved = T.off_by_last_digits();
+  const detail::GeneralTensor moved = T.perturbed_by_ulps();
   const auto change = [&](const Vector3<double>& w) {
     const auto torque = [&w](const detail::GeneralTensor& tensor) {
       return detail::vector<double>(tensor.gyroscopic_torque(detail::components(w)));

@@ -10,8 +10,8 @@
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 /// The scenes that people write first: rest, right angles, tiny starts, light damping, one output.
 /// Right values are of scipy's DOP853 at two tolerances and of closed forms, unless said otherwise.
@@ -46,7 +46,7 @@ void check(const Scene& scene, const typename Scene::State& start, const std::ve
            const std::vector<double>& right, double digits) {
   for (const Case& c : cases) {
     const auto found =
-        solve(scene, start, {.times = times, .tolerance = c.tolerance, .method = c.method});
+        solve(scene, start, {.output_times = times, .tolerance = c.tolerance, .method = c.method});
     BOOST_TEST_CONTEXT(name(c.method) << ", " << c.tolerance << ": " << found.report.message) {
       BOOST_TEST(found.report.tolerance_kept);
       BOOST_TEST_REQUIRE(found.states.size() == times.size());
@@ -64,17 +64,17 @@ void check(const Scene& scene, const typename Scene::State& start, const std::ve
 /// against each other.
 template <class Scene>
 void costs_at_most(double times, Method method, const Scene& scene,
-                   const typename Scene::State& start, Task task) {
-  const auto found = solve(scene, start, task);
-  task.method = method;
-  const auto other = solve(scene, start, task);
+                   const typename Scene::State& start, SolveOptions options) {
+  const auto found = solve(scene, start, options);
+  options.method = method;
+  const auto other = solve(scene, start, options);
   BOOST_TEST_MESSAGE(found.report.all_evaluations << " evaluations, " << name(method) << " "
                                                   << other.report.all_evaluations << "; "
                                                   << found.report.changes);
   BOOST_TEST(found.report.tolerance_kept);
   BOOST_TEST(found.report.all_evaluations <= times * other.report.all_evaluations);
   BOOST_TEST(found.report.sizes.size() == scene.blocks().size());
-  for (std::size_t i = 0; i < task.times.size(); ++i) {
+  for (std::size_t i = 0; i < options.output_times.size(); ++i) {
     const double apart = std::abs(found.states[i].coordinates[0] - other.states[i].coordinates[0]);
     BOOST_TEST(apart <= found.report.error_estimate + other.report.error_estimate);
   }
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(an_upright_pendulum_falls_by_every_method) {
     state.coordinates[0] = start;
     for (const Method method : {Method::verner98, Method::taylor, Method::radau13}) {
       const auto found =
-          solve(scene, state, {.times = {1, 2, 3}, .tolerance = 1e-8, .method = method});
+          solve(scene, state, {.output_times = {1, 2, 3}, .tolerance = 1e-8, .method = method});
       for (std::size_t i = 0; i < found.states.size(); ++i) {
         const double right = start * std::cosh(growth * found.times[i]);
         const double off = std::abs(found.states[i].coordinates[0] / right - 1);
@@ -166,8 +166,10 @@ BOOST_AUTO_TEST_CASE(the_report_does_not_depend_on_outputs) {
   std::vector<double> often;
   for (int i = 1; i <= 1000; ++i) often.push_back(0.11 * i);
   for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
-    const auto once = solve(scene, state, {.times = {110}, .tolerance = 1e-11, .method = method});
-    const auto many = solve(scene, state, {.times = often, .tolerance = 1e-11, .method = method});
+    const auto once =
+        solve(scene, state, {.output_times = {110}, .tolerance = 1e-11, .method = method});
+    const auto many =
+        solve(scene, state, {.output_times = often, .tolerance = 1e-11, .method = method});
     const double ratio = once.report.error_estimate / many.report.error_estimate;
     BOOST_TEST_MESSAGE(name(method) << ": told " << once.report.error_estimate << " and "
                                     << many.report.error_estimate);
@@ -184,8 +186,8 @@ BOOST_AUTO_TEST_CASE(closed_forms_do_not_depend_on_outputs) {
   const auto check_end = [](const auto& scene, const auto& start, double end) {
     std::vector<double> often;
     for (int i = 1; i <= 1000; ++i) often.push_back(i * (end / 1000));
-    const auto once = solve(scene, start, {.times = {end}, .method = Method::closed_form});
-    const auto many = solve(scene, start, {.times = often, .method = Method::closed_form});
+    const auto once = solve(scene, start, {.output_times = {end}, .method = Method::closed_form});
+    const auto many = solve(scene, start, {.output_times = often, .method = Method::closed_form});
     const double ratio = once.errors.back() / many.errors.back();
     BOOST_TEST_MESSAGE("told " << once.errors.back() << " and " << many.errors.back());
     BOOST_TEST(ratio <= 1.05);
@@ -223,9 +225,9 @@ BOOST_AUTO_TEST_CASE(lightly_damped_modes_cost_no_more) {
     auto state = scene.rest();
     state.coordinates[0] = 0.3;
     state.rates[2] = 50;
-    const Task task{.times = {0.5, 1, 1.5, 2}, .tolerance = 1e-8};
+    const SolveOptions options{.output_times = {0.5, 1, 1.5, 2}, .tolerance = 1e-8};
     BOOST_TEST_CONTEXT("damping ratio " << ratio) {
-      costs_at_most(2, Method::radau13, scene, state, task);
+      costs_at_most(2, Method::radau13, scene, state, options);
     }
   }
 }
@@ -247,8 +249,8 @@ BOOST_AUTO_TEST_CASE(a_nutation_that_dies_between_outputs_need_not_be_followed) 
   auto state = scene.rest();
   state.coordinates[0] = 0.05;
   state.rates[2] = 2400;
-  const Task task{.times = {10, 20, 100}, .tolerance = 1e-8};
-  costs_at_most(2, Method::radau13, scene, state, task);
+  const SolveOptions options{.output_times = {10, 20, 100}, .tolerance = 1e-8};
+  costs_at_most(2, Method::radau13, scene, state, options);
 }
 
 // A round wheel of 1000 rad/s in a gimbal, as a joint like others: of what cancels but for rounding,
@@ -266,8 +268,8 @@ BOOST_AUTO_TEST_CASE(a_fast_round_wheel_costs_no_more_by_series) {
   auto state = scene.rest();
   state.coordinates << 0.5, 0.3, 0;
   state.rates[2] = 1000;
-  const Task task{.times = {2, 4, 6, 8, 10}, .tolerance = 1e-9};
-  costs_at_most(5, Method::verner98, scene, state, task);
+  const SolveOptions options{.output_times = {2, 4, 6, 8, 10}, .tolerance = 1e-9};
+  costs_at_most(5, Method::verner98, scene, state, options);
 }
 
 // The step before the last ended 7e-15 s before the end of the run.
@@ -277,7 +279,7 @@ BOOST_AUTO_TEST_CASE(what_a_rounding_leaves_belongs_to_the_last_step) {
   const RotatingFrame<> guide{.angular_velocity = {0, 0, -0.1}};
   const BodySystem scene(guide, {bead});
   for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
-    const auto found = solve(scene, scene.rest(), {.times = {60}, .method = method});
+    const auto found = solve(scene, scene.rest(), {.output_times = {60}, .method = method});
     BOOST_TEST(found.report.tolerance_kept, name(method) << ": " << found.report.message);
   }
 }
@@ -293,7 +295,7 @@ BOOST_AUTO_TEST_CASE(what_grows_beyond_numbers_ends_there) {
   std::vector<double> times;
   for (int i = 1; i <= 20; ++i) times.push_back(50 * i);
   for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
-    const auto found = solve(scene, state, {.times = times, .method = method});
+    const auto found = solve(scene, state, {.output_times = times, .method = method});
     BOOST_TEST_CONTEXT(name(method) << ": " << found.report.message) {
       BOOST_TEST((found.report.status == RunStatus::failed));
       BOOST_TEST(found.report.message.find("beyond the range of numbers") != std::string::npos);

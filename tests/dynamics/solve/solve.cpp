@@ -15,10 +15,10 @@
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/gyrostat.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/rigid/axisymmetric_body.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
@@ -92,13 +92,14 @@ void tells_its_error_honestly(Method method) {
     const Vector3<double> w = sample.uniform(0.5, 5) * sample.direction();
     const double k = sample.uniform(0.5, 10);
     for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-12, 1e-14}) {
-      const Task task{.times = every(1, 10), .tolerance = tolerance, .method = method};
+      const SolveOptions options{
+          .output_times = every(1, 10), .tolerance = tolerance, .method = method};
       const EulerTop free({A, B, C});
-      const auto run = solve(free, {tilted, w}, task);
+      const auto run = solve(free, {tilted, w}, options);
       honesty.note(run.report, true_error(run, exact::FreeTop({A, B, C}, w, tilted)));
       const EulerTop heavy({A, A, C}, {0, 0, k});
       if (C > 2 * A) continue;
-      const auto spun = solve(heavy, {tilted, w}, task);
+      const auto spun = solve(heavy, {tilted, w}, options);
       honesty.note(spun.report, true_error(spun, exact::LagrangeTop(A, C, k, w, tilted)));
     }
   }
@@ -121,15 +122,16 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
 // Bodies on guides that move steadily know their series; held against steps that do not.
 BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
   const Matrix3<double> Theta = Vector3<double>(0.25, 0.27, 0.06).asDiagonal();
-  const HeldBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1},
-                      RotatingFrame<>{{0.1, -0.3, 0.2}}, UniformGravity<Guide>{{0, 0, -9.81}});
+  const FixedPointBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1},
+                            RotatingFrame<>{{0.1, -0.3, 0.2}},
+                            UniformGravity<Guide>{{0, 0, -9.81}});
   using Scene = std::remove_const_t<decltype(body)>;
   const Scene::State start{tilted, {1, 0, 2}};
   const auto times = every(0.5, 10);
   const auto truth =
-      solve(body, start, {.times = times, .tolerance = 1e-13, .method = Method::verner98});
+      solve(body, start, {.output_times = times, .tolerance = 1e-13, .method = Method::verner98});
   for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
-    const auto found = solve(body, start, {.times = times, .tolerance = tolerance});
+    const auto found = solve(body, start, {.output_times = times, .tolerance = tolerance});
     BOOST_TEST(found.report.method == "taylor");
     BOOST_TEST(found.report.tolerance_kept);
     detail::ErrorMeasure<Scene> distance(1e-3);
@@ -142,7 +144,7 @@ BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
   }
   const CardanGyro driven({{5e-4, 5e-4, 8e-4}}, {}, RestingFrame<>{},
                           DrivenRotor{[](double, double rate) { return -1e-3 * rate; }});
-  BOOST_CHECK_THROW((void)solve(driven, {}, {.times = {1}, .method = Method::taylor}),
+  BOOST_CHECK_THROW((void)solve(driven, {}, {.output_times = {1}, .method = Method::taylor}),
                     InvalidInput);
 }
 
@@ -153,7 +155,8 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   const EulerTop top({1, 1.7, 2.4});
   const EulerTop::State start{tilted, {1, 2, 3}};
   const auto with = [&](double interval, Method method = Method::verner98) {
-    return solve(top, start, {.times = every(interval, 100), .tolerance = 1e-9, .method = method})
+    return solve(top, start,
+                 {.output_times = every(interval, 100), .tolerance = 1e-9, .method = method})
         .report;
   };
   BOOST_TEST(with(0.01, Method::taylor).all_evaluations <=
@@ -161,7 +164,8 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   const RunReport few = with(100);
   BOOST_TEST(few.all_evaluations <= 2.95 * few.effort.evaluations);
   const RunReport loose =
-      solve(top, start, {.times = {100}, .tolerance = 1e-6, .method = Method::verner98}).report;
+      solve(top, start, {.output_times = {100}, .tolerance = 1e-6, .method = Method::verner98})
+          .report;
   BOOST_TEST(loose.all_evaluations <= 2.35 * loose.effort.evaluations);
   const RunReport many = with(0.01);
   BOOST_TEST_MESSAGE(few.all_evaluations << " evaluations for one output, " << many.all_evaluations
@@ -175,8 +179,8 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
 BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
   const Vector3<double> w(0, 0, 100);
-  const auto run =
-      solve(top, {tilted, w}, {.times = {10}, .tolerance = 1e-8, .method = Method::verner98});
+  const auto run = solve(top, {tilted, w},
+                         {.output_times = {10}, .tolerance = 1e-8, .method = Method::verner98});
   BOOST_TEST_MESSAGE(run.report.all_evaluations / run.report.effort.evaluations);
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(true_error(run, exact::LagrangeTop(3e-4, 1e-4, 0.04905, w, tilted)) <=
@@ -188,8 +192,9 @@ BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
 BOOST_AUTO_TEST_CASE(keeps_its_promise_where_errors_grow) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const EulerTop top({1, 2, 3});
-  const auto run = solve(top, {tilted, w},
-                         {.times = every(5, 100), .tolerance = 1e-8, .method = Method::verner98});
+  const auto run =
+      solve(top, {tilted, w},
+            {.output_times = every(5, 100), .tolerance = 1e-8, .method = Method::verner98});
   const double error = true_error(run, exact::FreeTop({1, 2, 3}, w, tilted));
   BOOST_TEST_MESSAGE("estimate " << run.report.error_estimate << ", true " << error << ", "
                                  << run.report.effort.evaluations << " of "
@@ -204,7 +209,8 @@ BOOST_AUTO_TEST_CASE(keeps_its_promise_where_errors_grow) {
 BOOST_AUTO_TEST_CASE(takes_the_closed_form_where_there_is_one) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const auto check = [](const EulerTop& top, const Vector3<double>& start, const auto& truth) {
-    const auto run = solve(top, {tilted, start}, {.times = every(5, 100), .tolerance = 1e-14});
+    const auto run =
+        solve(top, {tilted, start}, {.output_times = every(5, 100), .tolerance = 1e-14});
     BOOST_TEST(run.report.effort.evaluations == 0);
     BOOST_TEST(run.report.tolerance_kept, run.report.method);
     BOOST_TEST(true_error(run, truth) <= run.report.error_estimate);
@@ -217,8 +223,8 @@ BOOST_AUTO_TEST_CASE(takes_the_closed_form_where_there_is_one) {
         exact::Gyrostat({1, 2, 2.5}, {0, 0.5, 0}, w, tilted));
   // Begun at another time, the same motion later.
   const EulerTop top({1, 2, 3});
-  const auto later = solve(top, {tilted, w}, {.begin = 1000, .times = {1010}});
-  const auto now = solve(top, {tilted, w}, {.times = {10}});
+  const auto later = solve(top, {tilted, w}, {.begin = 1000, .output_times = {1010}});
+  const auto now = solve(top, {tilted, w}, {.output_times = {10}});
   BOOST_TEST(later.states[0].angular_velocity == now.states[0].angular_velocity);
 }
 
@@ -235,7 +241,7 @@ BOOST_AUTO_TEST_CASE(tells_how_far_closed_forms_are_off) {
     const Vector3<double> w = sample.uniform(0.5, 50) * sample.direction();
     const EulerTop top({A, B, C}, {0, 0, k});
     const double end = seed % 3 == 0 ? 64 : 2;
-    const auto run = solve(top, {tilted, w}, {.times = {end / 4, end / 2, end}});
+    const auto run = solve(top, {tilted, w}, {.output_times = {end / 4, end / 2, end}});
     test::TopTruth truth({A, B, C}, Vector3<double>::Zero(), k, w, tilted);
     double error = 0;
     for (std::size_t i = 0; i < run.times.size(); ++i) {
@@ -256,8 +262,9 @@ BOOST_AUTO_TEST_CASE(tells_how_far_closed_forms_are_off) {
 BOOST_AUTO_TEST_CASE(says_when_a_tolerance_cannot_be_kept) {
   const Vector3<double> w(1e-5, 2, 1e-5);
   const EulerTop top({1, 2, 3});
-  const auto run = solve(top, {tilted, w},
-                         {.times = every(5, 100), .tolerance = 1e-13, .method = Method::verner98});
+  const auto run =
+      solve(top, {tilted, w},
+            {.output_times = every(5, 100), .tolerance = 1e-13, .method = Method::verner98});
   BOOST_TEST(!run.report.tolerance_kept);
   const double error = true_error(run, exact::FreeTop({1, 2, 3}, w, tilted));
   BOOST_TEST_MESSAGE("estimate " << run.report.error_estimate << ", true " << error);
@@ -267,7 +274,7 @@ BOOST_AUTO_TEST_CASE(says_when_a_tolerance_cannot_be_kept) {
 
 BOOST_AUTO_TEST_CASE(watches_what_is_conserved) {
   const EulerTop kovalevskaya({2, 2, 1}, {0.7, -0.3, 0});
-  const auto run = solve(kovalevskaya, {tilted, {0.5, 1, 2}}, {.times = every(1, 20)});
+  const auto run = solve(kovalevskaya, {tilted, {0.5, 1, 2}}, {.output_times = every(1, 20)});
   std::string names;
   for (const auto& drift : run.report.invariants) {
     names += drift.name + ",";
@@ -284,11 +291,12 @@ BOOST_AUTO_TEST_CASE(solves_bodies_on_moving_guides) {
                    Vector3<T>(T(5.0 * t), T(0), T(0))};
   });
   Matrix3<double> Theta = Vector3<double>(0.25, 0.27, 0.06).asDiagonal();
-  const HeldBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1}, rolling,
-                      UniformGravity<Inertial>{{0, 0, -9.81}});
-  const auto loose = solve(body, {tilted, {1, 0, 2}}, {.times = every(0.5, 10), .tolerance = 1e-6});
+  const FixedPointBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1},
+                            rolling, UniformGravity<Inertial>{{0, 0, -9.81}});
+  const auto loose =
+      solve(body, {tilted, {1, 0, 2}}, {.output_times = every(0.5, 10), .tolerance = 1e-6});
   const auto tight =
-      solve(body, {tilted, {1, 0, 2}}, {.times = every(0.5, 10), .tolerance = 1e-12});
+      solve(body, {tilted, {1, 0, 2}}, {.output_times = every(0.5, 10), .tolerance = 1e-12});
   detail::ErrorMeasure<std::remove_const_t<decltype(body)>> distance(1e-3);
   double off = 0;
   for (std::size_t i = 0; i < loose.states.size(); ++i) {
@@ -303,18 +311,18 @@ BOOST_AUTO_TEST_CASE(solves_bodies_on_moving_guides) {
 BOOST_AUTO_TEST_CASE(runs_backwards_too) {
   const EulerTop top({1, 2, 2.5});
   const auto there = solve(top, {tilted, {1, 2, 3}},
-                           {.times = {10}, .tolerance = 1e-12, .method = Method::verner98});
+                           {.output_times = {10}, .tolerance = 1e-12, .method = Method::verner98});
   const auto back =
       solve(top, there.states.back(),
-            {.begin = 10, .times = {0}, .tolerance = 1e-12, .method = Method::verner98});
+            {.begin = 10, .output_times = {0}, .tolerance = 1e-12, .method = Method::verner98});
   BOOST_TEST((back.states.back().angular_velocity - Vector3<double>(1, 2, 3)).norm() < 1e-11);
 }
 
 BOOST_AUTO_TEST_CASE(stops_when_told_and_keeps_what_it_has) {
   const EulerTop top({1, 2, 2.5});
-  Task task{.times = every(1, 100)};
-  task.progress = [](double t) { return t < 30; };
-  const auto run = solve(top, {tilted, {1, 2, 3}}, task);
+  SolveOptions options{.output_times = every(1, 100)};
+  options.progress = [](double t) { return t < 30; };
+  const auto run = solve(top, {tilted, {1, 2, 3}}, options);
   BOOST_TEST((run.report.status == RunStatus::cancelled));
   BOOST_TEST(run.times.back() == 30);
   BOOST_TEST(run.states.size() == 30U);
@@ -322,14 +330,14 @@ BOOST_AUTO_TEST_CASE(stops_when_told_and_keeps_what_it_has) {
 
 // A load that has no value after 3 s.
 BOOST_AUTO_TEST_CASE(tells_where_it_failed_and_keeps_what_it_has) {
-  const auto broken = [](const Situation<>& s) {
+  const auto broken = [](const LoadContext<>& s) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     return Force<Body>{{{0, 0, 0}, {s.t > 3.25 ? none : 0, 0, 0}}};
   };
   Matrix3<double> Theta = Vector3<double>(1, 2, 2.5).asDiagonal();
-  const HeldBody body(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
-                      RestingFrame<>{}, broken);
-  const auto run = solve(body, {tilted, {1, 2, 3}}, {.times = every(1, 10)});
+  const FixedPointBody body(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
+                            RestingFrame<>{}, broken);
+  const auto run = solve(body, {tilted, {1, 2, 3}}, {.output_times = every(1, 10)});
   BOOST_TEST((run.report.status == RunStatus::failed));
   BOOST_TEST(run.report.message.find("integration stopped at t = 3.2") == 0U, run.report.message);
   BOOST_TEST(run.states.size() == 3U);
@@ -341,9 +349,9 @@ BOOST_AUTO_TEST_CASE(splits_fast_tops) {
   const EulerTop::State start{tilted, {0, 0, 3000}};
   const std::vector<double> times = every(0.25, 1);
   const auto by_steps =
-      solve(top, start, {.times = times, .tolerance = 1e-12, .method = Method::verner98});
+      solve(top, start, {.output_times = times, .tolerance = 1e-12, .method = Method::verner98});
   for (const double tolerance : {1e-4, 1e-7, 1e-9}) {
-    const auto found = solve(top, start, {.times = times, .tolerance = tolerance});
+    const auto found = solve(top, start, {.output_times = times, .tolerance = tolerance});
     BOOST_TEST(found.report.method == "splitting");
     BOOST_TEST(found.report.tolerance_kept);
     double off = 0;
@@ -369,7 +377,7 @@ BOOST_AUTO_TEST_CASE(gives_way_where_a_field_proves_stiff) {
                           {.outer = {0.5, 1e-3, 0}, .inner = {stiffness, 2e-3 * stiffness, 0.3}},
                           RestingFrame<>{});
     const auto found = solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500},
-                             {.times = every(0.5, 2), .tolerance = 1e-9});
+                             {.output_times = every(0.5, 2), .tolerance = 1e-9});
     const RunReport& report = found.report;
     BOOST_TEST_MESSAGE(stiffness << " N m/rad: " << report.method << ", estimate "
                                  << report.error_estimate << ", " << report.all_evaluations
@@ -405,7 +413,7 @@ struct Follower {
 };
 
 BOOST_AUTO_TEST_CASE(gives_way_where_a_field_becomes_stiff_on_the_way) {
-  const auto found = solve(Follower{}, {1.5}, {.times = every(0.5, 5), .tolerance = 1e-9});
+  const auto found = solve(Follower{}, {1.5}, {.output_times = every(0.5, 5), .tolerance = 1e-9});
   BOOST_TEST(found.report.method == "radau13");
   BOOST_TEST(found.report.tolerance_kept);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
@@ -439,11 +447,12 @@ struct Walled {
 // what is thrown there is no fault of the answer.
 BOOST_AUTO_TEST_CASE(does_without_runs_that_go_astray) {
   const Walled scene{.wall = 1 + 1e-4};
-  const auto found = solve(scene, {1, 0}, {.times = {5, 10}, .tolerance = 1e-11});
+  const auto found = solve(scene, {1, 0}, {.output_times = {5, 10}, .tolerance = 1e-11});
   BOOST_TEST(scene.struck == 1);
   BOOST_TEST(found.report.tolerance_kept);
   BOOST_TEST(std::abs(found.states[1].x - std::cos(10)) <= found.report.error_estimate);
-  BOOST_CHECK_THROW((void)solve(Walled{.wall = 0.9}, {1, 0}, {.times = {10}}), std::domain_error);
+  BOOST_CHECK_THROW((void)solve(Walled{.wall = 0.9}, {1, 0}, {.output_times = {10}}),
+                    std::domain_error);
 }
 
 // Moments of which one is 1e-5 of the others leave the rates fewer digits than the state has: the
@@ -451,10 +460,10 @@ BOOST_AUTO_TEST_CASE(does_without_runs_that_go_astray) {
 BOOST_AUTO_TEST_CASE(knows_what_last_digits_of_a_body_do) {
   const Vector3<double> moments(1, 1, 1e-5), w(1, 2, 3);
   const Matrix3<double> Theta = moments.asDiagonal();
-  const HeldBody body(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
-                      RestingFrame<>{});
+  const FixedPointBody body(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
+                            RestingFrame<>{});
   const exact::FreeTop top(moments, w, tilted);
-  const auto found = solve(body, {tilted, w}, {.times = every(1, 5), .tolerance = 1e-9});
+  const auto found = solve(body, {tilted, w}, {.output_times = every(1, 5), .tolerance = 1e-9});
   BOOST_TEST(found.report.tolerance_kept);
   const auto motion = top.at(5);
   BOOST_TEST(found.states[4].attitude.angularDistance(motion.attitude) <=
@@ -467,12 +476,13 @@ BOOST_AUTO_TEST_CASE(resolves_what_is_fast_but_not_damped) {
       .rotor = {5e-4, 5e-4, 8e-4}, .inner_ring = {2e-4, 3e-4, 2.5e-4}, .outer_ring = {4e-4, 1, 1}};
   const CardanBearings bearings{.inner = {1e4, 0, 0.3}};
   const CardanState start{.alpha_rate = 0.5, .phi_rate = 500};
-  const Task task{.times = every(0.1, 0.3), .tolerance = 1e-3};
-  const auto by_series = solve(CardanGyro(moments, bearings, RestingFrame<>{}), start, task);
+  const SolveOptions options{.output_times = every(0.1, 0.3), .tolerance = 1e-3};
+  const auto by_series = solve(CardanGyro(moments, bearings, RestingFrame<>{}), start, options);
   BOOST_TEST(by_series.report.method == "taylor");
   BOOST_TEST(by_series.report.tolerance_kept);
   const DrivenRotor idle{[](double, double) { return 0.0; }};
-  const auto by_stages = solve(CardanGyro(moments, bearings, RestingFrame<>{}, idle), start, task);
+  const auto by_stages =
+      solve(CardanGyro(moments, bearings, RestingFrame<>{}, idle), start, options);
   BOOST_TEST(by_stages.report.method == "verner98");
   BOOST_TEST(by_stages.report.tolerance_kept);
 }
@@ -486,7 +496,8 @@ BOOST_AUTO_TEST_CASE(comes_nearer_to_a_missed_tolerance_by_explicit_steps) {
   const auto found = [&](double stiffness) {
     const CardanGyro gyro(moments, {{0.5, 1e-3}, {stiffness, 2e-3 * stiffness, 0.3}},
                           RestingFrame<>{});
-    return solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500}, {.times = {2}, .tolerance = 1e-13})
+    return solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500},
+                 {.output_times = {2}, .tolerance = 1e-13})
         .report;
   };
   BOOST_TEST(found(1e3).method == "taylor");
@@ -498,8 +509,8 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_when_asked) {
   const EulerTop top({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
   const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
-  const auto found =
-      solve(top, start, {.times = every(5, 100), .tolerance = 1e-11, .method = Method::gauss16});
+  const auto found = solve(
+      top, start, {.output_times = every(5, 100), .tolerance = 1e-11, .method = Method::gauss16});
   BOOST_TEST(found.report.method == "gauss16");
   BOOST_TEST(found.report.tolerance_kept);
   BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
@@ -512,8 +523,8 @@ BOOST_AUTO_TEST_CASE(tells_the_error_of_fixed_steps_between_near_outputs) {
   const Vector3<double> w(50, 0, 40);
   const exact::LagrangeTop truth(A, C, k, w, tilted);
   for (const Method method : {Method::splitting, Method::gauss16}) {
-    const auto found =
-        solve(top, {tilted, w}, {.times = every(0.05, 0.5), .tolerance = 1e-8, .method = method});
+    const auto found = solve(
+        top, {tilted, w}, {.output_times = every(0.05, 0.5), .tolerance = 1e-8, .method = method});
     BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
     BOOST_TEST(found.report.tolerance_kept);
   }
@@ -524,9 +535,9 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_between_outputs_of_any_distance) {
   const EulerTop top({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
   const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
-  const auto found =
-      solve(top, start,
-            {.times = {1e-310, 1e-300, 1e-9, 1}, .tolerance = 1e-11, .method = Method::gauss16});
+  const auto found = solve(
+      top, start,
+      {.output_times = {1e-310, 1e-300, 1e-9, 1}, .tolerance = 1e-11, .method = Method::gauss16});
   BOOST_TEST(found.report.tolerance_kept);
   BOOST_TEST(found.report.all_evaluations < 2e4);
   BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
@@ -538,8 +549,8 @@ BOOST_AUTO_TEST_CASE(knows_what_last_digits_grow_to) {
   const EulerTop top({2, 3, 4});
   const exact::FreeTop truth(top.moments(), w, tilted);
   for (const Method method : {Method::verner98, Method::taylor, Method::gauss16, Method::radau13}) {
-    const auto run =
-        solve(top, {tilted, w}, {.times = every(2, 20), .tolerance = 1e-8, .method = method});
+    const auto run = solve(top, {tilted, w},
+                           {.output_times = every(2, 20), .tolerance = 1e-8, .method = method});
     const double error = true_error(run, truth);
     BOOST_TEST_MESSAGE(name(method)
                        << ": estimate " << run.report.error_estimate << ", true " << error);
@@ -563,7 +574,7 @@ BOOST_AUTO_TEST_CASE(takes_no_chance_agreement_of_noise_for_accuracy) {
   for (int i = 0; i < 60; ++i) {
     const Gyro::State start{
         .beta = std::numbers::pi / 2 - 1e-8 * (1 + 0.1 * i), .alpha_rate = 0.3, .phi_rate = 100};
-    ExplicitSteps<LongVector, decltype(field)> steps(
+    ExplicitRungeKutta<LongVector, decltype(field)> steps(
         field, 0.0L, Gyro::to_vector(start).cast<long double>(), {.relative = 1e-15}, Gyro::blocks);
     std::vector<Gyro::Vector> way;  // by whose sizes errors are measured
     for (int k = 1; k <= 100; ++k) way.push_back(steps.advance_to(end * k / 100).cast<double>());
@@ -571,7 +582,7 @@ BOOST_AUTO_TEST_CASE(takes_no_chance_agreement_of_noise_for_accuracy) {
     for (const Method method : {Method::automatic, Method::radau13}) {
       for (const double tolerance : {1e-8, 3e-9, 1e-9}) {
         const auto found =
-            solve(gyro, start, {.times = {end}, .tolerance = tolerance, .method = method});
+            solve(gyro, start, {.output_times = {end}, .tolerance = tolerance, .method = method});
         if (!found.report.tolerance_kept) continue;
         detail::ErrorMeasure<Gyro> distance(1e-3);
         for (const Gyro::Vector& y : way) (void)distance(y, y);
@@ -617,7 +628,7 @@ BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
               .cwiseQuotient(moments.cast<long double>());
       return rates;
     };
-    ExplicitSteps<LongVector, decltype(field)> steps(
+    ExplicitRungeKutta<LongVector, decltype(field)> steps(
         field, 0.0L, EulerTop::to_vector(start).cast<long double>(), {1e-17}, EulerTop::blocks);
     std::vector<EulerTop::Vector> truth;
     truth.reserve(times.size());
@@ -625,7 +636,7 @@ BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
     for (const Method method : {Method::verner98, Method::taylor}) {
       for (const double tolerance : {1e-9, 1e-11}) {
         const auto found =
-            solve(top, start, {.times = times, .tolerance = tolerance, .method = method});
+            solve(top, start, {.output_times = times, .tolerance = tolerance, .method = method});
         detail::ErrorMeasure<EulerTop> distance(1e-3);
         double error = 0;
         for (std::size_t k = 0; k < times.size(); ++k) {
@@ -665,7 +676,8 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
     const exact::FreeTop truth({A, B, C}, start.angular_velocity, start.attitude);
     for (const Method method :
          {Method::verner98, Method::taylor, Method::radau13, Method::gauss16}) {
-      const auto found = solve(top, start, {.times = {30}, .tolerance = 1e-14, .method = method});
+      const auto found =
+          solve(top, start, {.output_times = {30}, .tolerance = 1e-14, .method = method});
       if (found.report.tolerance_kept) continue;
       const double ratio = true_error(found, truth) / found.report.error_estimate;
       runs += 1;
@@ -683,7 +695,7 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
 // broken, for two runs agree by chance.
 BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
   const EulerTop top({1, 2, 3});
-  const HeldBody body(
+  const FixedPointBody body(
       InertiaTensor<Body>::about_origin(1, Vector3<double>::Zero(),
                                         Matrix3<double>(Vector3<double>(1, 2, 3).asDiagonal())),
       Vector3<double>::Zero(), RestingFrame<>{});
@@ -702,15 +714,17 @@ BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
       broken += true_error(found, truth) > found.report.tolerance ? 1 : 0;
     };
     for (const double tolerance : {1e-7, 1e-8, 1e-9}) {
-      const Task task{.times = {15, 30}, .tolerance = tolerance};
-      const auto held = solve(body, {start.attitude, start.angular_velocity}, task);
+      const SolveOptions options{.output_times = {15, 30}, .tolerance = tolerance};
+      const auto held = solve(body, {start.attitude, start.angular_velocity}, options);
       Trajectory<EulerTop::State> found{held.times, {}, held.report};
       for (const auto& state : held.states) {
         found.states.push_back({state.attitude, state.angular_velocity});
       }
       note(found);
       note(solve(top, start,
-                 {.times = task.times, .tolerance = tolerance, .method = Method::verner98}));
+                 {.output_times = options.output_times,
+                  .tolerance = tolerance,
+                  .method = Method::verner98}));
     }
   }
   BOOST_TEST_MESSAGE(broken << " of " << kept << " promises broken");
@@ -727,7 +741,7 @@ BOOST_AUTO_TEST_CASE(takes_no_noise_of_cheap_steps_for_growth) {
   const Vector3<double> z = Vector3<double>::UnitZ();
   for (const double tolerance : {1e-8, 1e-9, 1e-10, 1e-11}) {
     const auto found =
-        solve(top, {tilted, {0, 0, 3000}}, {.times = {0.5, 1}, .tolerance = tolerance});
+        solve(top, {tilted, {0, 0, 3000}}, {.output_times = {0.5, 1}, .tolerance = tolerance});
     const Vector3<double> off = found.states[1].attitude * z - truth.at(1).attitude * z;
     BOOST_TEST(found.report.method == "taylor");
     BOOST_TEST(found.report.tolerance_kept);
@@ -738,8 +752,8 @@ BOOST_AUTO_TEST_CASE(takes_no_noise_of_cheap_steps_for_growth) {
 // Ten times finer steps err by a tenth. By much more it is rounding, and by much less rounding too, of
 // which two runs agree by chance; of an error as great as the motion nothing is known.
 BOOST_AUTO_TEST_CASE(takes_an_error_that_does_not_fall_as_steps_do_for_rounding) {
-  const Task task{.times = {1}, .tolerance = 1e-8};
-  const detail::AdaptiveRuns runs(task);
+  const SolveOptions options{.output_times = {1}, .tolerance = 1e-8};
+  const detail::AdaptiveRuns runs(options);
   const auto judged = [&](double error, double now) {
     const detail::Missed<double> missed{.setting = 1e-9, .error = error, .now = now};
     return std::pair(missed.stays(runs, 1e-10), missed.falls_by_chance(runs, 1e-10));
@@ -763,7 +777,7 @@ BOOST_AUTO_TEST_CASE(does_not_try_until_two_agree) {
     const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
     for (const Method method : {Method::verner98, Method::gauss16}) {
       const auto found =
-          solve(top, start, {.times = every(10, 100), .tolerance = 1e-6, .method = method});
+          solve(top, start, {.output_times = every(10, 100), .tolerance = 1e-6, .method = method});
       const double ratio = true_error(found, truth) / found.report.error_estimate;
       beyond += ratio > 1 ? 1 : 0;
       greatest = test::worst_of(greatest, ratio);
@@ -777,8 +791,9 @@ BOOST_AUTO_TEST_CASE(does_not_try_until_two_agree) {
 // this top erred by 1.4e-10 in the end.
 BOOST_AUTO_TEST_CASE(goes_below_rounding_where_the_way_is_long) {
   const Vector3<double> w(0.2, 0.1, 5);
-  const auto run = solve(EulerTop({1, 1, 0.5}, {0, 0, 1}), {tilted, w},
-                         {.times = every(1e3, 1e4), .tolerance = 1e-10, .method = Method::taylor});
+  const auto run =
+      solve(EulerTop({1, 1, 0.5}, {0, 0, 1}), {tilted, w},
+            {.output_times = every(1e3, 1e4), .tolerance = 1e-10, .method = Method::taylor});
   const double error = true_error(run, exact::LagrangeTop(1, 0.5, 1, w, tilted));
   BOOST_TEST_MESSAGE("estimate " << run.report.error_estimate << ", true " << error);
   BOOST_TEST(error <= 3e-11);
@@ -794,8 +809,8 @@ BOOST_AUTO_TEST_CASE(tells_what_steps_err_by_where_rounding_does_as_much) {
   std::vector<double> times;
   for (double t = 0.1; t < 10; t *= 1.5) times.push_back(t);
   times.push_back(10);
-  const auto run =
-      solve(top, {tilted, w}, {.times = times, .tolerance = 1e-12, .method = Method::radau13});
+  const auto run = solve(top, {tilted, w},
+                         {.output_times = times, .tolerance = 1e-12, .method = Method::radau13});
   const double error = true_error(run, exact::LagrangeTop(3e-4, 1e-4, 0.04905, w, tilted));
   BOOST_TEST_MESSAGE("estimate " << run.report.error_estimate << ", true " << error);
   BOOST_TEST(error > 1e-12);
@@ -809,8 +824,8 @@ BOOST_AUTO_TEST_CASE(steps_attitudes_of_any_norm) {
   const exact::FreeTop truth(top.moments(), w, tilted);
   for (const double norm : {1e-300, 1e300}) {
     const EulerTop::State start{Eigen::Quaterniond(norm * tilted.coeffs()), w};
-    const auto run =
-        solve(top, start, {.times = every(1, 10), .tolerance = 1e-9, .method = Method::radau13});
+    const auto run = solve(
+        top, start, {.output_times = every(1, 10), .tolerance = 1e-9, .method = Method::radau13});
     BOOST_TEST(run.report.tolerance_kept);
     BOOST_TEST(true_error(run, truth) <= run.report.error_estimate);
   }
@@ -821,7 +836,7 @@ BOOST_AUTO_TEST_CASE(spends_no_more_than_it_may) {
   for (const Method method : {Method::splitting, Method::gauss16, Method::verner98}) {
     const auto run =
         solve(top, {tilted, {0, 0, 300}},
-              {.times = {1e9}, .tolerance = 1e-6, .method = method, .most_evaluations = 1e4});
+              {.output_times = {1e9}, .tolerance = 1e-6, .method = method, .max_evaluations = 1e4});
     BOOST_TEST((run.report.status == RunStatus::failed));
     BOOST_TEST(run.report.all_evaluations < 5e4);
   }
@@ -842,22 +857,23 @@ BOOST_AUTO_TEST_CASE(measures_attitudes_of_any_norm) {
 BOOST_AUTO_TEST_CASE(refuses_methods_that_do_not_fit) {
   const EulerTop free({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
-  BOOST_CHECK_THROW((void)solve(free, start, {.times = {1}, .method = Method::splitting}),
+  BOOST_CHECK_THROW((void)solve(free, start, {.output_times = {1}, .method = Method::splitting}),
                     InvalidInput);
   BOOST_CHECK_THROW(
-      (void)solve(free, start, {.times = {1}, .jumps = {0.5}, .method = Method::gauss16}),
+      (void)solve(free, start,
+                  {.output_times = {1}, .discontinuities = {0.5}, .method = Method::gauss16}),
       InvalidInput);
   // No closed form: not symmetric, weight aside of the axis or below, a rotor aside or under weight.
   for (const EulerTop& top :
        {EulerTop({1, 2, 3}, {0, 1, 1}), EulerTop({1, 1, 1.5}, {0, 1, 1}),
         EulerTop({1, 1, 1.5}, {0, 0, -1}), EulerTop({1, 2, 3}, {0, 0, 0}, {0, 1, 1}),
         EulerTop({1, 1, 1.5}, {0, 0, 1}, {0, 0, 1})}) {
-    BOOST_CHECK_THROW((void)solve(top, start, {.times = {1}, .method = Method::closed_form}),
+    BOOST_CHECK_THROW((void)solve(top, start, {.output_times = {1}, .method = Method::closed_form}),
                       InvalidInput);
   }
   // No splitting: without weight, or with a rotor.
   for (const EulerTop& top : {EulerTop({1, 1, 1.5}), EulerTop({1, 1, 1.5}, {0, 0, 1}, {0, 0, 1})}) {
-    BOOST_CHECK_THROW((void)solve(top, start, {.times = {1}, .method = Method::splitting}),
+    BOOST_CHECK_THROW((void)solve(top, start, {.output_times = {1}, .method = Method::splitting}),
                       InvalidInput);
   }
 }
@@ -865,29 +881,32 @@ BOOST_AUTO_TEST_CASE(refuses_methods_that_do_not_fit) {
 BOOST_AUTO_TEST_CASE(refuses_a_task_that_is_none) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const EulerTop top({1, 2, 2.5});
-  const auto with = [&](const Task& task) { return solve(top, {tilted, {1, 2, 3}}, task); };
+  const auto with = [&](const SolveOptions& options) {
+    return solve(top, {tilted, {1, 2, 3}}, options);
+  };
   BOOST_CHECK_THROW((void)with({}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1, 0.5}}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1, -1}}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {nan}}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.begin = nan, .times = {1}}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1}, .tolerance = 1e-16}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1}, .tolerance = 0}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1}, .tolerance = nan}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1}, .jumps = {nan}}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1}, .smallest = HUGE_VAL}), InvalidInput);
-  BOOST_CHECK_THROW((void)with({.times = {1}, .most_evaluations = nan}), InvalidInput);
-  BOOST_CHECK_THROW((void)solve(top, {tilted, {nan, 2, 3}}, {.times = {1}}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1, 0.5}}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1, -1}}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {nan}}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.begin = nan, .output_times = {1}}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1}, .tolerance = 1e-16}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1}, .tolerance = 0}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1}, .tolerance = nan}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1}, .discontinuities = {nan}}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1}, .absolute_scale = HUGE_VAL}), InvalidInput);
+  BOOST_CHECK_THROW((void)with({.output_times = {1}, .max_evaluations = nan}), InvalidInput);
+  BOOST_CHECK_THROW((void)solve(top, {tilted, {nan, 2, 3}}, {.output_times = {1}}), InvalidInput);
   const Vector3<double> underflowing(1e-200, 2e-200, 1e-200);
-  BOOST_CHECK_THROW((void)solve(top, {tilted, underflowing},
-                                {.times = {1}, .method = Method::verner98, .smallest = 0}),
-                    InvalidInput);
-  const Task small{.times = {1}, .method = Method::verner98};
+  BOOST_CHECK_THROW(
+      (void)solve(top, {tilted, underflowing},
+                  {.output_times = {1}, .method = Method::verner98, .absolute_scale = 0}),
+      InvalidInput);
+  const SolveOptions small{.output_times = {1}, .method = Method::verner98};
   BOOST_TEST(solve(top, {tilted, underflowing}, small).report.tolerance_kept);
   const EulerTop::State turned_by_nothing{Eigen::Quaterniond(0, 0, 0, 0), {1, 2, 3}};
   BOOST_CHECK_THROW((void)solve(top, {Eigen::Quaterniond(nan, 0, 0, 0), {1, 2, 3}}, small),
                     InvalidInput);
-  const Task by_steps{.times = {1}, .method = Method::verner98};
+  const SolveOptions by_steps{.output_times = {1}, .method = Method::verner98};
   BOOST_CHECK_THROW((void)solve(top, turned_by_nothing, by_steps), InvalidInput);
 }
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/random_tree.hpp>
 #include <support/sample.hpp>
@@ -31,14 +31,15 @@ BOOST_AUTO_TEST_CASE(solves_trees_of_bodies) {
   auto start = system.rest();
   start.coordinates[0] = 0.7;
   const exact::PendulumMotion truth(9.81 / 0.6, 0.7, 0);
-  const auto found = solve(system, start, {.times = {5, 10, 15, 20}, .tolerance = 1e-10});
+  const auto found = solve(system, start, {.output_times = {5, 10, 15, 20}, .tolerance = 1e-10});
   BOOST_TEST(found.report.tolerance_kept);
   BOOST_TEST(found.report.invariants.size() > 0);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     BOOST_TEST(std::abs(found.states[i].coordinates[0] - truth.at(found.times[i]).angle) <= 1e-10);
   }
   for (const Method method : {Method::verner98, Method::radau13, Method::gauss16}) {
-    const auto other = solve(system, start, {.times = {20}, .tolerance = 1e-10, .method = method});
+    const auto other =
+        solve(system, start, {.output_times = {20}, .tolerance = 1e-10, .method = method});
     BOOST_TEST(other.report.method == name(method));
     BOOST_TEST(other.report.tolerance_kept);
     BOOST_TEST(std::abs(other.states[0].coordinates[0] - truth.at(20).angle) <= 1e-10);
@@ -53,7 +54,7 @@ BOOST_AUTO_TEST_CASE(solves_trees_that_stand_still) {
   BOOST_TEST(system.rest().coordinates.size() == 0);
   for (const Method method :
        {Method::automatic, Method::verner98, Method::radau13, Method::gauss16}) {
-    const auto found = solve(system, system.rest(), {.times = {1, 2}, .method = method});
+    const auto found = solve(system, system.rest(), {.output_times = {1, 2}, .method = method});
     BOOST_TEST(found.report.tolerance_kept, name(method));
     BOOST_TEST(found.states.size() == 2U, name(method));
   }
@@ -81,18 +82,18 @@ BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
   auto start = system.rest();
   start.coordinates[1] = 0.3;  // where the gyro's angle begins to count
   start.rates << 0.5, 0, 500;
-  const Task task{.times = {0.5, 1, 1.5, 2}, .tolerance = 1e-9};
-  const auto as_bodies = solve(system, start, task);
+  const SolveOptions options{.output_times = {0.5, 1, 1.5, 2}, .tolerance = 1e-9};
+  const auto as_bodies = solve(system, start, options);
   const CardanGyro gyro({.rotor = rotor, .inner_ring = inner, .outer_ring = outer},
                         {.outer = {0.5, 1e-3, 0}, .inner = {stiffness, 2e-3 * stiffness, 0.3}},
                         RestingFrame<>{});
-  const auto as_gyro = solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500}, task);
+  const auto as_gyro = solve(gyro, {.alpha_rate = 0.5, .phi_rate = 500}, options);
   BOOST_TEST(as_bodies.report.method == "radau13");
   BOOST_TEST(as_bodies.report.tolerance_kept);
   BOOST_TEST_MESSAGE(as_bodies.report.all_evaluations << " evaluations of the tree, "
                                                       << as_gyro.report.all_evaluations
                                                       << " of the gyro");
-  for (std::size_t i = 0; i < task.times.size(); ++i) {
+  for (std::size_t i = 0; i < options.output_times.size(); ++i) {
     const auto& [q, v] = as_bodies.states[i];
     BOOST_TEST(std::abs(q[0] - as_gyro.states[i].alpha) <= 2e-9);
     BOOST_TEST(std::abs(q[1] - 0.3 - as_gyro.states[i].beta) <= 2e-9);
@@ -114,16 +115,16 @@ BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
     for (double& q : start.coordinates) q += sample.uniform(-0.5, 0.5);
     for (double& v : start.rates) v = sample.uniform(-1, 1);
     // So often that the sizes by which errors count, those of all steps, are those of the outputs.
-    Task task{.times = {}, .tolerance = 1e-13, .method = Method::verner98};
-    for (int i = 0; i <= 200; ++i) task.times.push_back(0.01 * i);
-    const auto truth = solve(system, start, task);
+    SolveOptions options{.output_times = {}, .tolerance = 1e-13, .method = Method::verner98};
+    for (int i = 0; i <= 200; ++i) options.output_times.push_back(0.01 * i);
+    const auto truth = solve(system, start, options);
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
-      task.tolerance = tolerance;
-      task.method = Method::taylor;
-      const auto found = solve(system, start, task);
-      detail::ErrorMeasure<Scene> distance(system, task.smallest);
+      options.tolerance = tolerance;
+      options.method = Method::taylor;
+      const auto found = solve(system, start, options);
+      detail::ErrorMeasure<Scene> distance(system, options.absolute_scale);
       double error = 0;
-      for (std::size_t i = 0; i < task.times.size(); ++i) {
+      for (std::size_t i = 0; i < options.output_times.size(); ++i) {
         error = test::worst_of(
             error, distance(Scene::to_vector(found.states[i]), Scene::to_vector(truth.states[i])));
       }
@@ -208,10 +209,11 @@ BOOST_AUTO_TEST_CASE(knows_a_pendulum_and_a_top_among_systems) {
       if (kind == JointKind::free) start.coordinates.tail<3>() = vector();
     }
     const std::vector<double> times{-1, 0.5, 3, 7};
-    const auto known = solve(system, start, {.begin = -2, .times = times, .tolerance = 1e-13});
+    const auto known =
+        solve(system, start, {.begin = -2, .output_times = times, .tolerance = 1e-13});
     const auto steps =
         solve(system, start,
-              {.begin = -2, .times = times, .tolerance = 1e-13, .method = Method::verner98});
+              {.begin = -2, .output_times = times, .tolerance = 1e-13, .method = Method::verner98});
     BOOST_TEST(known.report.all_evaluations == 0, known.report.method);
     BOOST_TEST(known.report.tolerance_kept);
     BOOST_TEST(known.report.invariants.size() == steps.report.invariants.size());
@@ -230,7 +232,7 @@ BOOST_AUTO_TEST_CASE(leaves_to_steps_what_is_more_than_that) {
     const BodySystem system(std::move(guide), {std::move(body)}, gravity);
     auto start = system.rest();
     start.rates.setConstant(0.3);
-    const auto found = solve(system, start, {.times = {0.5}, .tolerance = 1e-8});
+    const auto found = solve(system, start, {.output_times = {0.5}, .tolerance = 1e-8});
     return found.report.tolerance_kept && found.report.all_evaluations > 0;
   };
   using enum JointKind;
@@ -268,7 +270,7 @@ BOOST_AUTO_TEST_CASE(leaves_to_steps_what_is_more_than_that) {
                       .joint = {.kind = revolute, .axis = {0, 1, 0}},
                       .inertia = rod}},
                     weight);
-  BOOST_TEST(solve(two, two.rest(), {.times = {0.1}}).report.all_evaluations > 0);
+  BOOST_TEST(solve(two, two.rest(), {.output_times = {0.1}}).report.all_evaluations > 0);
 }
 
 BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_as_long_as_one_likes) {
@@ -277,7 +279,7 @@ BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_as_long_as_one_likes) {
   auto start = system.rest();
   start.coordinates[0] = 0.7;
   const exact::PendulumMotion truth(9.81 / 0.6, 0.7, 0);
-  const auto found = solve(system, start, {.times = {1e6}, .tolerance = 1e-8});
+  const auto found = solve(system, start, {.output_times = {1e6}, .tolerance = 1e-8});
   const double off = std::abs(found.states[0].coordinates[0] - truth.at(1e6).angle) / 0.7;
   BOOST_TEST(found.report.tolerance_kept);
   BOOST_TEST(off <= 1e-9);  // of 9.81/0.6 as rounded
@@ -296,7 +298,7 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
   creeping.forces = {{.stiffness = 1e6, .damping = 1e7}};
   struct Case {
     std::vector<BodyDescription> bodies;
-    Task task;
+    SolveOptions options;
     const char* method;
     bool begins_again;
   };
@@ -304,31 +306,40 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
   std::vector<double> long_times = times;
   long_times.push_back(30);
   const Case cases[] = {
-      {{swinging, free}, {.times = times}, "taylor", false},
-      {{swinging, free}, {.times = long_times}, "verner98", true},  // where taylor rounds too much
-      {{swinging, free}, {.times = long_times, .method = Method::taylor}, "taylor", true},
-      {{swinging, free}, {.times = times, .method = Method::verner98}, "verner98", false},
-      {{swinging, free}, {.times = long_times, .method = Method::verner98}, "verner98", true},
-      {{swinging, free}, {.times = times, .method = Method::gauss16}, "gauss16", false},
-      {{swinging, free}, {.times = times, .method = Method::radau13}, "radau13", false},
-      {{creeping, free}, {.times = times}, "radau13", false}};
+      {{swinging, free}, {.output_times = times}, "taylor", false},
+      {{swinging, free},
+       {.output_times = long_times},
+       "verner98",
+       true},  // where taylor rounds too much
+      {{swinging, free}, {.output_times = long_times, .method = Method::taylor}, "taylor", true},
+      {{swinging, free}, {.output_times = times, .method = Method::verner98}, "verner98", false},
+      {{swinging, free},
+       {.output_times = long_times, .method = Method::verner98},
+       "verner98",
+       true},
+      {{swinging, free}, {.output_times = times, .method = Method::gauss16}, "gauss16", false},
+      {{swinging, free}, {.output_times = times, .method = Method::radau13}, "radau13", false},
+      {{creeping, free}, {.output_times = times}, "radau13", false}};
   for (Case c : cases) {
     const BodySystem system(RestingFrame<>{}, c.bodies, UniformGravity<Guide>{{0, 0, -9.81}});
     auto start = system.rest();
     start.coordinates[0] = 0.7;
     start.rates << 0, 1, 3, 0.1;
-    std::vector<std::vector<double>> bookmarks;
-    c.task.offer_bookmark = [&](const auto& bookmark) { bookmarks.push_back(bookmark()); };
-    const auto whole = solve(system, start, c.task);
+    std::vector<std::vector<double>> checkpoints;
+    c.options.offer_checkpoint = [&](const auto& checkpoint) {
+      checkpoints.push_back(checkpoint());
+    };
+    const auto whole = solve(system, start, c.options);
     BOOST_TEST(whole.report.method == c.method);
     // Runs are also compared between outputs.
     BOOST_TEST(*std::max_element(whole.errors.begin(), whole.errors.end()) <=
                whole.report.error_estimate);
-    BOOST_TEST((bookmarks.size() >= c.task.times.size()) == c.begins_again, bookmarks.size());
-    for (const auto& bookmark : bookmarks) {
-      Task rest = c.task;
-      rest.offer_bookmark = nullptr;
-      rest.bookmark = bookmark;
+    BOOST_TEST((checkpoints.size() >= c.options.output_times.size()) == c.begins_again,
+               checkpoints.size());
+    for (const auto& checkpoint : checkpoints) {
+      SolveOptions rest = c.options;
+      rest.offer_checkpoint = nullptr;
+      rest.checkpoint = checkpoint;
       const auto found = solve(system, start, rest);
       const std::size_t before = whole.times.size() - found.times.size();
       for (std::size_t i = 0; i < found.times.size(); ++i) {
@@ -345,12 +356,12 @@ BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
       for (std::size_t i = 0; i < found.report.invariants.size(); ++i) {
         BOOST_TEST(found.report.invariants[i].largest == whole.report.invariants[i].largest);
       }
-      rest.bookmark.pop_back();
+      rest.checkpoint.pop_back();
       BOOST_CHECK_THROW((void)solve(system, start, rest), InvalidInput);
     }
-    Task other = c.task;
-    other.bookmark = bookmarks.front();
-    other.method = c.task.method == Method::gauss16 ? Method::radau13 : Method::gauss16;
+    SolveOptions other = c.options;
+    other.checkpoint = checkpoints.front();
+    other.method = c.options.method == Method::gauss16 ? Method::radau13 : Method::gauss16;
     BOOST_CHECK_THROW((void)solve(system, start, other), InvalidInput);
   }
 }

@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
   };
   const auto error = [&](std::span<const int> blocks) {
     CvodeSteps steps(CvodeMethod::adams, field, 0.0, State<4>(1, 0, 1e-9, 0),
-                     {.relative = 1e-8, .smallest = 0}, blocks);
+                     {.relative = 1e-8, .absolute_scale = 0}, blocks);
     steps.advance_to(2 * std::numbers::pi);
     return (steps.y().tail<2>() / 1e-9 - State<2>(1, 0)).norm();
   };
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   };
   BOOST_CHECK_THROW(with({.relative = 1e-17}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = not_a_number}), InvalidInput);
-  BOOST_CHECK_THROW(with({.smallest = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(with({.absolute_scale = not_a_number}), InvalidInput);
   BOOST_CHECK_THROW(CvodeSteps(CvodeMethod::adams, circle, not_a_number, State<2>(1, 0)),
                     InvalidInput);
   BOOST_CHECK_THROW(CvodeSteps(CvodeMethod::adams, circle, 0.0, State<2>(not_a_number, 0)),
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(
       CvodeSteps(CvodeMethod::adams, circle, 0.0, State<2>(1, 0), Accuracy{}, std::array{1}),
       InvalidInput);
-  CvodeSteps few(CvodeMethod::adams, circle, 0.0, State<2>(1, 0), {.most_evaluations = 100});
+  CvodeSteps few(CvodeMethod::adams, circle, 0.0, State<2>(1, 0), {.max_evaluations = 100});
   BOOST_CHECK_THROW(few.advance_to(not_a_number), InvalidInput);
   BOOST_CHECK_THROW(few.advance_to(1e6), ComputationFailed);
   BOOST_TEST((few.advance_to(few.t()) - on_the_circle(few.t())).norm() < 1e-9);

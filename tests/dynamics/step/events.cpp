@@ -20,14 +20,14 @@ constexpr double pi = std::numbers::pi;
 
 State circle(double /*t*/, const State& y) { return {-y[1], y[0]}; }
 
-auto turning() { return ExplicitSteps(circle, 0.0, State(1, 0)); }
+auto turning() { return ExplicitRungeKutta(circle, 0.0, State(1, 0)); }
 
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(dense_output)
 
 BOOST_AUTO_TEST_CASE(is_of_full_order_within_a_step) {
-  ExplicitSteps steps(circle, 0.0, State(1, 0), {.relative = 1e-12});
+  ExplicitRungeKutta steps(circle, 0.0, State(1, 0), {.relative = 1e-12});
   double worst = 0;
   while (steps.t() < 10) {
     const double from = steps.t();
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_SUITE(jumps_of_the_field)
 BOOST_AUTO_TEST_CASE(cost_nothing_when_announced) {
   const auto thrust = [](double t, const State& y) { return State(y[1], t < 1 ? 0 : std::cos(t)); };
   const auto run = [&](bool told) {
-    ExplicitSteps steps(thrust, 0.0, State(0, 0), {.relative = 1e-12});
+    ExplicitRungeKutta steps(thrust, 0.0, State(0, 0), {.relative = 1e-12});
     if (told) steps.stop_at({5, 1, -2});
     steps.advance_to(3);
     const double exact = -std::cos(3) + std::cos(1) - 2 * std::sin(1);
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(are_not_stepped_over) {
   const auto pulse = [](double t, const State& y) {
     return State(y[1], t >= 50 && t < 50.001 ? 1000 : 0);
   };
-  ExplicitSteps steps(pulse, 0.0, State(0, 1));
+  ExplicitRungeKutta steps(pulse, 0.0, State(0, 1));
   steps.stop_at({50, 50.001});
   steps.advance_to(100);
   BOOST_TEST(near(steps.y()[1], 1 + 1000 * (50.001 - 50), 2.0, 8));
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(are_not_stepped_over) {
 
 BOOST_AUTO_TEST_CASE(are_stopped_at_on_the_way_back) {
   const auto thrust = [](double t, const State& y) { return State(y[1], t <= 1 ? 0 : 1); };
-  ExplicitSteps steps(thrust, 3.0, State(2, 2));
+  ExplicitRungeKutta steps(thrust, 3.0, State(2, 2));
   steps.stop_at({1});
   steps.advance_to(0);
   BOOST_TEST(near(steps.y()[0], 0.0, 2.0, 64));
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(do_not_count_the_start) {
 // Two crossings in one step of a polynomial, which steps as far as it likes.
 BOOST_AUTO_TEST_CASE(are_both_found_in_one_step) {
   const auto clock = [](double, const State&) { return State(1, 0); };
-  ExplicitSteps steps(clock, 0.0, State(0, 0));
+  ExplicitRungeKutta steps(clock, 0.0, State(0, 0));
   const auto g = [](double, const State& y) { return (y[0] - 0.3) * (y[0] - 0.9); };
   BOOST_TEST(near(*advance_to_event(steps, g, 2), 0.3, 1.0, 16));
   BOOST_TEST(near(*advance_to_event(steps, g, 2), 0.9, 1.0, 16));
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(are_both_found_in_one_step) {
 }
 
 BOOST_AUTO_TEST_CASE(are_found_backwards) {
-  ExplicitSteps steps(circle, 10.0, State(std::cos(10), std::sin(10)));
+  ExplicitRungeKutta steps(circle, 10.0, State(std::cos(10), std::sin(10)));
   const auto height = [](double, const State& y) { return y[1]; };
   BOOST_TEST(near(*advance_to_event(steps, height, 0), 3 * pi, 10.0, 64));
 }

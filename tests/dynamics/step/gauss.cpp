@@ -97,7 +97,7 @@ double observed_order(long double amplitude, double coarse) {
   using Wide = State<2, long double>;
   const auto swing = [](long double, const Wide& y) { return Wide(y[1], -std::sin(y[0])); };
   const auto run = [&]<int s>(double step) {
-    GaussSteps<Wide, decltype(swing), s> steps(swing, 0, Wide(amplitude, 0), step);
+    GaussIRK<Wide, decltype(swing), s> steps(swing, 0, Wide(amplitude, 0), step);
     return steps.advance_to(12);
   };
   const Wide best = run.template operator()<8>(0.05);
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(keep_energy_and_phase_over_many_swings) {
   double worst_energy = 0;
   double worst_phase = 0;
   for (const double amplitude : {0.1, 0.4, 1.0, 1.7}) {
-    GaussSteps steps(pendulum, 0.0, State<2>(amplitude, 0), 0.12);
+    GaussIRK steps(pendulum, 0.0, State<2>(amplitude, 0), 0.12);
     const Drift d = drift(steps, pendulum, amplitude, 300);
     BOOST_TEST_MESSAGE("Gauss 16, amplitude " << amplitude << ": phase " << d.phase << ", energy "
                                               << d.energy << " for " << d.evaluations);
@@ -137,9 +137,10 @@ BOOST_AUTO_TEST_CASE(keep_energy_and_phase_over_many_swings) {
 // by ten times as much after a fifth of the time.
 BOOST_AUTO_TEST_CASE(beat_the_explicit_steps_over_10000_swings) {
   const Pendulum pendulum;
-  GaussSteps gauss(pendulum, 0.0, State<2>(0.1, 0), 0.236);
+  GaussIRK gauss(pendulum, 0.0, State<2>(0.1, 0), 0.236);
   const Drift implicit = drift(gauss, pendulum, 0.1, 10000);
-  ExplicitSteps verner(pendulum, 0.0, State<2>(0.1, 0), {.relative = 1e-15, .smallest = 0});
+  ExplicitRungeKutta verner(pendulum, 0.0, State<2>(0.1, 0),
+                            {.relative = 1e-15, .absolute_scale = 0});
   const Drift explicit_ = drift(verner, pendulum, 0.1, 2000);
   BOOST_TEST_MESSAGE("Gauss 16, 10000 swings: phase " << implicit.phase << ", energy "
                                                       << implicit.energy << " for "
@@ -155,7 +156,7 @@ BOOST_AUTO_TEST_CASE(beat_the_explicit_steps_over_10000_swings) {
 
 BOOST_AUTO_TEST_CASE(go_there_and_back) {
   const Pendulum pendulum;
-  GaussSteps steps(pendulum, 0.0, State<2>(1, 0), 0.1);
+  GaussIRK steps(pendulum, 0.0, State<2>(1, 0), 0.1);
   steps.advance_to(1000);
   steps.advance_to(0);
   BOOST_TEST(near(steps.y()[0], 1.0, 1.0, 10000));
@@ -165,7 +166,7 @@ BOOST_AUTO_TEST_CASE(go_there_and_back) {
 // 20000 additions of 0.1 in plain double are off by 1e-10: neither the sum nor the clock may be.
 BOOST_AUTO_TEST_CASE(add_up_state_and_time_without_loss) {
   const auto field = [](double t, const State<2>&) { return State<2>(1, 2 * t); };
-  GaussSteps steps(field, 0.0, State<2>(0, 0), 0.1);
+  GaussIRK steps(field, 0.0, State<2>(0, 0), 0.1);
   steps.advance_to(2000);
   BOOST_TEST(near(steps.y()[0], 2000.0, 2000.0, 2));
   BOOST_TEST(near(steps.y()[1], 4e6, 4e6, 4));
@@ -173,14 +174,14 @@ BOOST_AUTO_TEST_CASE(add_up_state_and_time_without_loss) {
 
 BOOST_AUTO_TEST_CASE(take_time_into_account) {
   const auto field = [](double t, const State<1>& y) { return State<1>(-2 * t * y[0]); };
-  GaussSteps steps(field, -2.0, State<1>(std::exp(-4)), 0.1);
+  GaussIRK steps(field, -2.0, State<1>(std::exp(-4)), 0.1);
   for (int i = -19; i <= 20; ++i) steps.advance_to(0.1 * i);
   BOOST_TEST(near(steps.y()[0], std::exp(-4), 1.0, 20));
   BOOST_TEST(steps.effort().steps == 40);
 }
 
 BOOST_AUTO_TEST_CASE(take_equal_steps_no_longer_than_asked) {
-  GaussSteps steps(circle, 0.0, State<2>(1, 0), 0.3);
+  GaussIRK steps(circle, 0.0, State<2>(1, 0), 0.3);
   steps.advance_to(1);
   BOOST_TEST(steps.effort().steps == 4);
   steps.advance_to(1);
@@ -193,7 +194,7 @@ BOOST_AUTO_TEST_CASE(take_equal_steps_no_longer_than_asked) {
 }
 
 BOOST_AUTO_TEST_CASE(stop_where_the_stages_do_not_converge) {
-  GaussSteps wide(circle, 0.0, State<2>(1, 0), 50);
+  GaussIRK wide(circle, 0.0, State<2>(1, 0), 50);
   BOOST_CHECK_THROW(wide.advance_to(50), ComputationFailed);
   BOOST_TEST(wide.t() == 0);
   BOOST_TEST(wide.y() == State<2>(1, 0));
@@ -201,7 +202,7 @@ BOOST_AUTO_TEST_CASE(stop_where_the_stages_do_not_converge) {
   const auto ends = [](double t, const State<2>& y) {
     return t > 1 ? State<2>(not_a_number, not_a_number) : circle(t, y);
   };
-  GaussSteps steps(ends, 0.0, State<2>(1, 0), 0.125);
+  GaussIRK steps(ends, 0.0, State<2>(1, 0), 0.125);
   BOOST_CHECK_EXCEPTION(steps.advance_to(2), ComputationFailed, [](const ComputationFailed& e) {
     return std::string(e.what()).find("integration stopped at t = 1 s: ") == 0;
   });
@@ -212,21 +213,21 @@ BOOST_AUTO_TEST_CASE(stop_where_the_stages_do_not_converge) {
 
 BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   const auto with = [](double t, double y, double step) {
-    return GaussSteps(circle, t, State<2>(y, 0), step);
+    return GaussIRK(circle, t, State<2>(y, 0), step);
   };
   BOOST_CHECK_THROW(with(not_a_number, 1, 0.1), InvalidInput);
   BOOST_CHECK_THROW(with(0, not_a_number, 0.1), InvalidInput);
   BOOST_CHECK_THROW(with(0, 1, not_a_number), InvalidInput);
   BOOST_CHECK_THROW(with(0, 1, 0), InvalidInput);
   BOOST_CHECK_THROW(with(0, 1, -0.1), InvalidInput);
-  BOOST_CHECK_THROW(GaussSteps(circle, 0.0, State<2>(1, 0), 0.1, std::array{3}), InvalidInput);
+  BOOST_CHECK_THROW(GaussIRK(circle, 0.0, State<2>(1, 0), 0.1, std::array{3}), InvalidInput);
   BOOST_CHECK_THROW(with(0, 1, 0.1).advance_to(not_a_number), InvalidInput);
   BOOST_CHECK_THROW(with(0, 1, 1e-300).advance_to(1), ComputationFailed);
   BOOST_CHECK_THROW(with(1e16, 1, 0.1).advance_to(1e16 + 100), ComputationFailed);
 }
 
 BOOST_AUTO_TEST_CASE(give_up_when_told) {
-  GaussSteps steps(circle, 0.0, State<2>(1, 0), 0.125);
+  GaussIRK steps(circle, 0.0, State<2>(1, 0), 0.125);
   steps.give_up_after(1000);
   BOOST_CHECK_THROW(steps.advance_to(1e9), ComputationFailed);
   BOOST_TEST(steps.effort().evaluations < 1300);

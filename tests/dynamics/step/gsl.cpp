@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
   };
   GslSteps steps(GslMethod::rk8pd, field, 0.0, State<4>(1, 0, 1e-9, 0),
-                 {.relative = 1e-12, .smallest = 0}, std::array<int, 2>{2, 2});
+                 {.relative = 1e-12, .absolute_scale = 0}, std::array<int, 2>{2, 2});
   steps.advance_to(2 * std::numbers::pi);
   BOOST_TEST(near(steps.y()[2], 1e-9, 1e-9, 1e6));
 }
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size_with_several_steps_too) 
   };
   const auto error = [&](GslMethod method, const auto& blocks) {
     GslSteps steps(method, field, forward_jacobian<4>(field), 0.0, State<4>(1, 0, 1e-9, 0),
-                   {.relative = 1e-6, .smallest = 0}, blocks);
+                   {.relative = 1e-6, .absolute_scale = 0}, blocks);
     steps.advance_to(2 * std::numbers::pi);
     return (steps.y().template tail<2>() / 1e-9 - State<2>(1, 0)).norm();
   };
@@ -218,8 +218,8 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(with({.relative = 1e-17}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = not_a_number}), InvalidInput);
   BOOST_CHECK_THROW(with({.relative = 0.1}), InvalidInput);
-  BOOST_CHECK_THROW(with({.smallest = not_a_number}), InvalidInput);
-  BOOST_CHECK_THROW(with({.most_evaluations = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(with({.absolute_scale = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(with({.max_evaluations = not_a_number}), InvalidInput);
   BOOST_CHECK_THROW(GslSteps(static_cast<GslMethod>(9), circle, 0.0, State<2>(1, 0)), InvalidInput);
   BOOST_CHECK_EXCEPTION(
       GslSteps(GslMethod::bsimp, circle, 0.0, State<2>(1, 0)), InvalidInput,
@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(
       GslSteps(GslMethod::rkf45, circle, 0.0, State<2>(1, 0), Accuracy{}, std::array{1}),
       InvalidInput);
-  GslSteps few(GslMethod::rkf45, circle, 0.0, State<2>(1, 0), {.most_evaluations = 100});
+  GslSteps few(GslMethod::rkf45, circle, 0.0, State<2>(1, 0), {.max_evaluations = 100});
   BOOST_CHECK_THROW(few.advance_to(not_a_number), InvalidInput);
   BOOST_CHECK_THROW(few.advance_to(1e6), ComputationFailed);
   BOOST_TEST((few.y() - on_the_circle(few.t())).norm() < 1e-12);

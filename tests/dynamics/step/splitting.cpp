@@ -6,7 +6,7 @@
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
 #include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/step/splitting.hpp>
 
 #include <support/near.hpp>
@@ -74,7 +74,7 @@ Work work(const char* name, const Top& top, double step) {
 
 Work work_of_verner(const Top& top, double tolerance) {
   const EulerTop scene({top.A, top.A, top.C}, {0, 0, top.weight_moment});
-  Advance run(scene, 0, {top.attitude, {0, 0, top.spin}}, {.relative = tolerance});
+  Integrator run(scene, 0, {top.attitude, {0, 0, top.spin}}, {.relative = tolerance});
   const Work work{angle(run.to(top.end).attitude, top.exact().attitude), run.effort().evaluations};
   BOOST_TEST_MESSAGE("Verner98, " << top.spin << " rad/s, tolerance " << tolerance << ": "
                                   << work.error << " rad for " << work.evaluations);
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(take_a_flow_of_the_users) {
                                                           0, top.attitude, {1, 2, 300}, 2.5e-3);
   steps.advance_to(1);
   const EulerTop scene(moments, {0, 0, 0.049});
-  Advance run(scene, 0, {top.attitude, {1, 2, 300}}, {.relative = 1e-15});
+  Integrator run(scene, 0, {top.attitude, {1, 2, 300}}, {.relative = 1e-15});
   const double error = angle(steps.attitude(), run.to(1).attitude);
   BOOST_TEST_MESSAGE("asymmetric: " << error << " rad for " << steps.effort().evaluations
                                     << " torques, Verner98 " << run.effort().evaluations);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/checkpoint.hpp>
 #include <dynamics/step/events.hpp>
 #include <dynamics/step/taylor.hpp>
 
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(ends_steps_where_the_field_jumps) {
 
 // What rests needs one step, whatever the way; a way of no length needs none.
 BOOST_AUTO_TEST_CASE(takes_no_more_steps_than_needed) {
-  TaylorSteps steps(Circle{}, 0, Vector(0, 0), {.smallest = 0});
+  TaylorSteps steps(Circle{}, 0, Vector(0, 0), {.absolute_scale = 0});
   BOOST_TEST(steps.advance_to(1e9).isZero(0));
   BOOST_TEST(steps.effort().steps == 1);
   steps.advance_to(1e9);
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(takes_no_more_steps_than_needed) {
 // A state of 1e-200 among units of 1, and one at the upper end of the range.
 BOOST_AUTO_TEST_CASE(does_not_mind_the_size_of_the_state) {
   for (const double size : {1e-200, 1e200}) {
-    TaylorSteps steps(Circle{}, 0, Vector(size, 0), {.smallest = 0});
+    TaylorSteps steps(Circle{}, 0, Vector(size, 0), {.absolute_scale = 0});
     BOOST_TEST(
         near(Vector(steps.advance_to(6) / size), Vector(std::cos(6), -std::sin(6)), 1.0, 20));
   }
@@ -184,10 +184,10 @@ BOOST_AUTO_TEST_CASE(goes_back_within_a_step) {
 BOOST_AUTO_TEST_CASE(goes_on_from_a_bookmark_to_the_last_bit) {
   TaylorSteps whole(Circle{}, 0, Vector(1, 0));
   for (int i = 0; i < 5; ++i) whole.step_towards(100);
-  detail::Bookmark taken;
+  detail::Checkpoint taken;
   whole.pass(taken);
   TaylorSteps resumed(Circle{}, 0, Vector(1, 0));
-  detail::Bookmark set(taken.numbers());
+  detail::Checkpoint set(taken.numbers());
   resumed.pass(set);
   set.finish();
   BOOST_TEST(resumed.at(resumed.t() - 0.01) == whole.at(whole.t() - 0.01));
@@ -225,7 +225,7 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_none) {
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.relative = 1e-21}), InvalidInput);
   TaylorSteps steps(Circle{}, 0, y);
   BOOST_CHECK_THROW(steps.advance_to(not_a_number), InvalidInput);
-  TaylorSteps few(Circle{}, 0, y, {.most_evaluations = 100});
+  TaylorSteps few(Circle{}, 0, y, {.max_evaluations = 100});
   BOOST_CHECK_THROW(few.advance_to(1000), ComputationFailed);
   TaylorSteps infinite(Pole{}, 0, Vector(1e200, 0));
   BOOST_CHECK_THROW(infinite.advance_to(1), ComputationFailed);

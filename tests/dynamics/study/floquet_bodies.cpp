@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include <dynamics/guide/resting.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 using namespace kreisel;
 
@@ -20,7 +20,7 @@ const double period = 2 * std::numbers::pi / speed;
 /// A couple about x that swings as time goes.
 struct Drive {
   template <class N>
-  [[nodiscard]] Force<Body, N> operator()(const Situation<N>& s) const {
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     using std::cos;
     Force<Body, N> result;
     result.value.moment.x() = N(0.3 * cos(N(speed * s.t)));

@@ -8,13 +8,13 @@
 #include <limits>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
+#include <dynamics/gimbal/foeppl.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/rigid/axisymmetric_body.hpp>
-#include <dynamics/gimbal/cardan_gyro_laws.hpp>
 #include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/gimbal/foeppl.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/spectrum.hpp>
@@ -161,10 +161,10 @@ BOOST_AUTO_TEST_CASE(are_asked_of_scenes_that_take_dual_numbers) {
   static_assert(Differentiable<EulerTop>);
   static_assert(Differentiable<AxisymmetricBody<RestingFrame<>>>);
   using Weight = UniformGravity<Guide>;
-  static_assert(Differentiable<HeldBody<RestingFrame<>, Weight>>);
+  static_assert(Differentiable<FixedPointBody<RestingFrame<>, Weight>>);
   static_assert(Differentiable<FreeBody<RotatingFrame<>, Weight>>);
-  const auto load = [](const Situation<>&) { return Force<Body>{}; };
-  static_assert(!Differentiable<HeldBody<RestingFrame<>, decltype(load)>>,
+  const auto load = [](const LoadContext<>&) { return Force<Body>{}; };
+  static_assert(!Differentiable<FixedPointBody<RestingFrame<>, decltype(load)>>,
                 "its load is of double: its users are told");
   BOOST_CHECK_THROW(Tangent(7, {4}), InvalidInput);
   BOOST_CHECK_THROW(Tangent(9, {0, 3}), InvalidInput);

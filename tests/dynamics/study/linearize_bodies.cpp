@@ -11,13 +11,13 @@
 
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
-#include <dynamics/tree/rotors_reference.hpp>
+#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/spectrum.hpp>
+#include <dynamics/tree/rotors_reference.hpp>
 
 #include <support/worst.hpp>
 
@@ -142,7 +142,8 @@ BOOST_AUTO_TEST_CASE(of_a_sleeping_top_have_its_limit) {
   const auto inertia =
       InertiaTensor<Body>::about_origin(m, {0, 0, arm}, Vector3<double>(A, A, C).asDiagonal());
   const EulerTop top({A, A, C}, {0, 0, k});
-  const HeldBody held(inertia, {0, 0, 0}, RestingFrame<>{}, UniformGravity<Guide>{{0, 0, -g}});
+  const FixedPointBody held(inertia, {0, 0, 0}, RestingFrame<>{},
+                            UniformGravity<Guide>{{0, 0, -g}});
   BodyDescription body;
   body.name = "top";
   body.joint.kind = JointKind::spherical;
@@ -181,7 +182,7 @@ BOOST_AUTO_TEST_CASE(of_a_pendulum_on_the_earth_turn_its_plane) {
   const double u = 7.292115e-5, latitude = 0.84;
   const RotatingFrame<> earth{{u * std::cos(latitude), 0, u * std::sin(latitude)}};
   const UniformGravity<Guide> weight{{0, 0, -9.81}};
-  const HeldBody held(pendulum, {0, 0, 0}, earth, weight);
+  const FixedPointBody held(pendulum, {0, 0, 0}, earth, weight);
   const auto rest = find_equilibrium(held, 0, held.to_vector({}));
   BOOST_TEST(rest.residual < 1e-14);
   const auto linear = linearize<Guide, Body>(held, 0, rest.state);
@@ -270,16 +271,18 @@ BOOST_AUTO_TEST_CASE(of_bodies_at_the_ends_of_what_is_known_of_their_guide) {
     return swing(t);
   };
   const Eigen::Quaterniond attitude(0.8, 0.1, -0.3, 0.2);
-  const HeldBody everywhere(pendulum, {0.4, 0, 0}, swing, UniformGravity<Guide>{{0, 0, -9.81}});
-  const HeldBody within(pendulum, {0.4, 0, 0}, known, UniformGravity<Guide>{{0, 0, -9.81}});
+  const FixedPointBody everywhere(pendulum, {0.4, 0, 0}, swing,
+                                  UniformGravity<Guide>{{0, 0, -9.81}});
+  const FixedPointBody within(pendulum, {0.4, 0, 0}, known, UniformGravity<Guide>{{0, 0, -9.81}});
   const auto y = within.to_vector({attitude, {1, -2, 0.5}});
   for (const double t : {0.0, 1.0, 2.0}) {
     const auto found = linearize<Guide, Body>(within, t, y).unsteadiness;
     const auto expected = linearize<Guide, Body>(everywhere, t, y).unsteadiness;
     BOOST_TEST((found - expected).norm() <= 1e-9 * expected.norm(), "at " << t << " s");
   }
-  const auto run = solve(HeldBody(pendulum, {0.4, 0, 0}, known, ViscousDrag<>{0, 100}),
-                         {attitude, {1, -2, 0.5}}, {.times = {2}, .method = Method::radau13});
+  const auto run =
+      solve(FixedPointBody(pendulum, {0.4, 0, 0}, known, ViscousDrag<>{0, 100}),
+            {attitude, {1, -2, 0.5}}, {.output_times = {2}, .method = Method::radau13});
   BOOST_TEST(run.report.tolerance_kept, run.report.message);
   BOOST_CHECK_THROW(((void)linearize<Guide, Body>(within, 2.1, y)), InvalidInput);
 }
@@ -350,7 +353,7 @@ BOOST_AUTO_TEST_CASE(of_a_load_that_takes_no_dual_numbers_are_refused) {
   body.name = "bob";
   body.joint.kind = JointKind::spherical;
   body.inertia = pendulum;
-  body.loads = {ViscousDrag<>{0.1}, [](const Situation<>& s) -> Force<Body> {
+  body.loads = {ViscousDrag<>{0.1}, [](const LoadContext<>& s) -> Force<Body> {
                   return {{{0, 0, 0}, -0.1 * s.V_rel.value.resultant}};
                 }};
   const BodySystem<RestingFrame<>> system({}, {body}, UniformGravity<Guide>{{0, 0, -9.81}});

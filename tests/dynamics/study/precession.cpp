@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/tree/rotors_reference.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 #include <dynamics/study/precession_gimbals.hpp>
+#include <dynamics/tree/rotors_reference.hpp>
 
 #include <support/sample.hpp>
 #include <support/worst.hpp>
@@ -51,7 +51,7 @@ template <class Gyro>
 double true_error(const Gyro& gyro, const typename Gyro::State& from, double relative,
                   const TechnicalMotion& motion) {
   const auto field = [&gyro](double t, const typename Gyro::Vector& y) { return gyro.rates(t, y); };
-  ExplicitSteps exact(field, 0.0, gyro.to_vector(from), {.relative = relative}, gyro.blocks);
+  ExplicitRungeKutta exact(field, 0.0, gyro.to_vector(from), {.relative = relative}, gyro.blocks);
   return true_error(
       exact, [](const auto& y) { return Eigen::Vector2d(y[0], y[1]); }, motion);
 }
@@ -223,7 +223,8 @@ BOOST_AUTO_TEST_CASE(have_a_bound_that_is_honest) {
     const auto field = [&](double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
       system.rates(t, y, rate, w);
     };
-    ExplicitSteps exact(field, 0.0, system.to_vector(s), {.relative = relative}, system.blocks());
+    ExplicitRungeKutta exact(field, 0.0, system.to_vector(s), {.relative = relative},
+                             system.blocks());
     const std::vector<int> angles = {0, 1, 3, 5, 6};
     const double error = true_error(
         exact, [&](const Eigen::VectorXd& y) { return Eigen::VectorXd(y(angles)); }, motion);

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/tree/rotors_reference.hpp>
 #include <dynamics/study/precession_admissibility.hpp>
 #include <dynamics/study/precession_bodies.hpp>
+#include <dynamics/tree/rotors_reference.hpp>
 
 #include <support/worst.hpp>
 

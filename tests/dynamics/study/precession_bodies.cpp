@@ -102,7 +102,7 @@ Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   const auto field = [&](double t, const VectorXd& y, VectorXd& rate) {
     system.rates(t, y, rate, w);
   };
-  ExplicitSteps exact(field, 0.0, system.to_vector(s), {.relative = 1e-12}, system.blocks());
+  ExplicitRungeKutta exact(field, 0.0, system.to_vector(s), {.relative = 1e-12}, system.blocks());
   double error = 0;
   for (const TechnicalSample& sample : motion.samples) {
     exact.advance_to(sample.t);
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(lead_a_free_craft_under_loads) {
 // What grows with the square of the velocity is no damping: D is -dQ/du at rest.
 BOOST_AUTO_TEST_CASE(take_the_damping_of_loads_at_rest) {
   const double k = 2;
-  const auto quadratic = [k](const Situation<>& s) -> Force<Body> {
+  const auto quadratic = [k](const LoadContext<>& s) -> Force<Body> {
     const V& v = s.V_rel.value.moment;
     return {{-k * v.norm() * v, V::Zero()}};
   };

@@ -13,13 +13,13 @@
 #include <variant>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/rigid/free_body.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/model/terms.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/step/explicit.hpp>
@@ -56,7 +56,7 @@ class Motion {
   [[nodiscard]] Vector at(double time) { return steps_.advance_to(time); }
 
  private:
-  ExplicitSteps<Vector, Rates<Vector>> steps_;
+  ExplicitRungeKutta<Vector, Rates<Vector>> steps_;
 };
 
 /// The greatest distance of a motion from one with something left out.
@@ -95,9 +95,9 @@ struct Tally {
 /// Prunes and compares: all that was left out together, and one quantity alone whether it was or
 /// not, if its effect is small enough to be called one.
 template <class Quantity, class Scene>
-void compare(const Scene& scene, const typename Scene::State& start, const Pruning& task,
+void compare(const Scene& scene, const typename Scene::State& start, const Pruning& options,
              Tally& tally) {
-  const auto pruned = prune(scene, start, task);
+  const auto pruned = prune(scene, start, options);
   double sum = 0;
   ++tally.scenes;
   for (const PrunedTerm& term : pruned.terms) {
@@ -105,16 +105,16 @@ void compare(const Scene& scene, const typename Scene::State& start, const Pruni
     tally.dropped += term.kept ? 0 : 1;
     sum += term.kept ? 0 : term.bound;
     if (term.name != Quantity::name || !(term.bound > 0 && term.bound < 0.1)) continue;
-    const auto less = scene.without(Quantity{}, 0, task.horizon);
-    const double off = distance(scene, rates_of(less), start, task.horizon);
+    const auto less = scene.without(Quantity{}, 0, options.horizon);
+    const double off = distance(scene, rates_of(less), start, options.horizon);
     tally.worst_alone = test::worst_of(tally.worst_alone, off / term.bound);
     BOOST_TEST(off <= term.bound);
   }
-  BOOST_TEST(sum <= task.tolerance);
-  BOOST_TEST(pruned.bound <= task.tolerance);
+  BOOST_TEST(sum <= options.tolerance);
+  BOOST_TEST(pruned.bound <= options.tolerance);
   if (pruned.bound == 0) return;
   const double off = std::visit(
-      [&](const auto& kind) { return distance(scene, rates_of(kind), start, task.horizon); },
+      [&](const auto& kind) { return distance(scene, rates_of(kind), start, options.horizon); },
       pruned.scene);
   BOOST_TEST(off <= pruned.bound);
   tally.worst = test::worst_of(tally.worst, off / pruned.bound);
@@ -173,8 +173,9 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_table) {
       const auto table = slow_table(sample);
       const UniformGravity<Guide> plumb{{0, 0, -9.81}};
       const HeldBodyState start{attitude(sample), sample.magnitude(-1, 1.3) * sample.direction()};
-      const Pruning task = random_task(sample);
-      compare<GuideRate>(HeldBody(body, sample.direction(), table, plumb), start, task, tally);
+      const Pruning options = random_task(sample);
+      compare<GuideRate>(FixedPointBody(body, sample.direction(), table, plumb), start, options,
+                         tally);
     }
   }
   tally.print("held on a table");
@@ -186,12 +187,12 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_swell) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
       test::Sample sample(1000 + seed);
       const auto body = nearly_straight(sample);
-      const Pruning task = random_task(sample);
-      const auto ship = swell(sample, task.horizon);
+      const Pruning options = random_task(sample);
+      const auto ship = swell(sample, options.horizon);
       const UniformGravity<Inertial> weight{{0, 0, -9.81}};
       const HeldBodyState start{attitude(sample), sample.magnitude(-1, 1) * sample.direction()};
-      compare<GuideUnsteadiness>(HeldBody(body, 0.3 * sample.direction(), ship, weight), start,
-                                 task, tally);
+      compare<GuideUnsteadiness>(FixedPointBody(body, 0.3 * sample.direction(), ship, weight),
+                                 start, options, tally);
     }
   }
   tally.print("held on a swell");
@@ -220,13 +221,13 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_under_weak_loads) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
       test::Sample sample(3000 + seed);
       const ViscousDrag<> drag{sample.magnitude(-12, -2), 0};
-      const HeldBody body(nearly_straight(sample), {0, 0, 0}, slow_table(sample),
-                          UniformGravity<Guide>{{0, 0, -9.81}}, drag);
+      const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, slow_table(sample),
+                                UniformGravity<Guide>{{0, 0, -9.81}}, drag);
       const HeldBodyState start{attitude(sample), sample.magnitude(-1, 1) * sample.direction()};
-      const Pruning task = random_task(sample);
-      const auto pruned = prune<LoadOf<ViscousDrag<>>, ProductsOfInertia>(body, start, task);
+      const Pruning options = random_task(sample);
+      const auto pruned = prune<LoadOf<ViscousDrag<>>, ProductsOfInertia>(body, start, options);
       const double off = std::visit(
-          [&](const auto& kind) { return distance(body, rates_of(kind), start, task.horizon); },
+          [&](const auto& kind) { return distance(body, rates_of(kind), start, options.horizon); },
           pruned.scene);
       ++tally.scenes;
       tally.terms += 2;
@@ -254,8 +255,8 @@ BOOST_AUTO_TEST_CASE(holds_for_cardan_gyros) {
       const CardanState start{sample.uniform(-1, 1),       sample.uniform(-0.8, 0.8),
                               sample.uniform(-1, 1),       0.1 * sample.uniform(-1, 1),
                               0.1 * sample.uniform(-1, 1), sample.magnitude(0, 1.5)};
-      const Pruning task = random_task(sample);
-      compare<RingInertia>(CardanGyro(moments, {}, slow_table(sample)), start, task, tally);
+      const Pruning options = random_task(sample);
+      compare<RingInertia>(CardanGyro(moments, {}, slow_table(sample)), start, options, tally);
     }
   }
   tally.print("Cardan gyros");
@@ -264,14 +265,14 @@ BOOST_AUTO_TEST_CASE(holds_for_cardan_gyros) {
 BOOST_AUTO_TEST_CASE(is_that_of_several_motions_together) {
   const RotatingFrame<> table{{0, 1e-6, 0}};
   test::Sample sample(7);
-  const HeldBody body(nearly_straight(sample), {0, 0, 0}, table);
+  const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, table);
   const std::vector<HeldBodyState> starts{{attitude(sample), {1, 0, 0}},
                                           {attitude(sample), {0, 5, 1}}};
-  const Pruning task{.tolerance = 1e-3, .horizon = 3};
-  const auto both = prune<GuideRate>(body, starts, task);
+  const Pruning options{.tolerance = 1e-3, .horizon = 3};
+  const auto both = prune<GuideRate>(body, starts, options);
   double greatest = 0;
   for (const auto& start : starts) {
-    greatest = test::worst_of(greatest, prune<GuideRate>(body, start, task).bound);
+    greatest = test::worst_of(greatest, prune<GuideRate>(body, start, options).bound);
   }
   BOOST_TEST(both.bound == greatest);
   BOOST_TEST(both.bound > 0);
@@ -288,7 +289,7 @@ BOOST_AUTO_TEST_CASE(is_solved_as_any_and_says_what_it_lacks) {
   const CardanState start{0.02, 0.2, 0, 1, 1, 500};
   const auto pruned = prune(gyro, start, {.tolerance = 1e-2, .horizon = 0.1});
   const auto solved = [&](const auto& scene) {
-    return solve(scene, start, {.times = {0.02, 0.04, 0.06, 0.08, 0.1}, .tolerance = 1e-10});
+    return solve(scene, start, {.output_times = {0.02, 0.04, 0.06, 0.08, 0.1}, .tolerance = 1e-10});
   };
   const auto run = std::visit(solved, pruned.scene);
   const auto whole = solved(gyro);
@@ -318,7 +319,7 @@ BOOST_AUTO_TEST_CASE(is_solved_as_any_and_says_what_it_lacks) {
 BOOST_AUTO_TEST_CASE(is_the_scene_itself_where_nothing_may_be_left_out) {
   const RotatingFrame<> table{{1, 2, 3}};
   test::Sample sample(3);
-  const HeldBody body(nearly_straight(sample), {0, 0, 0}, table);
+  const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, table);
   const auto pruned =
       prune(body, {attitude(sample), {1, 2, 3}}, {.tolerance = 1e-12, .horizon = 1});
   BOOST_TEST(pruned.scene.index() == 0U);
@@ -341,10 +342,10 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_cannot_do_without) {
 
 BOOST_AUTO_TEST_CASE(is_refused_for_what_is_no_task) {
   test::Sample sample(3);
-  const HeldBody body(nearly_straight(sample), {0, 0, 0}, RotatingFrame<>{{0, 0, 1e-5}});
+  const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, RotatingFrame<>{{0, 0, 1e-5}});
   const HeldBodyState start;
-  const auto refused = [&](const Pruning& task) {
-    BOOST_CHECK_THROW(static_cast<void>(prune<GuideRate>(body, start, task)), InvalidInput);
+  const auto refused = [&](const Pruning& options) {
+    BOOST_CHECK_THROW(static_cast<void>(prune<GuideRate>(body, start, options)), InvalidInput);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refused({.tolerance = 0, .horizon = 1});

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/guide/translating.hpp>
-#include <dynamics/gimbal/cardan_gyro.hpp>
-#include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/rigid/free_body.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/pendulum/pendulum.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
 
 #include <support/sample.hpp>
 #include <support/worst.hpp>
@@ -33,7 +33,7 @@ auto any_guide(const M& guide) {
 
 template <class L>
 auto any_load(const L& load) {
-  return [load](const Situation<>& s) { return load(s); };
+  return [load](const LoadContext<>& s) { return load(s); };
 }
 
 /// The rates of angles and places, and those of velocities, each of their greatest; accelerations
@@ -89,8 +89,8 @@ void agrees_on(const M& guide, test::Sample& sample) {
   const auto hidden = any_guide(guide);
   const auto compare = [&](const auto& body, const auto&... loads) {
     const auto y = held_state(sample);
-    const HeldBody pruned(body, point, guide, loads...);
-    const HeldBody general(body, point, hidden, any_load(loads)...);
+    const FixedPointBody pruned(body, point, guide, loads...);
+    const FixedPointBody general(body, point, hidden, any_load(loads)...);
     BOOST_TEST(difference(pruned.rates(t, y), general.rates(t, y)) <= limit);
     const auto z = free_state(sample);
     const FreeBody free(body, guide, loads...);
@@ -135,10 +135,11 @@ BOOST_DATA_TEST_CASE(changes_no_number_where_components_are_said_to_vanish, data
   const auto y = held_state(sample);
   const RotatingFrame<> earth{{-5e-5, 0, 5e-5}};
   const UniformGravity<Guide> down{{0, 0, -9.81}};
-  const HeldBody pruned(principal(-0.4), {0, 0, 0}, earth, down, Without<GuideRate, Axis::y>{},
-                        Without<FeltGravity, Axis::x, Axis::y>{}, Without<ProductsOfInertia>{},
-                        Without<FirstMoment, Axis::x, Axis::y>{});
-  const HeldBody general(principal(-0.4), {0, 0, 0}, any_guide(earth), any_load(down));
+  const FixedPointBody pruned(
+      principal(-0.4), {0, 0, 0}, earth, down, Without<GuideRate, Axis::y>{},
+      Without<FeltGravity, Axis::x, Axis::y>{}, Without<ProductsOfInertia>{},
+      Without<FirstMoment, Axis::x, Axis::y>{});
+  const FixedPointBody general(principal(-0.4), {0, 0, 0}, any_guide(earth), any_load(down));
   BOOST_TEST(difference(pruned.rates(0, y), general.rates(0, y)) <= limit);
 }
 
@@ -149,7 +150,7 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_top, data::xrange(25u), seed) {
   const UniformGravity<Guide> down{{0, 0, -9.81}};
   const auto& [m, s, T] = body.value;
   const EulerTop top({T.xx, T.yy, T.zz}, 9.81 * s);
-  const HeldBody general(body, {0, 0, 0}, any_guide(RestingFrame<>{}), any_load(down));
+  const FixedPointBody general(body, {0, 0, 0}, any_guide(RestingFrame<>{}), any_load(down));
   BOOST_TEST(difference(top.rates(0, y), general.rates(0, y)) <= limit);
 }
 
@@ -210,7 +211,7 @@ BOOST_AUTO_TEST_CASE(refuses_to_leave_out_what_is_there) {
   const RotatingFrame<> table{{0.1, 0.2, 0.3}};
   const UniformGravity<Guide> slanting{{1, 0, -9.81}};
   const auto held = [&](const InertiaTensor<Body>& T, const auto&... parts) {
-    return HeldBody(T, {0, 0, 0}, table, slanting, parts...);
+    return FixedPointBody(T, {0, 0, 0}, table, slanting, parts...);
   };
   test::Sample sample(1);
   const auto any = lopsided(sample);

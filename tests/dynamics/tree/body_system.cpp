@@ -16,8 +16,8 @@
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/tree/body_system.hpp>
-#include <dynamics/step/advance.hpp>
 
 #include <support/cast.hpp>
 #include <support/kinematics.hpp>
@@ -522,7 +522,7 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> run(const System& system, const Eige
     result.head(states) = rates;
     result.tail(integrals) = power(t, state, w);
   };
-  ExplicitSteps steps(field, 0.0, y, {.relative = 1e-14});
+  ExplicitRungeKutta steps(field, 0.0, y, {.relative = 1e-14});
   steps.advance_to(end);
   return {steps.y().head(states), steps.y().tail(integrals)};
 }
@@ -586,7 +586,7 @@ void check_balances(const M& guide, const std::vector<BodyDescription>& bodies,
   JointReactions r;
   const auto power = [&](double t, const Eigen::VectorXd& state, BodyWorkspace& w) {
     system.reactions(t, state, r, w);
-    const Situation<> s = system.situation(t, state, 0, w);
+    const LoadContext<> s = system.situation(t, state, 0, w);
     const FrameMotion<Guide, Inertial>& G = s.guide;
     const Motor<> R = s.X.value * r.on_body[0].value;  // on guide axes, about its origin
     Eigen::VectorXd result(7);
@@ -600,7 +600,7 @@ void check_balances(const M& guide, const std::vector<BodyDescription>& bodies,
     const Pose<> X = G.X.value;
     Motor<> P = X * R;
     for (int i = 0; i < system.body_count(); ++i) {
-      const Situation<> b = system.situation(t, state, i, w);
+      const LoadContext<> b = system.situation(t, state, i, w);
       const double m = b.inertia.value.mass;
       const Vector3<double> centre = b.template place<Inertial>(b.centre());
       P += {m * g, centre.cross(m * g)};
@@ -664,7 +664,7 @@ BOOST_AUTO_TEST_CASE(close_their_balances_on_a_moving_guide) {
   check_balances(rolling(), row(), {0, 0, -9.81}, 5);
 }
 
-// Advance knows neither the size nor the blocks of a system before it has one.
+// Integrator knows neither the size nor the blocks of a system before it has one.
 BOOST_AUTO_TEST_CASE(move_as_states_of_fixed_size_do) {
   const BodySystem system(rolling(), row(), UniformGravity<Inertial>{{0, 0, -9.81}});
   using System = std::decay_t<decltype(system)>;
@@ -676,8 +676,8 @@ BOOST_AUTO_TEST_CASE(move_as_states_of_fixed_size_do) {
     system.rates(t, state, rates, w);
     return Fixed(rates);
   };
-  ExplicitSteps fixed(field, 0.0, Fixed(y), {.relative = 1e-12}, system.blocks());
-  Advance run(system, 0, system.from_vector(y), {.relative = 1e-12});
+  ExplicitRungeKutta fixed(field, 0.0, Fixed(y), {.relative = 1e-12}, system.blocks());
+  Integrator run(system, 0, system.from_vector(y), {.relative = 1e-12});
   const auto compare = [](const System::State& state, const Fixed& truth) {
     const double off = (System::to_vector(state) - truth).norm() / truth.norm();
     BOOST_TEST_MESSAGE("off by " << off);
@@ -720,7 +720,7 @@ BOOST_AUTO_TEST_CASE(may_be_asked_by_several_threads) {
 
 BOOST_AUTO_TEST_CASE(may_have_nothing_that_moves) {
   const auto system = resting({described("block", "guide", {}, some_body())});
-  Advance run(system, 0, system.rest());
+  Integrator run(system, 0, system.rest());
   BOOST_TEST(run.to(1).rates.size() == 0);
 }
 

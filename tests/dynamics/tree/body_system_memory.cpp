@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/tree/body_system.hpp>
-#include <dynamics/step/advance.hpp>
 
 #include <support/heap.hpp>
 
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(needs_memory_in_proportion_to_its_bodies) {
 // A step asks for nothing; what is given back is a State of two vectors.
 BOOST_AUTO_TEST_CASE(is_integrated_without_memory_for_the_steps) {
   const auto system = chain(6);
-  Advance run(system, 0, system.rest(), {.relative = 1e-10});
+  Integrator run(system, 0, system.rest(), {.relative = 1e-10});
   const auto requests_to = [&run](double t) {
     const std::size_t before = requests;
     const auto state = run.to(t);
@@ -117,8 +117,8 @@ BOOST_AUTO_TEST_CASE(is_read_between_steps_without_memory) {
   const auto field = [&](double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
     system.rates(t, y, rate, w);
   };
-  ExplicitSteps steps(field, 0.0, system.to_vector(system.rest()), {.relative = 1e-10},
-                      system.blocks());
+  ExplicitRungeKutta steps(field, 0.0, system.to_vector(system.rest()), {.relative = 1e-10},
+                           system.blocks());
   steps.step_towards(1);
   Eigen::VectorXd y = steps.y();
   const std::size_t before = requests;

@@ -300,7 +300,7 @@ struct PointLoad {
 struct Drag {
   double k, d, c;
 
-  Force<Body> operator()(const Situation<>& s) const {
+  Force<Body> operator()(const LoadContext<>& s) const {
     return {
         {-k * s.V_rel.value.moment - c * (s.X.value.rotation.transpose() * s.X.value.translation),
          -d * s.V_rel.value.resultant}};
@@ -611,7 +611,7 @@ BOOST_AUTO_TEST_CASE(balances_every_body) {
       double size = 1;
       for (int i = 0; i < system.body_count(); ++i) {
         const auto b = std::size_t(i);
-        const Situation<> s = system.situation(0, random.y, i, w);
+        const LoadContext<> s = system.situation(0, random.y, i, w);
         given[b] += r.on_body[b].value;
         size =
             std::max(size, r.on_body[b].value.moment.norm() + r.on_body[b].value.resultant.norm());
@@ -624,7 +624,7 @@ BOOST_AUTO_TEST_CASE(balances_every_body) {
         }
         if (joints.parent[b] >= 0) {
           const auto p = std::size_t(joints.parent[b]);
-          const Situation<> above = system.situation(0, random.y, joints.parent[b], w);
+          const LoadContext<> above = system.situation(0, random.y, joints.parent[b], w);
           given[p] -= ((above.X.inverse() * s.X).value * r.on_body[b].value);
         }
       }

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/gimbal/cardan_parts.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/tree/body_system.hpp>
-#include <dynamics/gimbal/cardan_parts.hpp>
-#include <dynamics/rigid/free_body.hpp>
-#include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/load/load.hpp>
-#include <dynamics/step/advance.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/step/integrator.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/random_tree.hpp>
 
@@ -42,7 +42,7 @@ bool has(const Names& all, const std::string& name) {
 /// Steps held to 1e-12 drift by some 1e-10 of what is exchanged, here of the order of 1 to 100.
 template <class Scene>
 void check_kept(const Scene& scene, const typename Scene::State& start, const std::string& what) {
-  Advance run(scene, 0, start, {.relative = 1e-12});
+  Integrator run(scene, 0, start, {.relative = 1e-12});
   const auto before = scene.conserved(0, start);
   for (const double t : {0.3, 0.7, 1.0}) {
     const auto after = scene.conserved(t, run.to(t));
@@ -84,10 +84,10 @@ std::pair<bool, bool> list_energy(const L& load) {
 struct Tide {
   static constexpr bool ignores_guide = true;
 
-  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const {
+  [[nodiscard]] Force<Body> operator()(const LoadContext<>& s) const {
     return {{s.on_body_axes<Guide>({0, 0, std::sin(s.t)}), {0, 0, 0}}};
   }
-  [[nodiscard]] double potential(const Situation<>& s) const {
+  [[nodiscard]] double potential(const LoadContext<>& s) const {
     return -std::sin(s.t) * s.place<Guide>({0, 0, 0}).z();
   }
 };
@@ -266,18 +266,20 @@ BOOST_AUTO_TEST_CASE(of_single_bodies_likewise) {
     BOOST_TEST(names(scene, start) == wanted, boost::test_tools::per_element());
   };
   const FreeBody<RestingFrame<>>::State flying{.velocity = {{{1, -2, 3}, {0.5, 0, 1}}}};
-  const HeldBody<RestingFrame<>>::State turning{.angular_velocity = {1, -2, 3}};
+  const FixedPointBody<RestingFrame<>>::State turning{.angular_velocity = {1, -2, 3}};
   expect(FreeBody(body(), RestingFrame<>{}), flying, linear);
   const auto& state = flying.velocity;
   const FreeBody heavy(body(), RestingFrame<>{}, UniformGravity<Guide>{{0, 3, 0}});
   expect(heavy, decltype(heavy)::State{.velocity = state},
          {"energy", "momentum x", "momentum z", "angular momentum along gravity"});
-  expect(HeldBody(body(), {1, 2, 3}, RestingFrame<>{}), turning,
+  expect(FixedPointBody(body(), {1, 2, 3}, RestingFrame<>{}), turning,
          {"energy", "angular momentum x", "angular momentum y", "angular momentum z"});
-  const HeldBody top(body(), {1, 2, 3}, RestingFrame<>{}, UniformGravity<Inertial>{{1, 3, 0}});
+  const FixedPointBody top(body(), {1, 2, 3}, RestingFrame<>{},
+                           UniformGravity<Inertial>{{1, 3, 0}});
   expect(top, decltype(top)::State{.angular_velocity = {1, -2, 3}},
          {"energy", "angular momentum along gravity"});
-  const HeldBody spinner(body(), {1, 2, 3}, RestingFrame<>{}, Spring<>{{0, 0, 5}, {0, 0, 1}, 3});
+  const FixedPointBody spinner(body(), {1, 2, 3}, RestingFrame<>{},
+                               Spring<>{{0, 0, 5}, {0, 0, 1}, 3});
   BOOST_TEST(names(spinner, {}) == Names{"energy"}, boost::test_tools::per_element());
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/step/explicit.hpp>
 #include <dynamics/tree/rotor_matrices.hpp>
 #include <dynamics/tree/rotors_reference.hpp>
-#include <dynamics/step/explicit.hpp>
 
 #include <support/worst.hpp>
 
@@ -240,8 +240,8 @@ BOOST_AUTO_TEST_CASE(leave_rows_1_to_3_of_the_paper_wrong) {
         system.accelerations(t, y, push, dv, w);
         rate.tail(dv.size()) = dv;
       };
-      ExplicitSteps steps(field, 0.0, system.to_vector(s), {.relative = plain ? 1e-10 : 1e-13},
-                          system.blocks());
+      ExplicitRungeKutta steps(field, 0.0, system.to_vector(s), {.relative = plain ? 1e-10 : 1e-13},
+                               system.blocks());
       double worst = 0;
       double apart = 0;
       for (const Json& row :

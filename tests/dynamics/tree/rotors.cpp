@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/solve/solve.hpp>
+#include <dynamics/step/integrator.hpp>
 #include <dynamics/tree/body_system.hpp>
 #include <dynamics/tree/rotors_reference.hpp>
-#include <dynamics/solve/solve.hpp>
-#include <dynamics/step/advance.hpp>
 
 #include <support/worst.hpp>
 
@@ -90,7 +90,7 @@ Worst compare(const System& system, Root root, const std::string& name) {
   const Json& results = trajectory(name)["results"];
   BodyWorkspace w = system.workspace();
   const Eigen::VectorXd start = state(root, results.at(0));
-  Advance run(system, 0, system.from_vector(start), {.relative = 1e-15});
+  Integrator run(system, 0, system.from_vector(start), {.relative = 1e-15});
   for (const Json& row : results) {
     const double t = number(row["t"]);
     const Eigen::VectorXd y = state(root, row);
@@ -248,7 +248,7 @@ BOOST_AUTO_TEST_CASE(swings_between_springs_as_the_reference_does) {
   BodyWorkspace w = system.workspace();
   Eigen::VectorXd y(6);
   y << 0.2, -0.1, 0, 0, 0, 1000;
-  Advance run(system, 0, system.from_vector(y), {.relative = 1e-15});
+  Integrator run(system, 0, system.from_vector(y), {.relative = 1e-15});
   for (const Json& row : json["exact"]) {
     const double t = number(row["t"]);
     const auto found = run.to(t);
@@ -274,7 +274,7 @@ BOOST_AUTO_TEST_CASE(needs_no_more_evaluations_however_fast_it_turns) {
     auto start = system.rest();
     start.coordinates << 0.2, -0.1, 0;
     start.rates << 0, 0, rate;
-    const auto run = solve(system, start, {.times = {end}, .tolerance = 1e-9});
+    const auto run = solve(system, start, {.output_times = {end}, .tolerance = 1e-9});
     BOOST_TEST(run.report.tolerance_kept);
     BOOST_TEST(run.report.method == "taylor");
     return run.report.all_evaluations;
@@ -338,7 +338,7 @@ BOOST_AUTO_TEST_CASE(follows_the_speed_it_is_asked_for) {
   const auto system = resting(bodies, UniformGravity<Guide>{{0, -9, 2}});
   auto state = system.rest();
   state.rates << 0.5, 100;
-  Advance run(system, 0, state, {.relative = 1e-13});
+  Integrator run(system, 0, state, {.relative = 1e-13});
   const auto end = run.to(1.5);
   BOOST_TEST(std::abs(end.rates[1] - (100 + 5 * std::sin(12.0))) <= 1e-10);
   BOOST_TEST(std::abs(end.coordinates[1] - (150 + 0.625 * (1 - std::cos(12.0)))) <= 1e-10);
@@ -361,7 +361,7 @@ BOOST_AUTO_TEST_CASE(follows_the_speed_it_is_asked_for) {
 
 BOOST_AUTO_TEST_CASE(conserves_what_it_says) {
   const auto drift = [](const auto& system, const auto& start, double t) {
-    Advance run(system, 0, start, {.relative = 1e-14});
+    Integrator run(system, 0, start, {.relative = 1e-14});
     const auto before = system.conserved(0, start);
     const auto after = system.conserved(t, run.to(t));
     std::vector<std::string> names;

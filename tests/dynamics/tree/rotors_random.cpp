@@ -31,8 +31,8 @@ struct Attraction {
   static constexpr bool ignores_spin = true;
   UniformGravity<Inertial> field;
 
-  [[nodiscard]] Force<Body> operator()(const Situation<>& s) const { return field(s); }
-  [[nodiscard]] double potential(const Situation<>& s) const { return field.potential(s); }
+  [[nodiscard]] Force<Body> operator()(const LoadContext<>& s) const { return field(s); }
+  [[nodiscard]] double potential(const LoadContext<>& s) const { return field.potential(s); }
 };
 
 constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
@@ -238,8 +238,8 @@ BOOST_AUTO_TEST_CASE(is_the_tree_with_ordinary_bodies) {
                    size(n.relative_momentum.value) + size(n.momentum.value));
 
       for (int i = 0; i < a.body_count(); ++i) {
-        const Situation<> here = a.situation(0, y, i, w);
-        const Situation<> there = b.situation(0, y, i, v);
+        const LoadContext<> here = a.situation(0, y, i, w);
+        const LoadContext<> there = b.situation(0, y, i, v);
         place.note((here.X.value.rotation - there.X.value.rotation).norm() +
                        (here.X.value.translation - there.X.value.translation).norm(),
                    1 + there.X.value.translation.norm());

@@ -8,8 +8,8 @@
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/tree/body_system.hpp>
 #include <dynamics/pendulum/pendulum_series.hpp>
+#include <dynamics/tree/body_system.hpp>
 
 #include <support/random_tree.hpp>
 #include <support/sample.hpp>
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(is_not_known_of_what_changes_otherwise) {
   BOOST_TEST(knows({carrier}));
 
   BodyDescription loaded = carrier;
-  loaded.loads = {[](const Situation<>&) { return Force<Body>{}; }};
+  loaded.loads = {[](const LoadContext<>&) { return Force<Body>{}; }};
   BOOST_TEST(!knows({loaded}));
 
   BodyDescription beside = carrier;

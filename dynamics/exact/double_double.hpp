@@ -10,24 +10,24 @@ namespace kreisel::exact {
 /// Source : T. J. Dekker 1971, D. E. Knuth TAOCP 4.2.2: the rounding error of a sum and of a
 ///          product is itself a floating-point number
 /// Error  : some 2^-125 relative of each operation, of a sum relative to its terms
-struct Twofold {
+struct DoubleDouble {
   long double hi = 0;
   long double lo = 0;
 
-  Twofold(long double x) : hi(x) {}  // implicit: every number is one
-  Twofold(long double h, long double l) : hi(h + l), lo(l - (hi - h)) {}
+  DoubleDouble(long double x) : hi(x) {}  // implicit: every number is one
+  DoubleDouble(long double h, long double l) : hi(h + l), lo(l - (hi - h)) {}
 
-  friend Twofold operator-(const Twofold& a) { return {-a.hi, -a.lo}; }
+  friend DoubleDouble operator-(const DoubleDouble& a) { return {-a.hi, -a.lo}; }
 
-  friend Twofold operator+(const Twofold& a, const Twofold& b) {
+  friend DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
     const long double sum = a.hi + b.hi;
     const long double of_b = sum - a.hi;
     const long double error = (a.hi - (sum - of_b)) + (b.hi - of_b);
     return {sum, error + a.lo + b.lo};
   }
-  friend Twofold operator-(const Twofold& a, const Twofold& b) { return a + -b; }
+  friend DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
 
-  friend Twofold operator*(const Twofold& a, const Twofold& b) {
+  friend DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
     const long double product = a.hi * b.hi;
     const Halves p = halves(a.hi);
     const Halves q = halves(b.hi);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <motor/six_numbers.hpp>
+#include <motor/spatial_vector_order.hpp>
 
 using namespace kreisel;
 
@@ -14,7 +14,7 @@ using Six = SixNumbers<double>;
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(six_numbers)
+BOOST_AUTO_TEST_SUITE(spatial_vector_order)
 
 BOOST_AUTO_TEST_CASE(lie_as_other_libraries_have_them) {
   BOOST_TEST((velocity_numbers(V, Halves::angular_first) == Six(1, 2, 3, 4, 5, 6)));

@@ -15,13 +15,13 @@ namespace kreisel::detail {
 
 /// The numbers from which steps go on as if they had not stopped. Steps pass theirs to it in one
 /// order, whether it takes them down or sets them.
-class Bookmark {
+class Checkpoint {
  public:
   /// Takes down.
-  Bookmark() = default;
+  Checkpoint() = default;
 
   /// Sets.
-  explicit Bookmark(std::vector<double> numbers) : numbers_(std::move(numbers)), sets_(true) {}
+  explicit Checkpoint(std::vector<double> numbers) : numbers_(std::move(numbers)), sets_(true) {}
 
   [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
 
@@ -35,7 +35,7 @@ class Bookmark {
 
  private:
   static void require(bool fits) {
-    if (!fits) throw InvalidInput("the bookmark is not of this run");
+    if (!fits) throw InvalidInput("the checkpoint is not of this run");
   }
 
   void pass(double& x) {
@@ -85,12 +85,12 @@ class Bookmark {
     pass(sum.rest);
   }
 
-  void pass(Effort& effort) {
+  void pass(IntegrationStatistics& effort) {
     (*this)(effort.steps, effort.rejected, effort.evaluations, effort.jacobians);
   }
 
   template <class T>
-  requires requires(T& whole, Bookmark& bookmark) { whole.pass(bookmark); }
+  requires requires(T& whole, Checkpoint& checkpoint) { whole.pass(checkpoint); }
   void pass(T& whole) { whole.pass(*this); }
 
   std::vector<double> numbers_;

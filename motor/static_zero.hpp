@@ -5,7 +5,7 @@
 #include <motor/motor.hpp>
 
 /// Zeros that are known when the program is compiled. Formulas are written once, for all that may
-/// be there; what a scene does not have is Absent by its type, and takes with it all that it
+/// be there; what a scene does not have is StaticZero by its type, and takes with it all that it
 /// multiplies.
 ///
 /// Products of vectors and rotations are always put where they are called. As functions of their own,
@@ -15,44 +15,50 @@
 namespace kreisel::detail {
 
 /// A zero known when the program is compiled.
-struct Absent {
+struct StaticZero {
   template <class T>
-  friend Absent operator*(const T&, Absent) {
+  friend StaticZero operator*(const T&, StaticZero) {
     return {};
   }
   template <class T>
-  requires(!std::is_same_v<T, Absent>) friend Absent operator*(Absent, const T&) { return {}; }
+  requires(!std::is_same_v<T, StaticZero>) friend StaticZero operator*(StaticZero, const T&) {
+    return {};
+  }
   template <class T>
-  requires(!std::is_same_v<T, Absent>) friend Absent operator/(Absent, const T&) { return {}; }
+  requires(!std::is_same_v<T, StaticZero>) friend StaticZero operator/(StaticZero, const T&) {
+    return {};
+  }
 
-  friend Absent operator+(Absent, Absent) { return {}; }
+  friend StaticZero operator+(StaticZero, StaticZero) { return {}; }
   template <class T>
-  requires(!std::is_same_v<T, Absent>) friend T operator+(const T& x, Absent) { return x; }
+  requires(!std::is_same_v<T, StaticZero>) friend T operator+(const T& x, StaticZero) { return x; }
   template <class T>
-  requires(!std::is_same_v<T, Absent>) friend T operator+(Absent, const T& x) { return x; }
+  requires(!std::is_same_v<T, StaticZero>) friend T operator+(StaticZero, const T& x) { return x; }
 
-  friend Absent operator-(Absent) { return {}; }
-  friend Absent operator-(Absent, Absent) { return {}; }
+  friend StaticZero operator-(StaticZero) { return {}; }
+  friend StaticZero operator-(StaticZero, StaticZero) { return {}; }
   template <class T>
-  requires(!std::is_same_v<T, Absent>) friend T operator-(const T& x, Absent) { return x; }
+  requires(!std::is_same_v<T, StaticZero>) friend T operator-(const T& x, StaticZero) { return x; }
   template <class T>
-  requires(!std::is_same_v<T, Absent>) friend auto operator-(Absent, const T& x) { return -x; }
+  requires(!std::is_same_v<T, StaticZero>) friend auto operator-(StaticZero, const T& x) {
+    return -x;
+  }
 };
 
 template <class T>
-inline constexpr bool is_absent = std::is_same_v<T, Absent>;
+inline constexpr bool is_absent = std::is_same_v<T, StaticZero>;
 
 /// The number that A and B make: doubles yield to dual numbers.
 template <class A, class B>
 using Joint = std::conditional_t<std::is_arithmetic_v<A>, B, A>;
 
 template <class A, class B>
-using Product = std::conditional_t<is_absent<A> || is_absent<B>, Absent, Joint<A, B>>;
+using Product = std::conditional_t<is_absent<A> || is_absent<B>, StaticZero, Joint<A, B>>;
 
 template <class A, class B>
 using Total = std::conditional_t<is_absent<A>, B, std::conditional_t<is_absent<B>, A, Joint<A, B>>>;
 
-/// A vector each of whose components is a number or Absent.
+/// A vector each of whose components is a number or StaticZero.
 template <class X, class Y = X, class Z = X>
 struct Components {
   X x = {};
@@ -62,7 +68,7 @@ struct Components {
   static constexpr bool absent = is_absent<X> && is_absent<Y> && is_absent<Z>;
 };
 
-using NoVector = Components<Absent>;
+using NoVector = Components<StaticZero>;
 
 template <class S>
 [[nodiscard]] Components<S> components(const Vector3<S>& v) {
@@ -74,7 +80,7 @@ template <class S>
   return {a.x, a.y, a.z};
 }
 
-/// Absent components come out as 0.
+/// StaticZero components come out as 0.
 template <class S, class X, class Y, class Z>
 [[nodiscard]] Vector3<S> vector(const Components<X, Y, Z>& a) {
   return {S(S(0) + a.x), S(S(0) + a.y), S(S(0) + a.z)};
@@ -138,8 +144,8 @@ struct Turn {
 
 /// R v
 template <class S, class X, class Y, class Z>
-[[nodiscard, gnu::always_inline]] inline auto turned(const Turn<S>& R,
-                                                     const Components<X, Y, Z>& v) {
+[[nodiscard, gnu::always_inline]] inline auto rotated(const Turn<S>& R,
+                                                      const Components<X, Y, Z>& v) {
   using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
   return Components<N>{N(R.xx * v.x + R.xy * v.y + R.xz * v.z),
                        N(R.yx * v.x + R.yy * v.y + R.yz * v.z),
@@ -148,8 +154,8 @@ template <class S, class X, class Y, class Z>
 
 /// R^t v
 template <class S, class X, class Y, class Z>
-[[nodiscard, gnu::always_inline]] inline auto turned_back(const Turn<S>& R,
-                                                          const Components<X, Y, Z>& v) {
+[[nodiscard, gnu::always_inline]] inline auto rotated_back(const Turn<S>& R,
+                                                           const Components<X, Y, Z>& v) {
   using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
   return Components<N>{N(R.xx * v.x + R.yx * v.y + R.zx * v.z),
                        N(R.xy * v.x + R.yy * v.y + R.zy * v.z),

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <vector>
 
-#include <dynamics/step/bookmark.hpp>
+#include <dynamics/step/checkpoint.hpp>
 
 using kreisel::InvalidInput;
-using kreisel::detail::Bookmark;
+using kreisel::detail::Checkpoint;
 
 namespace {
 
@@ -17,14 +17,14 @@ struct Numbers {
   Eigen::VectorXd any = Eigen::Vector3d(3, 4, 5);
   int whole = 6;
 
-  void pass(Bookmark& bookmark) { bookmark(fixed, any, whole); }
+  void pass(Checkpoint& checkpoint) { checkpoint(fixed, any, whole); }
 };
 
 void set(const std::vector<double>& numbers) {
   Numbers to{{0, 0}, {}, 0};
-  Bookmark bookmark(numbers);
-  to.pass(bookmark);
-  bookmark.finish();
+  Checkpoint checkpoint(numbers);
+  to.pass(checkpoint);
+  checkpoint.finish();
   BOOST_TEST(to.fixed == Numbers().fixed);
   BOOST_TEST(to.any == Numbers().any);
   BOOST_TEST(to.whole == 6);
@@ -36,7 +36,7 @@ BOOST_AUTO_TEST_SUITE(a_bookmark)
 
 // Sizes first, then what there is of numbers; other sizes are those of another run.
 BOOST_AUTO_TEST_CASE(sets_what_it_took_down_and_refuses_other_shapes) {
-  Bookmark taken;
+  Checkpoint taken;
   Numbers from;
   from.pass(taken);
   const std::vector<double> numbers = taken.numbers();

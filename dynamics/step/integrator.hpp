@@ -46,21 +46,21 @@ template <class Scene>
 
 /// A scene integrated step by step: State in, State out.
 ///
-///   Advance run(body, 0, start);
+///   Integrator run(body, 0, start);
 ///   for (double t = 0.1; t <= 10; t += 0.1) print(t, run.to(t));
 ///
 /// Scene  : has State, Vector, to_vector, from_vector, blocks and rates(t, y), or a workspace() and
 ///          rates(t, y, result, workspace); is kept by reference
-/// Throws : as ExplicitSteps does
+/// Throws : as ExplicitRungeKutta does
 template <class Scene, class Tableau = Verner98>
-class Advance {
+class Integrator {
  public:
   using State = typename Scene::State;
 
-  Advance(const Scene& scene, double t, const State& state, const Accuracy& accuracy = {})
+  Integrator(const Scene& scene, double t, const State& state, const Accuracy& accuracy = {})
       : scene_(&scene),
         steps_({&scene}, t, scene.to_vector(state), accuracy, detail::blocks_of(scene)) {}
-  Advance(Scene&&, double, const State&, const Accuracy& = {}) = delete;
+  Integrator(Scene&&, double, const State&, const Accuracy& = {}) = delete;
 
   /// The state at the time `end`, before or after the present one.
   State to(double end) { return scene_->from_vector(steps_.advance_to(end)); }
@@ -77,26 +77,26 @@ class Advance {
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
   [[nodiscard]] State at(double time) { return scene_->from_vector(steps_.at(time)); }
 
-  /// Whether the field has proved stiff, as ExplicitSteps tells it.
+  /// Whether the field has proved stiff, as ExplicitRungeKutta tells it.
   [[nodiscard]] bool stiff() const { return steps_.stiff(); }
 
   /// Announces times at which the scene's guide or loads jump.
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
   /// What the steps go on from.
-  template <class Bookmark>
-  void pass(Bookmark& bookmark) {
-    bookmark(steps_);
+  template <class Checkpoint>
+  void pass(Checkpoint& checkpoint) {
+    checkpoint(steps_);
   }
 
   [[nodiscard]] double t() const { return steps_.t(); }
   [[nodiscard]] State state() const { return scene_->from_vector(steps_.y()); }
-  [[nodiscard]] const Effort& effort() const { return steps_.effort(); }
+  [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double noise() const { return steps_.noise(); }
 
  private:
   const Scene* scene_;
-  ExplicitSteps<typename Scene::Vector, detail::SceneField<Scene>, Tableau> steps_;
+  ExplicitRungeKutta<typename Scene::Vector, detail::SceneField<Scene>, Tableau> steps_;
 };
 
 }  // namespace kreisel
