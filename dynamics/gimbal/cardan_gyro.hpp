@@ -22,6 +22,7 @@
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
@@ -754,5 +755,7 @@ class CardanGyro {
   Parameter singular_;
   detail::SteadyRate<M> steady_ = detail::steady_rate(guide_);
 };
+
+static_assert(Scene<CardanGyro<RestingFrame<>>> && HasStiffness<CardanGyro<RestingFrame<>>>);
 
 }  // namespace kreisel

@@ -3,6 +3,7 @@
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gimbal_oscillation.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/terms.hpp>
 
 namespace kreisel {
@@ -78,5 +79,7 @@ class FoepplGyro : public GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>> {
 };
 template <class Rotor>
 FoepplGyro(const CardanMoments&, const CardanBearings&, double, Rotor) -> FoepplGyro<Rotor>;
+
+static_assert(Scene<FoepplGyro<>>);
 
 }  // namespace kreisel

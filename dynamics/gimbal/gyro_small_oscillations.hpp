@@ -9,6 +9,8 @@
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gimbal_oscillation.hpp>
 #include <dynamics/guide/motion.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/terms.hpp>
 
 namespace kreisel {
@@ -188,5 +190,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
   M guide_;
   GuideMomentum kept_;
 };
+
+static_assert(Scene<GyroSmallOscillations<RestingFrame<>>>);
 
 }  // namespace kreisel

@@ -10,6 +10,7 @@
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gimbal_oscillation.hpp>
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/terms.hpp>
 
 namespace kreisel {
@@ -123,5 +124,7 @@ struct EqualSpringsRange {
     return {limit(std::max(rotor.x(), rotor.y())), limit(std::min(rotor.x(), rotor.y()))};
   }
 };
+
+static_assert(Scene<UnsymmetricRotor<>>);
 
 }  // namespace kreisel

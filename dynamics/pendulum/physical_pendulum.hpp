@@ -13,6 +13,7 @@
 
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/model/closed_form.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/pendulum/pendulum.hpp>
 #include <dynamics/pendulum/pendulum_motion.hpp>
@@ -204,5 +205,7 @@ closed_form(const PhysicalPendulum<Motion, NoDamping, Known...>& pendulum, doubl
     return std::nullopt;
   }
 }
+
+static_assert(Scene<PhysicalPendulum<>>);
 
 }  // namespace kreisel

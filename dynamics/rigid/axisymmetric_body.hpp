@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
@@ -129,5 +131,7 @@ class AxisymmetricBody {
 
   Held body_;
 };
+
+static_assert(Scene<AxisymmetricBody<RestingFrame<>>>);
 
 }  // namespace kreisel

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <dynamics/inertia.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/attitude_series.hpp>
@@ -263,5 +264,7 @@ class BasicEulerTop {
 };
 
 using EulerTop = BasicEulerTop<double>;
+
+static_assert(Scene<EulerTop> && HasSeries<EulerTop> && HasConserved<EulerTop>);
 
 }  // namespace kreisel

@@ -14,6 +14,7 @@
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
@@ -336,5 +337,7 @@ class FixedPointBody {
   detail::TensorOf<Loads...> tensor_;
   Felt felt_;
 };
+
+static_assert(Scene<FixedPointBody<RestingFrame<>>> && HasSeries<FixedPointBody<RestingFrame<>>>);
 
 }  // namespace kreisel

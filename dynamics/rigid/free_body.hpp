@@ -13,6 +13,7 @@
 #include <dynamics/guide/mean_motion.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
@@ -356,5 +357,7 @@ class FreeBody {
   detail::TensorOf<Loads...> tensor_;
   Felt felt_;
 };
+
+static_assert(Scene<FreeBody<RestingFrame<>>>);
 
 }  // namespace kreisel

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/rigid/free_body.hpp>
@@ -235,5 +236,7 @@ class SmallOscillations {
   Eigen::LDLT<Matrix6> factor_;
   std::optional<Coefficients> steady_;  ///< those that do not change
 };
+
+static_assert(Scene<SmallOscillations<RestingFrame<>>>);
 
 }  // namespace kreisel

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/model/scene.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/solve/any_field.hpp>
 #include <dynamics/solve/error_measure.hpp>
@@ -39,7 +40,7 @@ template <class Scene>
 /// The scene off by last digits, if it has such.
 template <class Scene>
 [[nodiscard]] std::optional<Scene> perturbed_by_ulps(const Scene& scene) {
-  if constexpr (requires { scene.perturbed_by_ulps(); }) {
+  if constexpr (HasPerturbation<Scene>) {
     return scene.perturbed_by_ulps();
   } else {
     return std::nullopt;
@@ -71,11 +72,11 @@ class SceneRuns final : public SteppedScene {
     if constexpr (requires { scene_.knows_series(); }) {
       return scene_.knows_series();
     } else {
-      return requires { scene_.series(); };
+      return HasSeries<Scene>;
     }
   }
   [[nodiscard]] bool may_be_stiff() const override {
-    if constexpr (requires { scene_.may_be_stiff(); }) {
+    if constexpr (HasStiffness<Scene>) {
       return scene_.may_be_stiff();
     } else {
       return true;
@@ -91,7 +92,7 @@ class SceneRuns final : public SteppedScene {
 
   void note_invariants(double t, std::span<const double> y,
                        std::vector<InvariantDrift>& drifts) const override {
-    if constexpr (requires(const State& state) { scene_.conserved(t, state); }) {
+    if constexpr (HasConserved<Scene>) {
       const auto now = scene_.conserved(t, from_components(y));
       if (drifts.empty()) {
         for (const auto& [name, value] : now) drifts.push_back({name, value, 0});
@@ -129,7 +130,7 @@ class SceneRuns final : public SteppedScene {
                                                        const Eigen::VectorXd& start,
                                                        const Accuracy& accuracy,
                                                        bool other) const override {
-    if constexpr (requires { scene_.series(); }) {
+    if constexpr (HasSeries<Scene>) {
       if constexpr (of_any_size) {
         return run_taylor_steps(*this, AnySeries(scene(other).series()), options, start, accuracy);
       } else {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/guide/resting.hpp>
+#include <dynamics/model/scene.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/passes.hpp>
@@ -294,5 +295,8 @@ class BodySystem {
   BodyTree tree_;
   Gravity gravity_;
 };
+
+static_assert(Scene<BodySystem<RestingFrame<>>> && HasTree<BodySystem<RestingFrame<>>> &&
+              HasStiffness<BodySystem<RestingFrame<>>>);
 
 }  // namespace kreisel
