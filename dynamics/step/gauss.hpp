@@ -281,8 +281,12 @@ class GaussIRK {
     for (int i = 0; i < stages; ++i) stage_.col(i) = weight_[static_cast<std::size_t>(i)] * f;
   }
 
-  /// Whether no block changes any more by what could not be rounding.
+  /// True if no block changes by more than rounding: of what it is now, or of the greatest size that it
+  /// has had, whose parts cancel where a motion has died out.
   [[nodiscard]] bool at_rest(const Vector& change) const {
+    constexpr Scalar rounding = 64 * std::numeric_limits<Scalar>::epsilon();
+    Vector greatest(y().size());
+    sizes_.put(greatest);
     int begin = 0;
     for (const int components : block_sizes_) {
       Scalar changed(0);
@@ -291,7 +295,7 @@ class GaussIRK {
         changed = std::max(changed, change[i]);
         size = std::max(size, Scalar(std::abs(y()[i]) + stage_.row(i).cwiseAbs().sum()));
       }
-      if (!(changed <= Scalar(1e-10) * size)) return false;
+      if (!(changed <= std::max(Scalar(1e-10) * size, rounding * greatest[begin]))) return false;
       begin += components;
     }
     return true;
