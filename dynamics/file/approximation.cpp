@@ -91,8 +91,8 @@ class Approximation final : public SceneSolver {
     if (result.report.status != RunStatus::complete) return result;
     const std::vector<VectorXd> states = motion_.states(joined(start), options.output_times);
     detail::ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
-    // Relative to the greatest size of the whole run: an approximation may begin with other rates.
-    for (const JointState& state : result.states) (void)distance(joined(state), joined(state));
+    // Relative to the sizes of the whole exact run: an approximation may begin with other rates.
+    distance.note_sizes(result.report.sizes);
     RunReport& report = result.report;
     report.method = Motion::method;
     const auto at_start = conserved(options.begin, start);
