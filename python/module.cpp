@@ -214,10 +214,8 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
                 const std::optional<std::vector<double>>& times, bool reactions) {
   const kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
-  kreisel::SolveOptions options;
+  kreisel::SolveOptions options = options_of(file);
   options.output_times = file.output_times;
-  options.tolerance = file.tolerance;
-  options.method = file.method;
   SignalWatch watch;
   kreisel::Trajectory<kreisel::JointState> run;
   std::vector<std::vector<double>> numbers;

@@ -47,6 +47,14 @@ class SceneSolver {
 /// Throws : InvalidInput
 [[nodiscard]] std::unique_ptr<SceneSolver> make_model(const SceneFile& scene);
 
+/// The options that a scene file gives in [solve]. Without output times the end is the only one.
+[[nodiscard]] SolveOptions options_of(const SceneFile& scene);
+
+/// Computes the motion of a scene file, by its model and its options.
+///
+/// Throws : InvalidInput. A failure on the way is in RunReport::status and message
+[[nodiscard]] Trajectory<JointState> run_scene(const SceneFile& scene);
+
 /// The two that make_model() chooses from, compiled apart.
 [[nodiscard]] std::unique_ptr<SceneSolver> make_resting_model(const SceneFile& scene);
 [[nodiscard]] std::unique_ptr<SceneSolver> make_moving_model(const SceneFile& scene);

@@ -41,14 +41,7 @@ struct Begin {
 };
 
 Begin from_the_start(const kreisel::SceneFile& scene) {
-  Begin begin{{}, start_of(scene)};
-  begin.options.output_times = scene.output_times;
-  if (begin.options.output_times.empty() || begin.options.output_times.back() < scene.t_end) {
-    begin.options.output_times.push_back(scene.t_end);
-  }
-  begin.options.tolerance = scene.tolerance;
-  begin.options.method = scene.method;
-  return begin;
+  return {options_of(scene), start_of(scene)};
 }
 
 /// A run that begins with the state of a row.
