@@ -8,10 +8,10 @@
 #include <optional>
 
 #include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/gsl/steps.hpp>
 #include <dynamics/step/events.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/gauss.hpp>
-#include <dynamics/step/gsl.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/splitting.hpp>
 #include <motor/attitude.hpp>

@@ -73,7 +73,7 @@ void bearing_deviation(std::vector<Run>& runs, const Thoroughness& thoroughness)
   auto problem =
       gyro_problem("bearing_deviation", "S4f_cardan_k1e12_d2e9_dev", 1e12, 2e9, reference_angle);
   problem.units[1] = Unit::relative;
-  problem.smallest = 1e-13;
+  problem.absolute_scale = 1e-13;
   add_all(runs, problem, thoroughness, 0.1);
 }
 

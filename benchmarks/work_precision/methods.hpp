@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/gsl/steps.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/gauss.hpp>
-#include <dynamics/step/gsl.hpp>
 #include <dynamics/step/jacobian.hpp>
 #include <dynamics/step/radau.hpp>
 #include <dynamics/step/taylor.hpp>
@@ -119,12 +119,12 @@ class Methods {
                                            {.output_times = p.times,
                                             .tolerance = tolerance,
                                             .method = method,
-                                            .absolute_scale = p.smallest});
+                                            .absolute_scale = p.absolute_scale});
         const kreisel::RunReport& report = result.report;
         if (report.status == kreisel::RunStatus::failed) throw std::runtime_error(report.message);
         double worst = 0;
         double promised = 0;
-        kreisel::detail::ErrorMeasure<Scene> distance(p.smallest);
+        kreisel::detail::ErrorMeasure<Scene> distance(p.absolute_scale);
         for (std::size_t i = 0; i < p.times.size(); ++i) {
           const Vector y = Scene::to_vector(result.states.at(i));
           worst = kreisel::test::worst_of(worst, p.distance(i, y));
@@ -142,8 +142,9 @@ class Methods {
     double max_evaluations;
 
     [[nodiscard]] kreisel::Accuracy at(const P& p, double tolerance) const {
-      return {
-          .relative = tolerance, .absolute_scale = p.smallest, .max_evaluations = max_evaluations};
+      return {.relative = tolerance,
+              .absolute_scale = p.absolute_scale,
+              .max_evaluations = max_evaluations};
     }
   };
   [[nodiscard]] Budget budget() const { return {thoroughness_.max_evaluations}; }

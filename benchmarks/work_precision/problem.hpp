@@ -32,8 +32,8 @@ struct Problem {
   std::vector<double> times;
   std::vector<Vector> truth;
   std::array<Unit, Scene::blocks.size()> units;
-  double period;           ///< s, of what has to be resolved: steps of fixed length are parts of it
-  double smallest = 1e-3;  ///< a part of the state smaller than this counts as being so large
+  double period;  ///< s, of what has to be resolved: steps of fixed length are parts of it
+  double absolute_scale = 1e-3;  ///< a part of the state smaller than this counts as being so large
 
   /// The greatest error of a block at times[i].
   [[nodiscard]] double distance(std::size_t i, const Vector& y) const {
@@ -59,7 +59,7 @@ struct Problem {
   }
 
   [[nodiscard]] double size(int begin, int n) const {
-    double greatest = std::max(smallest, distance_of(start, Vector::Zero(), begin, n));
+    double greatest = std::max(absolute_scale, distance_of(start, Vector::Zero(), begin, n));
     for (const Vector& y : truth) {
       greatest = std::max(greatest, distance_of(y, Vector::Zero(), begin, n));
     }

@@ -7,7 +7,7 @@
 #include <experimental/simd>
 #include <type_traits>
 
-#include <dynamics/step/lanes.hpp>
+#include <motor/lanes.hpp>
 
 namespace kreisel {
 
@@ -46,7 +46,7 @@ class BasicPack {
     operator Bool() const {
       static_assert(!std::is_same_v<Bool, bool>,
                     "this code branches on a number, of which a pack has one a lane: say any(), "
-                    "all() or select() (dynamics/step/lanes.hpp), or run the members one by one: "
+                    "all() or select() (motor/lanes.hpp), or run the members one by one: "
                     "ensemble<double>(...)");
       return false;
     }

@@ -24,7 +24,7 @@ namespace kreisel::exact {
 /// Source : Whittaker, Analytical Dynamics, art. 44
 /// Units  : 1/s^2, rad, rad/s, s
 /// Error  : <= 1.5u of |angle| + 0.125 and of |rate| + 0.125 for k = 1, 40 s and any start, near
-///          the upper rest point and turning over it, too  (tests/dynamics/exact/pendulum.cpp)
+///          the upper rest point and turning over it, too  (tests/dynamics/gsl/pendulum.cpp)
 /// Limits : std::numbers::pi is 1.2e-16 short of the top and falls from there
 class PendulumMotion {
  public:

@@ -26,9 +26,9 @@
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
-#include <dynamics/step/lanes.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>
+#include <motor/lanes.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel {

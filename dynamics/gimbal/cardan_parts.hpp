@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include <dynamics/inertia.hpp>
-#include <dynamics/step/lanes.hpp>
 #include <motor/error.hpp>
+#include <motor/lanes.hpp>
 #include <motor/static_zero.hpp>
 
 /// What a CardanGyro is made of, how it moves, and what is read out of it.

@@ -4,7 +4,7 @@
 
 #include <dynamics/guide/normal_gravity.hpp>
 #include <dynamics/load/load.hpp>
-#include <dynamics/step/lanes.hpp>
+#include <motor/lanes.hpp>
 
 namespace kreisel {
 

@@ -7,8 +7,8 @@
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/load.hpp>
-#include <dynamics/step/lanes.hpp>
 #include <motor/error.hpp>
+#include <motor/lanes.hpp>
 
 /// Scenes of double in numbers that calculate like it: dual numbers (Eigen's AutoDiffScalar), packs.
 

@@ -16,10 +16,10 @@
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/attitude_series.hpp>
-#include <dynamics/step/lanes.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>
+#include <motor/lanes.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel {

@@ -19,8 +19,8 @@
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/rigid/attitude_series.hpp>
+#include <dynamics/rigid/body_outputs.hpp>
 #include <dynamics/rigid/jacobi_integral.hpp>
-#include <dynamics/tree/body_outputs.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>

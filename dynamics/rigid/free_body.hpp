@@ -17,8 +17,8 @@
 #include <dynamics/model/structure.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
+#include <dynamics/rigid/body_outputs.hpp>
 #include <dynamics/rigid/jacobi_integral.hpp>
-#include <dynamics/tree/body_outputs.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
 #include <motor/four.hpp>

@@ -8,7 +8,7 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
-#include <dynamics/tree/body_outputs.hpp>
+#include <dynamics/rigid/body_outputs.hpp>
 
 namespace kreisel::detail {
 

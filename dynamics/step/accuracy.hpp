@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include <dynamics/step/lanes.hpp>
 #include <dynamics/step/shared.hpp>
+#include <motor/lanes.hpp>
 
 namespace kreisel {
 

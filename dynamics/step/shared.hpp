@@ -13,8 +13,8 @@
 #include <vector>
 
 #include <dynamics/step/compensated.hpp>
-#include <dynamics/step/lanes.hpp>
 #include <motor/error.hpp>
+#include <motor/lanes.hpp>
 
 /// What the steppers share.
 namespace kreisel::detail {

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <dynamics/step/lanes.hpp>
 #include <motor/four.hpp>
+#include <motor/lanes.hpp>
 
 namespace kreisel::detail {
 

@@ -2,7 +2,7 @@
 #include <iostream>
 #include <numbers>
 
-#include <dynamics/exact/pendulum.hpp>
+#include <dynamics/gsl/pendulum.hpp>
 
 int main() {
   const double period = kreisel::exact::PlainPendulum(std::numbers::pi / 2, 1).period();

@@ -9,8 +9,8 @@
 #include <string>
 
 #include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/gsl/steps.hpp>
 #include <dynamics/solve/solve.hpp>
-#include <dynamics/step/gsl.hpp>
 
 #include <support/json.hpp>
 #include <support/worst.hpp>

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/exact/pendulum.hpp>
 #include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/gsl/pendulum.hpp>
 #include <dynamics/pendulum/pendulum_period.hpp>
 
 #include <support/near.hpp>

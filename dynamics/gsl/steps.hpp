@@ -12,9 +12,9 @@
 #include <type_traits>
 #include <utility>
 
+#include <dynamics/gsl/errors.hpp>
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/explicit.hpp>
-#include <dynamics/step/gsl_errors.hpp>
 #include <dynamics/step/jacobian.hpp>
 #include <dynamics/step/shared.hpp>
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <dynamics/step/gsl.hpp>
+#include <dynamics/gsl/steps.hpp>
 
 #include <support/near.hpp>
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include <dynamics/exact/refuse.hpp>
-#include <dynamics/step/gsl_errors.hpp>
+#include <dynamics/gsl/errors.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel::exact {
@@ -63,7 +63,7 @@ class PlainPendulum {
   /// sin(phi/2) = k cn/dn,  cos(phi/2) = k'/dn,  phi. = -2 omega k k' sn/dn  of omega t and k.
   ///
   /// Error : of angle and rate/omega, within one period: <= 16u (amplitude to 2), 64u (to 3), GSL's
-  ///         own; later 2u |omega t| more              (tests/dynamics/exact/pendulum.cpp)
+  ///         own; later 2u |omega t| more              (tests/dynamics/gsl/pendulum.cpp)
   /// Throws: InvalidInput for a time that is not finite
   [[nodiscard]] State at(double time) const {
     if (!std::isfinite(time)) detail::refuse("time", time, "s must be finite");
