@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <dynamics/model/closed_form.hpp>
+#include <dynamics/processor.hpp>
 #include <dynamics/solve/closed_form.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/run.hpp>
@@ -33,6 +34,7 @@ template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
                                                       const typename Scene::State& start,
                                                       const SolveOptions& options) {
+  detail::KREISEL_SAME_MARCH();
   const detail::SceneRuns<Scene> runs(scene);
   const Eigen::VectorXd y = runs.to_vector(start);
   detail::check(runs, y, options);

@@ -10,6 +10,7 @@
 
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/model/scene.hpp>
+#include <dynamics/processor.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/passes.hpp>
@@ -48,6 +49,7 @@ class BodySystem {
 
   BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {})
       : guide_(std::move(guide)), tree_(std::move(bodies)), gravity_(gravity) {
+    detail::KREISEL_SAME_MARCH();
     detail::check_gravity(gravity_);
   }
 

@@ -1,0 +1,7 @@
+#include <dynamics/processor.hpp>
+
+namespace kreisel::detail {
+
+void KREISEL_SAME_MARCH() {}
+
+}  // namespace kreisel::detail
