@@ -291,11 +291,13 @@ class GaussIRK {
     for (const int components : block_sizes_) {
       Scalar changed(0);
       Scalar size(0);
+      Scalar known(0);
       for (int i = begin; i < begin + components; ++i) {
+        known = greatest[i];
         changed = std::max(changed, change[i]);
         size = std::max(size, Scalar(std::abs(y()[i]) + stage_.row(i).cwiseAbs().sum()));
       }
-      if (!(changed <= std::max(Scalar(1e-10) * size, rounding * greatest[begin]))) return false;
+      if (!(changed <= std::max(Scalar(1e-10) * size, rounding * known))) return false;
       begin += components;
     }
     return true;
