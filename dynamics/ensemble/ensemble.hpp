@@ -77,7 +77,7 @@ template <class Run>
   return true;
 }
 
-/// What rounding grows to in each member, told as RoundingGrowth of solve() does.
+/// The growth of rounding in each member, estimated as by RoundingGrowth of solve().
 template <class Scene, class N>
 class GrownRoundingOfMembers {
  public:

@@ -24,7 +24,7 @@ class SceneSolver {
 
   virtual ~SceneSolver() = default;
 
-  /// Whether a signal wants the run to end is asked at every evaluation.
+  /// Every evaluation calls `interrupted`; the run ends where it returns true.
   [[nodiscard]] virtual Trajectory<JointState> solve(
       const SolveOptions& options, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const = 0;
@@ -36,7 +36,7 @@ class SceneSolver {
   [[nodiscard]] virtual JointReactions reactions(double t, const JointState& state) const = 0;
   [[nodiscard]] virtual ForceParts<Body> terms(double t, const JointState& state,
                                                int body) const = 0;
-  /// Of the equation that is computed, whatever the state.
+  /// The terms of the equation that is computed; they do not depend on the state.
   [[nodiscard]] virtual Terms equation_terms() const = 0;
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const = 0;

@@ -25,7 +25,7 @@ void write(double* y, const Vector& from) {
   std::copy_n(from.data(), from.size(), y);
 }
 
-/// Of ExplicitRungeKutta or TaylorSteps.
+/// A run by ExplicitRungeKutta or TaylorSteps.
 template <class Steps>
 class RunOfSteps final : public SteppedRun {
  public:

@@ -211,7 +211,7 @@ class RunSoFar {
   /// By how many last digits its start is moved.
   [[nodiscard]] double moved() const { return moved_; }
 
-  /// Whether it knows its outputs from the first one on: not if it was begun by a checkpoint.
+  /// True if the run has its outputs from the first one on: not if a checkpoint began it.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
   /// Puts another run in the place of this one; the cost counts as if this one had been kept.

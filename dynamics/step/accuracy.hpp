@@ -15,7 +15,7 @@ namespace kreisel {
 
 /// How exact an integration is to be.
 struct Accuracy {
-  /// Of the error made in one step, relative to each block of the state; 1e-16 to 1e-2. ExplicitRungeKutta
+  /// Bound of the error made in one step, relative to each block of the state; 1e-16 to 1e-2. ExplicitRungeKutta
   /// and TaylorSteps go down to 1e-20: what a method errs by adds up, what is rounded hardly does.
   double relative = 1e-14;
 

@@ -77,7 +77,7 @@ class Integrator {
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
   [[nodiscard]] State at(double time) { return scene_->from_vector(steps_.at(time)); }
 
-  /// Whether the field has proved stiff, as ExplicitRungeKutta tells it.
+  /// True if the field has proved stiff; see ExplicitRungeKutta::stiff().
   [[nodiscard]] bool stiff() const { return steps_.stiff(); }
 
   /// Announces times at which the scene's guide or loads jump.

@@ -99,7 +99,7 @@ class TechnicalModel {
     return Eigen::VectorXd::Zero(e.size());
   }
 
-  /// Of components of a place whose error is told as one, as ExplicitRungeKutta takes them.
+  /// Numbers of components of a place whose error is told as one, as ExplicitRungeKutta takes them.
   [[nodiscard]] virtual std::vector<int> blocks() const = 0;
 };
 
