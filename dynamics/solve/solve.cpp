@@ -440,7 +440,7 @@ template <class Runs>
     return run.changed_to() ? AdaptiveRuns::rounding_of_radau : runs.rounding();
   };
   bool coarse_starts_off = false;
-  const bool has_bookmarks = runs.method() != Method::splitting;
+  const bool has_checkpoints = runs.method() != Method::splitting;
   const auto pass_setting = [&](Checkpoint& numbers) {
     auto own = static_cast<double>(runs.method());
     numbers(own, setting, missed, digits, account.spent, coarse_starts_off, pair_is_shaken,
@@ -494,14 +494,14 @@ template <class Runs>
       if (rounding) account.spent += rounding->evaluations();
     };
     const auto pass_run = [&](Checkpoint& numbers) {
-      if (!has_bookmarks) return;
+      if (!has_checkpoints) return;
       numbers(done, report.error_estimate, grown_to, distance, watch);
       coarse->pass(done, numbers);
       fine->pass(done, numbers);
       for (RunSoFar& other : others) other.pass(done, numbers);
       if (rounding) rounding->pass(numbers);
     };
-    const auto bookmark_here = [&] {
+    const auto checkpoint_here = [&] {
       Checkpoint numbers;
       pass_setting(numbers);
       pass_run(numbers);
@@ -552,8 +552,8 @@ template <class Runs>
         if (is_output && !output(result, watch, options, t, state, error)) break;
         ++done;
         const bool offers =
-            is_output && has_bookmarks && options.offer_checkpoint && done < times.size();
-        if (offers) options.offer_checkpoint(std::cref(bookmark_here));
+            is_output && has_checkpoints && options.offer_checkpoint && done < times.size();
+        if (offers) options.offer_checkpoint(std::cref(checkpoint_here));
       }
     } catch (const ComputationFailed& error) {
       report.status = RunStatus::failed;

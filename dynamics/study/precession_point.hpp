@@ -37,7 +37,7 @@ struct Directions {
   }
 };
 
-/// What belongs to one place: u from the technical equations, and how they answer to more force.
+/// Values at one place: u from the technical equations, and how they answer to more force.
 struct TechnicalPoint {
   GyroForces f;
   Eigen::MatrixXd W;  ///< G + D

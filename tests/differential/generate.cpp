@@ -214,7 +214,7 @@ void add_guide(Random& r, Scene& scene) {
   scene.chain_in_chain = scene.guide.size() > 1 && r.chance(0.3);
 }
 
-/// What accelerometers lack.
+/// The acceleration that accelerometers do not measure.
 void add_gravity_of_log(Random& r, Scene& scene) {
   if (scene.guide.empty() || scene.guide.front().kind != LinkKind::rates) return;
   Log& log = scene.guide.front().log;

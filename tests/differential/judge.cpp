@@ -280,7 +280,7 @@ class Judge {
                       many.sizes[i], many.states.size()));
       return;
     }
-    // What steps err by where they cross the knots of a spline depends on where that is.
+    // The error of steps across the knots of a spline depends on where they cross.
     if (scene_.has_log() || one.method != many.method || one.steps != many.steps) return;
     const double told = std::max(one.estimate, many.estimate);
     const double off = std::abs(one.end_error - many.end_error);
@@ -290,7 +290,7 @@ class Judge {
                     one.end_error, many.end_error, many.states.size(), told));
   }
 
-  /// What rounding alone makes of the difference of two errors that are told: each is 1.55 times the
+  /// Rounding of the difference of two errors that are told: each is 1.55 times the
   /// distance of two runs, and each of these four walks by 2.5 units of 2^-53 a step at random. Three
   /// times their standard deviation.
   [[nodiscard]] static double noise_of_pairs(double steps) {

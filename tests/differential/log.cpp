@@ -33,7 +33,7 @@ std::string stamp(std::int64_t ns, const std::string& unit) {
 
 using Columns = std::vector<std::pair<std::string, double>>;
 
-/// What a row has beside its time.
+/// Numbers of a row beside its time.
 Columns columns(const Log& log, const Log::Sample& s, bool of_rates) {
   const double angle = log.spelling.in_degrees ? degree : 1;
   Columns result;
@@ -169,7 +169,7 @@ void add_time_keys(const Log& log, double t_end, Keys& keys) {
   if (!how.duplicates.empty()) keys.emplace_back("duplicates", quoted(how.duplicates));
 }
 
-/// What a log of rates does not tell.
+/// Start values that a log of rates does not contain.
 void add_start_keys(const Log& log, Keys& keys) {
   const Spelling& how = log.spelling;
   double rows = how.begins_at_zero ? 0 : how.has_window ? 8 : rows_outside;

@@ -59,7 +59,7 @@ struct Log {
   double phase = 0;
   double step = 0.02;  ///< s
   Spelling spelling = {};
-  // Of a log of rates.
+  // For a log of rates.
   bool is_kinematic = false;
   bool says_gravity = false;  ///< else it is that of the scene
   Vector gravity = Vector::Zero();

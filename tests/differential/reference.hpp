@@ -33,7 +33,7 @@ struct ReferenceMotion {
   Sizes sizes = {};  ///< the greatest on the way
 };
 
-/// What each body's parent exerts on it at the start: three numbers of force and three of torque about
+/// The force of each body's parent on it at the start: three numbers of force and three of torque about
 /// the body's origin, on body axes.
 [[nodiscard]] std::vector<double> start_reactions(const Scene& scene);
 

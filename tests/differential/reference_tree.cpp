@@ -521,7 +521,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
   const Motion guide = guide_.at(t, y, rate);
   const auto n = static_cast<Eigen::Index>(poses_.size());
   const State accelerations = solution_.head(6 * n);
-  // What is left of each body's balance without its joints, about its centre of mass.
+  // The rest of each body's balance without its joints, about its centre of mass.
   right_.setZero();
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at_body = static_cast<std::size_t>(i);

@@ -26,7 +26,7 @@ class Tree {
   [[nodiscard]] JointValues values(Real t, const State& y);
   /// How large the parts of energy and of momenta are, all counted as positive.
   [[nodiscard]] Sizes sizes(Real t, const State& y);
-  /// What each body's parent exerts on it through the joint: force, then torque about the body's
+  /// The force of each body's parent through the joint: force, then torque about the body's
   /// origin, on body axes.
   [[nodiscard]] std::vector<double> reactions(Real t, const State& y);
   /// About the operations of one evaluation.

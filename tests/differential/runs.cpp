@@ -149,7 +149,7 @@ Approximate approximate(const Scene& scene, const kreisel::SceneFile& file, cons
   return {std::move(answer), model->model_error(), off, near_off};
 }
 
-/// Whether equal steps are worth the time: a motion that is short, smooth and not stiff.
+/// True if equal steps are worth the time: a motion that is short, smooth and not stiff.
 bool suits_equal_steps(const Scene& scene, const Answer& automatic) {
   return automatic.answered && automatic.method != "radau13" && automatic.evaluations < 1000 &&
          !scene.has_log();

@@ -44,7 +44,7 @@ struct Answer {
   std::vector<double> sizes = {};  ///< of blocks, as RunReport::sizes has them
 };
 
-/// What an approximation says of a scene.
+/// The report of an approximation of a scene.
 struct Approximate {
   Answer answer = {};
   double model_error = 0;  ///< that is told

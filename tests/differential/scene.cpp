@@ -62,7 +62,7 @@ std::string series(const Series& s) {
 
 std::string log_name(std::size_t link) { return fmt::format("log{}.csv", link); }
 
-/// Of a frame that moves by its rates.
+/// The motion of a frame by its rates.
 Keys moving_keys(const Link& link, const char* kind, const std::string& turning,
                  const std::string& pushing) {
   Keys result{{"kind", kind},
