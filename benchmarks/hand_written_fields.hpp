@@ -119,7 +119,7 @@ struct HeldOnTurningGuide {
   V3 s;  // first moment
   V3 u;
   V3 g;     // at t = 0, on guide axes
-  V3 held;  // inertial acceleration of the held point, on guide axes
+  V3 held;  // inertial acceleration of the fixed point, on guide axes
   Eigen::Matrix3d I = T.inverse();
   double rate = u.norm();
   V3 along = u.dot(g) / u.squaredNorm() * u;

@@ -186,7 +186,7 @@ void far_guides(const Recorder& out) {
     const Held point_away(inertia, {away, away, -away}, {RestingFrame<>{}}, weight);
     for (const auto* body : {&guide_away, &point_away}) {
       const Trial<Held> trial{
-          fmt::format("{} is {:g} m away", body == &guide_away ? "the guide" : "the held point",
+          fmt::format("{} is {:g} m away", body == &guide_away ? "the guide" : "the fixed point",
                       away),
           *body,
           {tilted, w},
@@ -197,8 +197,8 @@ void far_guides(const Recorder& out) {
           }};
       attempt_all(out, trial, {Method::automatic, Method::verner98, Method::gauss16});
     }
-    // On a guide that turns, the held point away is carried round: at u^2 r without mass outside
-    // the held point nothing of it is felt.
+    // On a guide that turns, the fixed point away is carried round: at u^2 r without mass outside
+    // the fixed point nothing of it is felt.
     const Vector3<double> u(0, 0, 0.5);
     const Held carried(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, diagonal(1, 2, 2.5)),
                        {away, away, -away}, {RotatingFrame<>{u}}, no_load());

@@ -51,7 +51,7 @@ class AxisymmetricBody {
   };
 
   /// Its mass, where on the axis its centre of mass is, and its moments A across and C along the
-  /// axis, all from the held point; `point` is where in the guide that is.
+  /// axis, all from the fixed point; `point` is where in the guide that is.
   AxisymmetricBody(S mass, S arm, S A, S C, const Vector3<S>& point, M guide, Loads... loads)
       : body_({{mass, Vector3<S>(0, 0, mass * arm), {A, A, C}}}, point, std::move(guide),
               std::move(loads)..., Without<ProductsOfInertia>{},

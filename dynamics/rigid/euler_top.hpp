@@ -55,7 +55,7 @@ struct EulerTopState {
 ///
 /// Source : L. Euler; Lagrange; S. Kovalevskaya, Acta Math. 12 (1889) 177, whose invariant is named
 ///          after her; paper 002 section 4 (the case V' = V); gyrostat: paper 000
-/// Frame  : body axes = principal axes through the held point; inertial z up
+/// Frame  : body axes = principal axes through the fixed point; inertial z up
 /// Units  : kg m^2, N m, N m s, rad/s
 /// Throws : InvalidInput where no body has such moments of inertia, or one of them is 0
 ///
@@ -82,7 +82,7 @@ class BasicEulerTop {
           Mass::zero_allowed, "Euler top");
     if (!(moments.minCoeff() > 0)) {
       throw InvalidInput(
-          "Euler top: a moment of inertia about the held point is 0: the rotation about "
+          "Euler top: a moment of inertia about the fixed point is 0: the rotation about "
           "that axis is not determined");
     }
     if (!(weight_moment - weight_moment).isZero(0) ||
@@ -130,7 +130,7 @@ class BasicEulerTop {
                                   detail::RateAxes::body, detail::Components<S>>(tensor_, k, {}, h);
   }
 
-  /// -k x gamma, what the weight does about the held point, on body axes.
+  /// -k x gamma, what the weight does about the fixed point, on body axes.
   ///
   /// Units  : N m
   template <class N>

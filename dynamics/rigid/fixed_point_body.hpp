@@ -29,7 +29,7 @@
 namespace kreisel {
 
 /// How a held body moves.
-struct HeldBodyState {
+struct FixedPointBodyState {
   Eigen::Quaternion<double> attitude = Eigen::Quaternion<double>::Identity();  ///< body to guide
   Vector3<double> angular_velocity = Vector3<double>::Zero();                  ///< u', on body axes
 };
@@ -58,7 +58,7 @@ class FixedPointBody {
   using S = double;
   using Vector = Eigen::Matrix<S, 7, 1>;
 
-  using State = HeldBodyState;
+  using State = FixedPointBodyState;
 
   /// `point` is where in the guide the body is held.
   FixedPointBody(const InertiaTensor<Body, S>& inertia, const Vector3<S>& point, M guide,
@@ -78,11 +78,12 @@ class FixedPointBody {
     check(inertia.value, Mass::positive, "held body");
     detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
                                                    "held body, first moment");
-    if (!(point - point).isZero(0)) throw InvalidInput("held body: the point is not finite");
+    if (!(point - point).isZero(0)) throw InvalidInput("fixed-point body: the point is not finite");
     const auto moments = detail::principal_moments(inertia.value.tensor);
     if (!(moments[0] > std::numeric_limits<S>::epsilon() * moments[2])) {
       throw InvalidInput(
-          "held body: the inertia about an axis through the held point is 0 (a needle, or all mass "
+          "fixed-point body: the inertia about an axis through the fixed point is 0 (a needle, or "
+          "all mass "
           "in that point): the rotation about it is not determined by the torque");
     }
   }

@@ -160,7 +160,7 @@ BOOST_DATA_TEST_CASE(twenty_as_printed_holds_for_true_rates, data::xrange(100u),
   BOOST_TEST(near(printed, body.force(), sizes_20(body), 12));
 }
 
-// (48) as printed leaves v x (G + G_f), the momentum times the velocity of the held point: 0 only if
+// (48) as printed leaves v x (G + G_f), the momentum times the velocity of the fixed point: 0 only if
 // that point rests or the body is held at its centre of mass.
 BOOST_AUTO_TEST_CASE(forty_eight_needs_the_velocity_of_the_guide) {
   double largest = 0;

@@ -184,7 +184,7 @@ BOOST_DATA_TEST_CASE(is_eulers_top_on_a_guide_at_rest, data::xrange(50u), seed) 
   BOOST_TEST(near(euler_torque(T.value.tensor, u, du), Vector3<double>(0, 0, 0), size, 16));
 }
 
-// With its centre of mass in the held point and no loads, a body does not feel the guide.
+// With its centre of mass in the fixed point and no loads, a body does not feel the guide.
 BOOST_AUTO_TEST_CASE(does_not_feel_the_guide_when_held_at_its_centre_of_mass) {
   const auto swing = [](const auto& t) {
     using std::sin;
@@ -280,7 +280,7 @@ BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
   }
 }
 
-// The guide stops as it stands at 2 s; what its motion makes felt at the held point stays.
+// The guide stops as it stands at 2 s; what its motion makes felt at the fixed point stays.
 BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
   const Vector3<double> u(0.3, -0.2, 0.5);
   const Vector3<double> a(1, 2, 3);
@@ -303,7 +303,7 @@ BOOST_AUTO_TEST_CASE(is_refused_when_its_rotation_is_not_determined) {
   BOOST_CHECK_THROW(held(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, needle)), InvalidInput);
   BOOST_CHECK_THROW(held(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Zero())),
                     InvalidInput);
-  // Aside of the held point the same needle is a good body.
+  // Aside of the fixed point the same needle is a good body.
   BOOST_CHECK_NO_THROW(held(InertiaTensor<Body>::about_centre(1, {0.1, 0, 0}, needle)));
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   BOOST_CHECK_THROW(FixedPointBody(lopsided_body(), {nan, 0, 0}, guide), InvalidInput);

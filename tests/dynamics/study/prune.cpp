@@ -172,7 +172,8 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_table) {
       const auto body = nearly_straight(sample);
       const auto table = slow_table(sample);
       const UniformGravity<Guide> plumb{{0, 0, -9.81}};
-      const HeldBodyState start{attitude(sample), sample.magnitude(-1, 1.3) * sample.direction()};
+      const FixedPointBodyState start{attitude(sample),
+                                      sample.magnitude(-1, 1.3) * sample.direction()};
       const Pruning options = random_task(sample);
       compare<GuideRate>(FixedPointBody(body, sample.direction(), table, plumb), start, options,
                          tally);
@@ -190,7 +191,8 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_swell) {
       const Pruning options = random_task(sample);
       const auto ship = swell(sample, options.horizon);
       const UniformGravity<Inertial> weight{{0, 0, -9.81}};
-      const HeldBodyState start{attitude(sample), sample.magnitude(-1, 1) * sample.direction()};
+      const FixedPointBodyState start{attitude(sample),
+                                      sample.magnitude(-1, 1) * sample.direction()};
       compare<GuideUnsteadiness>(FixedPointBody(body, 0.3 * sample.direction(), ship, weight),
                                  start, options, tally);
     }
@@ -223,7 +225,8 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_under_weak_loads) {
       const ViscousDrag<> drag{sample.magnitude(-12, -2), 0};
       const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, slow_table(sample),
                                 UniformGravity<Guide>{{0, 0, -9.81}}, drag);
-      const HeldBodyState start{attitude(sample), sample.magnitude(-1, 1) * sample.direction()};
+      const FixedPointBodyState start{attitude(sample),
+                                      sample.magnitude(-1, 1) * sample.direction()};
       const Pruning options = random_task(sample);
       const auto pruned = prune<LoadOf<ViscousDrag<>>, ProductsOfInertia>(body, start, options);
       const double off = std::visit(
@@ -266,8 +269,8 @@ BOOST_AUTO_TEST_CASE(is_that_of_several_motions_together) {
   const RotatingFrame<> table{{0, 1e-6, 0}};
   test::Sample sample(7);
   const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, table);
-  const std::vector<HeldBodyState> starts{{attitude(sample), {1, 0, 0}},
-                                          {attitude(sample), {0, 5, 1}}};
+  const std::vector<FixedPointBodyState> starts{{attitude(sample), {1, 0, 0}},
+                                                {attitude(sample), {0, 5, 1}}};
   const Pruning options{.tolerance = 1e-3, .horizon = 3};
   const auto both = prune<GuideRate>(body, starts, options);
   double greatest = 0;
@@ -343,7 +346,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_cannot_do_without) {
 BOOST_AUTO_TEST_CASE(is_refused_for_what_is_no_task) {
   test::Sample sample(3);
   const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, RotatingFrame<>{{0, 0, 1e-5}});
-  const HeldBodyState start;
+  const FixedPointBodyState start;
   const auto refused = [&](const Pruning& options) {
     BOOST_CHECK_THROW(static_cast<void>(prune<GuideRate>(body, start, options)), InvalidInput);
   };
@@ -355,8 +358,9 @@ BOOST_AUTO_TEST_CASE(is_refused_for_what_is_no_task) {
   refused({.tolerance = 1e-6, .horizon = nan});
   refused({.tolerance = 1e-6, .horizon = HUGE_VAL});
   refused({.tolerance = 1e-6, .horizon = 1, .begin = nan});
-  BOOST_CHECK_THROW(static_cast<void>(prune<GuideRate>(body, std::vector<HeldBodyState>{}, {})),
-                    InvalidInput);
+  BOOST_CHECK_THROW(
+      static_cast<void>(prune<GuideRate>(body, std::vector<FixedPointBodyState>{}, {})),
+      InvalidInput);
   const auto at_once = prune<GuideRate>(body, start, {.tolerance = 1e-6, .horizon = 0});
   BOOST_TEST(!at_once.terms[0].kept);
 }
