@@ -87,5 +87,4 @@ class Kreisel(ConanFile):
         component.includedirs = [os.path.join("include", "kreisel")]
         component.bindirs = []
         component.libs = ["kreisel"] if name == "dynamics" else []
-        component.defines = ["EIGEN_MAX_ALIGN_BYTES=16"]
         component.requires = requires
