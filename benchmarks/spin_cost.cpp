@@ -33,6 +33,7 @@
 #include <dynamics/tree/body_system.hpp>
 
 using namespace kreisel;
+using Eigen::VectorXd;
 
 namespace {
 
@@ -142,35 +143,35 @@ Point exact(const System& system, const System::State& from, double span) {
 }
 
 /// The technical equations' forces, counted.
-class Counted {
+class Counted final : public TechnicalModel {
  public:
-  explicit Counted(const TechnicalBodies<RestingFrame<>>& model) : model_(&model) {}
+  explicit Counted(const TechnicalModel& model) : model_(&model) {}
 
-  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const {
+  [[nodiscard]] GyroForces forces(double t, const VectorXd& place) const override {
     ++count_;
     return model_->forces(t, place);
   }
-  [[nodiscard]] auto motion_forces(double t, const Eigen::VectorXd& place,
-                                   const Eigen::VectorXd& u) const {
+  [[nodiscard]] VectorXd motion_forces(double t, const VectorXd& place,
+                                       const VectorXd& u) const override {
     ++count_;
     return model_->motion_forces(t, place, u);
   }
-  [[nodiscard]] auto rate(double t, const Eigen::VectorXd& place, const Eigen::VectorXd& u) const {
+  [[nodiscard]] VectorXd rate(double t, const VectorXd& place, const VectorXd& u) const override {
     return model_->rate(t, place, u);
   }
-  [[nodiscard]] auto moved(const Eigen::VectorXd& place, const Eigen::VectorXd& e) const {
+  [[nodiscard]] VectorXd moved(const VectorXd& place, const VectorXd& e) const override {
     return model_->moved(place, e);
   }
-  [[nodiscard]] auto turning_along(const Eigen::VectorXd& place, const Eigen::VectorXd& u,
-                                   const Eigen::VectorXd& e) const {
+  [[nodiscard]] VectorXd turning_along(const VectorXd& place, const VectorXd& u,
+                                       const VectorXd& e) const override {
     return model_->turning_along(place, u, e);
   }
-  [[nodiscard]] auto blocks() const { return model_->blocks(); }
+  [[nodiscard]] std::vector<int> blocks() const override { return model_->blocks(); }
 
   [[nodiscard]] double count() const { return count_; }
 
  private:
-  const TechnicalBodies<RestingFrame<>>* model_;
+  const TechnicalModel* model_;
   mutable double count_ = 0;
 };
 
@@ -306,34 +307,36 @@ void draw(const std::string& directory, const std::vector<Point>& points) {
       "set linetype 1 lw 2.5 pt 7 lc rgb '#000000'; set linetype 2 lw 2.5 pt 5 lc rgb '#e69f00'\n"
       "set linetype 3 lw 2.5 pt 9 lc rgb '#0072b2'; set linetype 4 lw 2.5 pt 13 lc rgb '#d55e00'\n"
       "set ylabel 'evaluations of the field a second of motion'\n";
-  const auto output = [&](const char* name) {
-    return fmt::format("set output {}\n", gnuplot::quoted(directory + "/" + name + ".svg"));
+  const auto picture = [&](const char* name, const std::string& script) {
+    gnuplot::draw_picture(directory + "/" + name + ".svg", format + script);
   };
-  gnuplot::run(
-      format + output("spin") + data("r", points, "regulated", &Point::speed) +
-      data("f", points, "free", &Point::speed) +
-      data("a", points, "angle resolved", &Point::speed) +
-      "set title 'Gyro on springs, L = 0.08 N m s, to 1e-9 rad'\n"
-      "set xlabel 'speed of the rotor, rad/s'; set yrange [500:*]\n"
-      "plot $a using 1:2 lt 4 title 'angle resolved', $r using 1:2 lt 1 ps 1.3 title 'rotor, "
-      "regulated', $f using 1:2 lt 2 dt 2 title 'rotor, free'\n");
+  picture(
+      "spin",
+      data("r", points, "regulated", &Point::speed) + data("f", points, "free", &Point::speed) +
+          data("a", points, "angle resolved", &Point::speed) +
+          "set title 'Gyro on springs, L = 0.08 N m s, to 1e-9 rad'\n"
+          "set xlabel 'speed of the rotor, rad/s'; set yrange [500:*]\n"
+          "plot $a using 1:2 lt 4 title 'angle resolved', $r using 1:2 lt 1 ps 1.3 title 'rotor, "
+          "regulated', $f using 1:2 lt 2 dt 2 title 'rotor, free'\n");
   const std::string by_momentum =
       "set xlabel 'momentum L, N m s'; set title 'Gyro on springs, to 1e-9 rad'\n" +
       data("e", points, "nutation excited", &Point::momentum) +
       data("n", points, "nutation not excited", &Point::momentum) +
       data("t", points, "technical", &Point::momentum) +
       data("c", points, "technical", &Point::momentum, true);
-  gnuplot::run(format + output("momentum") + by_momentum +
-               "set yrange [10:*]\n"
-               "plot $e using 1:2 lt 1 title 'exact, nutation excited', $n using 1:2 lt 2 dt 2 "
-               "title 'exact, from the precession', $t using 1:2 with lines lt 3 dt 3 title "
-               "'technical', $c using 1:2 with points lt 3 title 'technical, error certified below "
-               "1e-9 rad'\n");
-  gnuplot::run(format + output("technical") + by_momentum +
-               "set title 'Technical equations over 1 s, from the precession'\n"
-               "set ylabel 'error, rad'; set key top right; set yrange [1e-16:1]\n"
-               "plot $t using 1:4 lt 3 dt 2 title 'bound', $t using 1:3 lt 1 title 'true', 1e-9 lw "
-               "1 lc rgb '#888888' title 'wanted'\n");
+  picture("momentum",
+          by_momentum +
+              "set yrange [10:*]\n"
+              "plot $e using 1:2 lt 1 title 'exact, nutation excited', $n using 1:2 lt 2 dt 2 "
+              "title 'exact, from the precession', $t using 1:2 with lines lt 3 dt 3 title "
+              "'technical', $c using 1:2 with points lt 3 title 'technical, error certified below "
+              "1e-9 rad'\n");
+  picture("technical",
+          by_momentum +
+              "set title 'Technical equations over 1 s, from the precession'\n"
+              "set ylabel 'error, rad'; set key top right; set yrange [1e-16:1]\n"
+              "plot $t using 1:4 lt 3 dt 2 title 'bound', $t using 1:3 lt 1 title 'true', 1e-9 lw "
+              "1 lc rgb '#888888' title 'wanted'\n");
 }
 
 }  // namespace
