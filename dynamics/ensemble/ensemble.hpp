@@ -429,13 +429,13 @@ template <class N, class Group, class Make>
 /// packs changes them within the tolerance. A pack that one of its members stops is run again one
 /// by one, so that a member fails for reasons of its own only.
 ///
-/// Steps are explicit (ExplicitRungeKutta): stiff members take many, and fail at task.max_evaluations.
+/// Steps are explicit (ExplicitRungeKutta): stiff members take many, and fail at options.max_evaluations.
 ///
 /// N      : the pack; or double, for members one by one
 /// make   : callable (index, MemberRandom&) -> State, from several threads at once; what it throws
 ///          makes the member fail
-/// Error  : of each member as task.tolerance asks, estimated as solve() does
-/// Throws : InvalidInput for a task or sampling that makes no sense; what sampling.progress throws
+/// Error  : of each member as options.tolerance asks, estimated as solve() does
+/// Throws : InvalidInput if the options or the sampling are invalid; what sampling.progress throws
 template <class N = Pack, class Scene, class Make>
 [[nodiscard]] Ensemble<typename Scene::State> ensemble(const Scene& scene, const Sampling& sampling,
                                                        const Make& make,

@@ -31,7 +31,7 @@ class PartFiles {
   static constexpr std::size_t members = 256;
   static_assert(members % Pack::lanes == 0);
 
-  /// `what` names seed, scene, task and all else that the rows depend on, in one line.
+  /// `what` names seed, scene, options and all else that the rows depend on, in one line.
   ///
   /// Throws : InvalidInput where the folder cannot be made
   PartFiles(std::filesystem::path folder, std::string what, std::size_t count)

@@ -25,7 +25,7 @@ struct LogError {
 /// The error of a run that its guide's logs make, by runs along these logs taken in other ways; see
 /// error_of_log. Nothing where it was interrupted.
 ///
-/// Cost   : thirteen runs for each log, to 1e-6, or to the task's tolerance where the error is as
+/// Cost   : thirteen runs for each log, to 1e-6, or to the options' tolerance where the error is as
 ///          small
 /// Throws : ComputationFailed where such a run fails
 [[nodiscard]] std::optional<LogError> error_of_logs(const SceneFile& scene,

@@ -83,9 +83,9 @@ class ModelOnGuide final : public SceneSolver {
       const SolveOptions& options, const JointState& start, const Listener& listener,
       const std::function<bool()>& interrupted) const override {
     const WatchedSystem<System> watched(system_, interrupted);
-    SolveOptions watched_task = options;
-    watched_task.progress = [&](double t) { return listener(t, watched.latest()); };
-    auto run = kreisel::solve(watched, State{start.coordinates, start.rates}, watched_task);
+    SolveOptions watched_options = options;
+    watched_options.progress = [&](double t) { return listener(t, watched.latest()); };
+    auto run = kreisel::solve(watched, State{start.coordinates, start.rates}, watched_options);
     Trajectory<JointState> result{
         std::move(run.times), {}, std::move(run.report), std::move(run.errors)};
     for (State& state : run.states) {

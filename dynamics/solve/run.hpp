@@ -167,7 +167,7 @@ class SteppedScene {
 
   [[nodiscard]] virtual std::unique_ptr<StiffField> stiff_field(bool other) const = 0;
 
-  /// From `start` at task.begin on.
+  /// Runs begin with `start` at options.begin.
   [[nodiscard]] virtual std::unique_ptr<SteppedRun> explicit_run(const SolveOptions& options,
                                                                  const Eigen::VectorXd& start,
                                                                  const Accuracy& accuracy,
@@ -182,7 +182,7 @@ class SteppedScene {
                                                        bool other) const = 0;
 };
 
-/// Throws what is wrong with a task for this scene and this start.
+/// Throws : InvalidInput if the options do not fit this scene and this start
 KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start,
                        const SolveOptions& options);
 

@@ -377,7 +377,7 @@ class ComparisonTimes {
   return error * (ahead < 10 ? ahead : 10);
 }
 
-/// The cost of all runs of one task.
+/// The cost of all runs of one call of solve().
 struct Account {
   double spent = 0;  ///< evaluations
 };

@@ -28,7 +28,7 @@ namespace kreisel {
 ///          much; twice that where so many steps near the last digits are taken that rounding outgrows
 ///          them. Where the tolerance is missed `automatic` may try another method. Outputs take ten
 ///          evaluations in each step that has some, by series none
-/// Throws : InvalidInput for a task that is none or a method that does not fit the scene. What
+/// Throws : InvalidInput if the options are invalid or the method does not fit the scene. What
 ///          fails on the way is told by the report, with the trajectory up to there
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,

@@ -61,7 +61,7 @@ struct SolveOptions {
       nullptr;
 
   /// The run goes on behind the output after which this was taken, as it did then to the last bit:
-  /// scene, start and the rest of the task have to be the same. The trajectory is the part that is
+  /// scene, start and the other options have to be the same. The trajectory is the part that is
   /// new, or all of it where the run begins again with shorter steps; the report is of the whole.
   std::vector<double> checkpoint = {};
 };

@@ -80,7 +80,7 @@ class PruningEffect {
 
  public:
   PruningEffect(const Scene& scene, const typename Scene::State& start, const Pruning& options)
-      : scene_(scene), task_(options), start_(scene.to_vector(start)), scale_(start_) {
+      : scene_(scene), options_(options), start_(scene.to_vector(start)), scale_(start_) {
     for (const auto& blocks : {blocks_of(scene), blocks_of(scene)}) {
       blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
     }
@@ -100,7 +100,7 @@ class PruningEffect {
   [[nodiscard]] double bound(const std::function<Vector(double, const Vector&)>& rates) {
     const Run fine = run(rates, exact);
     const Run coarse = run(rates, rough);
-    ErrorMeasure<Scene> distance(scene_, task_.absolute_scale);
+    ErrorMeasure<Scene> distance(scene_, options_.absolute_scale);
     double off = 0;
     for (std::size_t i = 0; i < fine.states.size(); ++i) {
       const Vector& x = fine.states[i];
@@ -146,10 +146,10 @@ class PruningEffect {
     double steps = 0;
   };
 
-  [[nodiscard]] double end() const { return task_.begin + task_.horizon; }
+  [[nodiscard]] double end() const { return options_.begin + options_.horizon; }
 
   /// What a departure is resolved to at least; less would be rounding's.
-  [[nodiscard]] double resolution() const { return std::max(task_.tolerance, 1e-7); }
+  [[nodiscard]] double resolution() const { return std::max(options_.tolerance, 1e-7); }
 
   [[nodiscard]] Vector scene_part(const Pair& both) const {
     return both.template head<n>().cwiseProduct(scale_);
@@ -163,7 +163,7 @@ class PruningEffect {
     Vector sizes;
     int begin = 0;
     for (const int components : blocks_of(scene_)) {
-      const double size = std::max(norm(y, begin, components), task_.absolute_scale);
+      const double size = std::max(norm(y, begin, components), options_.absolute_scale);
       for (int i = begin; i < begin + components; ++i) sizes[i] = size;
       begin += components;
     }
@@ -173,14 +173,15 @@ class PruningEffect {
   [[nodiscard]] Steps started(const Rates* rates, double accuracy) const {
     Pair both = Pair::Zero();
     both.template head<n>() = start_.cwiseQuotient(scale_);
-    Steps steps({this, rates}, task_.begin, both, {accuracy, 1, task_.max_evaluations}, blocks_);
-    steps.stop_at(task_.discontinuities);
+    Steps steps({this, rates}, options_.begin, both, {accuracy, 1, options_.max_evaluations},
+                blocks_);
+    steps.stop_at(options_.discontinuities);
     return steps;
   }
 
   [[nodiscard]] Run run(const Rates& rates, double accuracy) {
     Run result;
-    ErrorMeasure<Scene> distance(scene_, task_.absolute_scale);
+    ErrorMeasure<Scene> distance(scene_, options_.absolute_scale);
     const auto note = [&](const Pair& both) {
       const Vector x = scene_part(both);
       result.worst = max_or_nan(result.worst, distance(x + departure(both), x));
@@ -190,7 +191,7 @@ class PruningEffect {
     // Closer at the beginning: what starts from 0 is soon small no more.
     const auto sample = [&] {
       const auto part = static_cast<double>(result.states.size() + 1) / samples;
-      return part < 1 ? task_.begin + task_.horizon * part * part : end();
+      return part < 1 ? options_.begin + options_.horizon * part * part : end();
     };
     while (steps.t() != end()) {
       steps.step_towards(end());
@@ -208,7 +209,7 @@ class PruningEffect {
   }
 
   const Scene& scene_;
-  const Pruning& task_;
+  const Pruning& options_;
   Vector start_;
   Vector scale_;
   std::vector<int> blocks_;
@@ -269,7 +270,7 @@ class Pruner {
  public:
   Pruner(const Scene& scene, const std::vector<typename Scene::State>& starts,
          const Pruning& options)
-      : scene_(scene), task_(options) {
+      : scene_(scene), options_(options) {
     effects_.reserve(starts.size());
     for (const auto& start : starts) effects_.emplace_back(scene, start, options);
   }
@@ -306,7 +307,7 @@ class Pruner {
         term = {Quantity::name, false, 0, "gone with a term above"};
       } else {
         try {
-          term.bound = bound(without<Scene, Quantity>(scene_, task_));
+          term.bound = bound(without<Scene, Quantity>(scene_, options_));
           term.kept = !fits(place, term.bound);
         } catch (const Error& error) {
           term.why = error.what();
@@ -319,10 +320,10 @@ class Pruner {
   /// Leaves a term out, if the tolerance has room for it: its own bound among those of the others,
   /// and what all do together, for effects add up only as far as they are linear.
   [[nodiscard]] bool fits(std::size_t place, double alone) {
-    if (!(sum_ + alone <= task_.tolerance)) return false;
+    if (!(sum_ + alone <= options_.tolerance)) return false;
     chosen_.at(place) = true;
     const double together = sum_ > 0 ? bound_together() : alone;
-    chosen_.at(place) = together <= task_.tolerance;
+    chosen_.at(place) = together <= options_.tolerance;
     if (!chosen_.at(place)) return false;
     sum_ += alone;
     together_ = together;
@@ -342,7 +343,7 @@ class Pruner {
   [[nodiscard]] AnyKind reduced(const Kind& scene) const {
     if constexpr (is_droppable<Kind, Quantity>) {
       if (chosen_[place]) {
-        const auto less = without<Kind, Quantity>(scene, task_);
+        const auto less = without<Kind, Quantity>(scene, options_);
         return reduced<place + 1, std::decay_t<decltype(less)>, Rest...>(less);
       }
     }
@@ -352,7 +353,7 @@ class Pruner {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   const Scene& scene_;
-  const Pruning& task_;
+  const Pruning& options_;
   std::vector<PruningEffect<Scene>> effects_;
   std::vector<PrunedTerm> terms_;
   Chosen chosen_{};
