@@ -1,4 +1,5 @@
-# cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D TREE=<installed> -D OUT=<folder> -P deb.cmake
+# cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D TREE=<installed> -D LIBDIR=<folder>
+#   -D OUT=<folder> -P deb.cmake
 #
 # Makes a .deb of what is installed in TREE, looks at what it says and holds, unpacks it into OUT/root.
 
@@ -23,7 +24,8 @@ if(EXISTS ${TREE}/bin/simulate AND NOT depends MATCHES "libstdc\\+\\+6.*|libgeog
   message(SEND_ERROR "the package does not ask for what its programs are linked to: ${depends}")
 endif()
 foreach(path IN ITEMS include/kreisel/motor/motor.hpp include/kreisel/dynamics/solve/solve.hpp
-    share/cmake/kreisel/kreisel-config.cmake share/pkgconfig/kreisel-dynamics.pc
+    ${LIBDIR}/cmake/kreisel/kreisel-config.cmake ${LIBDIR}/pkgconfig/kreisel-dynamics.pc
+    ${LIBDIR}/libkreisel.a ${LIBDIR}/libkreisel.so
     share/doc/kreisel/README.md share/doc/kreisel/docs/site/pictures/deviation.svg
     share/doc/kreisel/examples/scenes/gyrocompass.toml)
   if(NOT EXISTS ${OUT}/root/usr/${path})
