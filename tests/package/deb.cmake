@@ -1,34 +1,53 @@
-# cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D TREE=<installed> -D LIBDIR=<folder>
-#   -D OUT=<folder> -P deb.cmake
+# cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D LIBDIR=<folder> -D OUT=<folder> -P deb.cmake
 #
-# Makes a .deb of what is installed in TREE, looks at what it says and holds, unpacks it into OUT/root.
+# Makes the Debian packages of a build, checks what they depend on and hold, unpacks them into OUT/root.
 
 file(REMOVE_RECURSE ${OUT})
 file(MAKE_DIRECTORY ${OUT})
-execute_process(
-  COMMAND ${CPACK} -G DEB --config ${CONFIG} -B ${OUT}
-    -D CPACK_INSTALL_CMAKE_PROJECTS= -D "CPACK_INSTALLED_DIRECTORIES=${TREE};/usr"
+execute_process(COMMAND ${CPACK} -G DEB --config ${CONFIG} -B ${OUT}
   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
-file(GLOB package ${OUT}/*.deb)
-execute_process(COMMAND dpkg-deb --field ${package} Depends
-  OUTPUT_VARIABLE depends COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND dpkg-deb --extract ${package} ${OUT}/root COMMAND_ERROR_IS_FATAL ANY)
 
-if(NOT depends MATCHES "libeigen3-dev \\(>= 3\\.4\\)")
-  message(SEND_ERROR "the package does not ask for Eigen, but for: ${depends}")
-endif()
-if(depends MATCHES "gsl")
-  message(SEND_ERROR "the package asks for GSL, which is GPL-3: ${depends}")
-endif()
-if(EXISTS ${TREE}/bin/simulate AND NOT depends MATCHES "libstdc\\+\\+6.*|libgeographic.*")
-  message(SEND_ERROR "the package does not ask for what its programs are linked to: ${depends}")
-endif()
-foreach(path IN ITEMS include/kreisel/motor/motor.hpp include/kreisel/dynamics/solve/solve.hpp
-    ${LIBDIR}/cmake/kreisel/kreisel-config.cmake ${LIBDIR}/pkgconfig/kreisel-dynamics.pc
-    ${LIBDIR}/libkreisel.a ${LIBDIR}/libkreisel.so
-    share/doc/kreisel/README.md share/doc/kreisel/docs/site/pictures/deviation.svg
-    share/doc/kreisel/examples/scenes/gyrocompass.toml)
-  if(NOT EXISTS ${OUT}/root/usr/${path})
-    message(SEND_ERROR "the package lacks ${path}")
+# check(<package> DEPENDS <pattern> HOLDS <path below usr>...)
+function(check name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "DEPENDS" "HOLDS")
+  file(GLOB package ${OUT}/${name}_*.deb)
+  if(NOT package)
+    message(SEND_ERROR "there is no package ${name}")
+    return()
   endif()
-endforeach()
+  execute_process(COMMAND dpkg-deb --field ${package} Depends
+    OUTPUT_VARIABLE depends COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND dpkg-deb --extract ${package} ${OUT}/${name} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND dpkg-deb --extract ${package} ${OUT}/root COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT depends MATCHES "${arg_DEPENDS}")
+    message(SEND_ERROR "${name} depends on ${depends}, not on ${arg_DEPENDS}")
+  endif()
+  if(depends MATCHES "gsl")
+    message(SEND_ERROR "${name} depends on GSL, which is GPL-3: ${depends}")
+  endif()
+  foreach(path IN LISTS arg_HOLDS)
+    file(GLOB found ${OUT}/${name}/usr/${path})
+    if(NOT found)
+      message(SEND_ERROR "${name} lacks ${path}")
+    endif()
+  endforeach()
+endfunction()
+
+file(GLOB runtime ${OUT}/libkreisel[0-9]*.deb)
+cmake_path(GET runtime FILENAME runtime)
+string(REGEX REPLACE "_.*" "" runtime ${runtime})
+check(${runtime} DEPENDS "libstdc\\+\\+6" HOLDS ${LIBDIR}/libkreisel.so.* share/doc/${runtime}/copyright)
+check(libkreisel-dev DEPENDS "${runtime}.*libeigen3-dev \\(>= 3\\.4\\)"
+  HOLDS include/kreisel/motor/motor.hpp include/kreisel/dynamics/solve/solve.hpp
+    ${LIBDIR}/cmake/kreisel/kreisel-config.cmake ${LIBDIR}/pkgconfig/kreisel-dynamics.pc
+    ${LIBDIR}/libkreisel.a ${LIBDIR}/libkreisel.so)
+check(kreisel DEPENDS "libstdc\\+\\+6"
+  HOLDS bin/simulate share/doc/kreisel/README.md share/doc/kreisel/docs/site/pictures/deviation.svg
+    share/doc/kreisel/examples/scenes/gyrocompass.toml)
+
+# The runtime package holds nothing that a second version of it would overwrite.
+file(GLOB_RECURSE held RELATIVE ${OUT}/${runtime} ${OUT}/${runtime}/*)
+list(FILTER held EXCLUDE REGEX "/libkreisel\\.so\\.[0-9.]+$|^usr/share/doc/${runtime}/")
+if(held)
+  message(SEND_ERROR "${runtime} also holds ${held}")
+endif()
