@@ -198,18 +198,16 @@ Trajectory<double> solve_closed(const SteppedScene& scene, const Eigen::VectorXd
 /// A run with what it has given so far, so that it can be asked again.
 class RunSoFar {
  public:
-  RunSoFar(std::unique_ptr<Run> run, Eigen::Index components, double moved)
-      : run_(std::move(run)), components_(static_cast<std::size_t>(components)), moved_(moved) {}
+  /// stop  : a time before the end at which a step ends, whatever the outputs are; or the end
+  RunSoFar(std::unique_ptr<Run> run, Eigen::Index components, double stop)
+      : run_(std::move(run)), components_(static_cast<std::size_t>(components)), stop_(stop) {}
 
   /// The state at the i-th output, to be read before the next one is asked for; they are asked for in
   /// turn, each time from the first one on.
   [[nodiscard]] std::span<const double> at_output(std::size_t i, double t, double end) {
-    if (i == first_ + known_) run_->on_the_way(t, end, next_state());
+    if (i == first_ + known_) advance_to(t, end);
     return {states_.data() + (i - first_) * components_, components_};
   }
-
-  /// By how many last digits its start is moved.
-  [[nodiscard]] double moved() const { return moved_; }
 
   /// True if the run has its outputs from the first one on: not if a checkpoint began it.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
@@ -217,6 +215,7 @@ class RunSoFar {
   /// Puts another run in the place of this one; the cost counts as if this one had been kept.
   void replace_by(RunSoFar other) {
     other.spent_before_ = spent();
+    other.stop_ = stop_;
     *this = std::move(other);
   }
 
@@ -233,7 +232,7 @@ class RunSoFar {
   void pass(std::size_t done, Checkpoint& checkpoint) {
     if (known_ == 0) first_ = done;
     run_->pass(checkpoint);
-    checkpoint(spent_before_);
+    checkpoint(spent_before_, stop_, has_stopped_);
     std::size_t ahead = first_ + known_ - done;
     checkpoint(ahead);
     for (std::size_t i = done; i < done + ahead; ++i) {
@@ -244,6 +243,16 @@ class RunSoFar {
   }
 
  private:
+  void advance_to(double t, double end) {
+    const bool before = stop_ == end || (t < stop_) == (stop_ < end);
+    if (!before && !has_stopped_) {
+      std::vector<double> y(components_);
+      run_->on_the_way(stop_, stop_, y.data());
+      has_stopped_ = true;
+    }
+    run_->on_the_way(t, has_stopped_ ? end : stop_, next_state());
+  }
+
   [[nodiscard]] double* next_state() {
     known_ += 1;
     states_.resize(known_ * components_);
@@ -252,7 +261,8 @@ class RunSoFar {
 
   std::unique_ptr<Run> run_;
   std::size_t components_;
-  double moved_;
+  double stop_;
+  bool has_stopped_ = false;
   std::size_t first_ = 0;       ///< output it knows
   std::size_t known_ = 0;       ///< from that one on
   std::vector<double> states_;  ///< one after another
@@ -419,19 +429,18 @@ template <class Runs>
   // A scene with another one is held against that, and of stiff springs cheap steps tell nothing.
   bool pair_is_shaken = runs.shakes() && !scene.has_other();
   bool looks_for_rounding = !runs.shakes() && !scene.has_other();
-  const auto run_with = [&](const auto& s, double moved) {
+  const auto run_with = [&](const auto& s, double moved, double stop) {
     Eigen::VectorXd from = start;
     if (moved != 0) move_last_digits(from, moved);
     const double shaken = pair_is_shaken && moved > 0 ? runs.pair_digits() : 0;
-    return RunSoFar(run(runs, s, scene, options, from, moved != 0, shaken), start.size(), moved);
+    return RunSoFar(run(runs, s, scene, options, from, moved != 0, shaken), start.size(), stop);
   };
-  // The finer run ends somewhere on the way, lest a short run be one and the same step in both; and
-  // somewhere else than the others, beside which it may go on.
-  const auto better_at_output = [&](RunSoFar& fine, std::size_t i) {
-    const double t = times[i];
-    const double part = fine.moved() > 0 ? 1.0 / 2 : fine.moved() < 0 ? 2.0 / 5 : 1.0 / 3;
+  // A step of a finer run ends on the way, lest a short run be one and the same step in both; and at
+  // another time than those of the others, beside which it may go on. Equal steps do not need it.
+  const auto finer_run_with = [&](const auto& s, double moved) {
+    const double part = moved > 0 ? 1.0 / 2 : moved < 0 ? 2.0 / 5 : 1.0 / 3;
     const double stop = options.begin + part * (end - options.begin);
-    return fine.at_output(i, t, (t < stop) == (end > options.begin) ? stop : end);
+    return run_with(s, moved, std::is_same_v<Runs, AdaptiveRuns> ? stop : end);
   };
   std::optional<Checkpoint> from;
   if (!checkpoint.empty()) from.emplace(checkpoint);
@@ -463,8 +472,10 @@ template <class Runs>
     BlockDistance distance(scene.blocks(), options.absolute_scale);
     // Where rounding is all that is left, a start one digit away is a sample of what it does.
     if (last_try) digits = std::max(digits, 3 * digits_off(options));
-    if (!coarse) coarse.emplace(run_with(setting, coarse_starts_off ? digits : 0));
-    if (!fine) fine.emplace(run_with(runs.finer(setting), coarse_starts_off ? 0 : digits));
+    if (!coarse) coarse.emplace(run_with(setting, coarse_starts_off ? digits : 0, end));
+    if (!fine) {
+      fine.emplace(finer_run_with(runs.finer(setting), coarse_starts_off ? 0 : digits));
+    }
     std::optional<RoundingGrowth> rounding;
     if constexpr (std::is_same_v<Runs, AdaptiveRuns>) {
       if (looks_for_rounding && runs.can_look_for_rounding(setting, missed.error > 0)) {
@@ -485,7 +496,7 @@ template <class Runs>
     const double enough = surprises ? options.tolerance / 10 : options.tolerance;
     std::vector<RunSoFar> others;
     for (int i = 1; i <= more; ++i) {
-      others.push_back(run_with(runs.between(setting, double(i) / (more + 1)), -digits));
+      others.push_back(finer_run_with(runs.between(setting, double(i) / (more + 1)), -digits));
     }
     watch.note(options.begin, components_of(start));
     std::size_t done = 0;
@@ -525,7 +536,7 @@ template <class Runs>
         state = t == options.begin ? components_of(start) : reached;
         double off = 0;
         const auto hold_beside = [&](RunSoFar& run) {
-          off = max_or_nan(off, distance(state, better_at_output(run, done)));
+          off = max_or_nan(off, distance(state, run.at_output(done, t, end)));
         };
         hold_beside(*fine);
         for (RunSoFar& other : others) hold_beside(other);
@@ -588,7 +599,8 @@ template <class Runs>
         shaken.reset();
       }
       const auto begin_again = [&](std::optional<RunSoFar>& from_output, auto at, double moved) {
-        if (from_output && !from_output->knows_all()) from_output->replace_by(run_with(at, moved));
+        if (from_output && !from_output->knows_all())
+          from_output->replace_by(run_with(at, moved, end));
       };
       begin_again(coarse, setting, coarse_starts_off ? digits : 0);
       begin_again(fine, runs.finer(setting), coarse_starts_off ? 0 : digits);
@@ -615,8 +627,8 @@ template <class Runs>
       coarse_starts_off = !coarse_starts_off;
       known = 0;
       if (!fine->knows_all()) {
-        fine->replace_by(run_with(setting, coarse_starts_off ? digits : 0));
-        for (std::size_t i = 0; i <= done; ++i) better_at_output(*fine, i);
+        fine->replace_by(run_with(setting, coarse_starts_off ? digits : 0, end));
+        for (std::size_t i = 0; i <= done; ++i) (void)fine->at_output(i, times[i], end);
       }
       coarse.emplace(std::move(*fine));
       fine.reset();
