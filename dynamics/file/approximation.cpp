@@ -153,23 +153,18 @@ class Approximation final : public SceneSolver {
   }
 
  private:
-  /// Takes the sizes from the closed form, which reports none: at even times from begin to end.
+  /// Takes the sizes at even times from begin to end. A closed form reports none; every other run does.
   void note_way(detail::ErrorMeasure<Measured>& distance, SolveOptions options,
                 const JointState& start) const {
     constexpr int parts = 64;
-    const double way = options.output_times.back() - options.begin;
+    const double duration = options.output_times.back() - options.begin;
     options.output_times.clear();
     for (int i = 1; i <= parts; ++i)
-      options.output_times.push_back(options.begin + way * i / parts);
+      options.output_times.push_back(options.begin + duration * i / parts);
     distance(joined(start), joined(start));
-    for (const JointState& state :
-         exact_
-             ->solve(
-                 options, start, [](double, const JointState&) { return true; },
-                 [] { return false; })
-             .states) {
-      distance(joined(state), joined(state));
-    }
+    const auto goes_on = [](double, const JointState&) { return true; };
+    const Trajectory<JointState> way = exact_->solve(options, start, goes_on, [] { return false; });
+    for (const JointState& state : way.states) distance(joined(state), joined(state));
   }
 
   std::unique_ptr<SceneSolver> exact_;

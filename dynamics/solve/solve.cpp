@@ -212,7 +212,7 @@ class RunSoFar {
   /// True if the run has its outputs from the first one on: not if a checkpoint began it.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
-  /// Puts another run in the place of this one; the cost counts as if this one had been kept.
+  /// Puts another run in the place of this one, with the cost and the stop of this one.
   void replace_by(RunSoFar other) {
     other.spent_before_ = spent();
     other.stop_ = stop_;
@@ -243,6 +243,7 @@ class RunSoFar {
   }
 
  private:
+  /// Takes steps to t that end at the stop, if it is not behind, and keeps the state at t.
   void advance_to(double t, double end) {
     const bool before = stop_ == end || (t < stop_) == (stop_ < end);
     if (!before && !has_stopped_) {

@@ -613,6 +613,28 @@ BOOST_AUTO_TEST_CASE(linear_equations_and_how_far_they_are_off) {
   }
 }
 
+// A quarter of a swing from rest: early outputs are small, but errors are in proportion to the whole way.
+BOOST_AUTO_TEST_CASE(model_errors_whatever_the_outputs) {
+  const Scratch folder;
+  const double begin = 0.005;
+  std::string rod = two_rods.substr(0, two_rods.find("[[body]]\nname = \"lower\""));
+  rod.replace(rod.find("angle = 0.5"), 11, "angle = 0.005");
+  const auto angle = [&folder, &rod](const char* model, const std::string& outputs, double& told) {
+    std::string text = approximated(model, rod);
+    text.replace(text.find("output_step = 0.01"), 18, outputs);
+    const json result = answer(folder.write("scene.toml", text).string() + " --t-end 0.5");
+    told = result.at("error_estimate");
+    return result.at("final").at("joints").at("upper").at("coordinate").get<double>();
+  };
+  double told = 0;
+  const double exact = angle("exact", "output_times = [0.5]", told);
+  for (const char* const outputs :
+       {"output_step = 0.025", "output_step = 0.001", "output_times = [0.5]"}) {
+    const double off = std::abs(angle("linear", outputs, told) - exact) / begin;
+    BOOST_TEST(std::abs(told - off) <= 1e-6 * off, outputs << ": " << told << " and " << off);
+  }
+}
+
 // The same rod in a ball joint: its turn goes as the angle does.
 BOOST_AUTO_TEST_CASE(linear_equations_of_an_attitude) {
   const Scratch folder;
