@@ -53,9 +53,9 @@ struct Pose {
   [[gnu::always_inline]] friend Pose operator*(const Pose& a, const Pose& b) {
     Pose X{Matrix3<S>(), Vector3<S>()};  // not made the unit first
     if constexpr (std::is_same_v<S, double>) {
-      const detail::Columns R(a.rotation.data());
+      const detail::Mat3dByColumns R(a.rotation.data());
       detail::multiply(R, b.rotation, X.rotation);
-      const auto x = detail::Three::from(a.translation.data());
+      const auto x = detail::Vec3d::from(a.translation.data());
       (x + R.combined(b.translation.data())).to(X.translation.data());
     } else {
       detail::multiply(a.rotation, b.rotation, X.rotation);
@@ -76,7 +76,7 @@ struct Pose {
                              S(m.z() + (px * y - py * x)))};
     };
     if constexpr (std::is_same_v<S, double>) {
-      const detail::Columns R(X.rotation.data());
+      const detail::Mat3dByColumns R(X.rotation.data());
       return moved(R.combined(a.resultant.data()), R.combined(a.moment.data()));
     } else {
       return moved(detail::product(X.rotation, a.resultant), detail::product(X.rotation, a.moment));

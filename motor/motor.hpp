@@ -3,10 +3,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <cstring>
 #include <type_traits>
 
-#include <motor/columns.hpp>
+#include <motor/simd.hpp>
 
 namespace kreisel {
 
@@ -16,10 +15,7 @@ using Vector3 = Eigen::Matrix<S, 3, 1>;
 template <class S>
 using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
-// The kernels of this folder and of dynamics/inertia.hpp are written out component by component and
-// always inline. Eigen's own sums and products of three numbers go through packed registers and wait
-// for what has just been stored one by one, and g++ makes calls and loops of them at -O2
-// (benchmarks/kernels.cpp).
+// motor/simd.hpp says why the kernels are written component by component.
 
 namespace detail {
 
@@ -50,7 +46,7 @@ template <class S>
     for (int i = 0; i < 3; ++i) C(i, k) = A(i, 0) * B(0, k) + A(i, 1) * B(1, k) + A(i, 2) * B(2, k);
   }
 }
-[[gnu::always_inline]] inline void multiply(const Columns& A, const Matrix3<double>& B,
+[[gnu::always_inline]] inline void multiply(const Mat3dByColumns& A, const Matrix3<double>& B,
                                             Matrix3<double>& C) {
   A.combined(B.data()).to(C.data());
   A.combined(B.data() + 3).to(C.data() + 3);
@@ -58,7 +54,7 @@ template <class S>
 }
 [[gnu::always_inline]] inline void multiply(const Matrix3<double>& A, const Matrix3<double>& B,
                                             Matrix3<double>& C) {
-  multiply(Columns(A.data()), B, C);
+  multiply(Mat3dByColumns(A.data()), B, C);
 }
 
 /// R^t v
@@ -127,22 +123,6 @@ template <class S>
 template <class S>
 [[gnu::always_inline]] inline Vector3<S>& operator-=(Vector3<S>& a, const Vector3<S>& b) {
   return a = a - b;
-}
-
-/// Three numbers, to be stored as two and one. Of six in a row g++ would pack four, and take longer for
-/// that than for their products.
-template <class S>
-[[nodiscard, gnu::always_inline]] inline Vector3<S> by_two(const S& x, const S& y, const S& z) {
-  if constexpr (std::is_same_v<S, double>) {
-    using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-    const Pair pair{x, y};
-    Vector3<S> result;
-    std::memcpy(result.data(), &pair, sizeof pair);
-    result[2] = z;
-    return result;
-  } else {
-    return {x, y, z};
-  }
 }
 
 }  // namespace detail

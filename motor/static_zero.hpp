@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include <motor/motor.hpp>
+#include <motor/simd.hpp>
 
 /// Zeros that are known when the program is compiled. Formulas are written once, for all that may
 /// be there; what a scene does not have is StaticZero by its type, and takes with it all that it
@@ -84,6 +85,12 @@ template <class S>
 template <class S, class X, class Y, class Z>
 [[nodiscard]] Vector3<S> vector(const Components<X, Y, Z>& a) {
   return {S(S(0) + a.x), S(S(0) + a.y), S(S(0) + a.z)};
+}
+
+/// The components and w = 0. StaticZero components come out as 0.
+template <class X, class Y, class Z>
+[[nodiscard]] Vec4d vec4d(const Components<X, Y, Z>& a) {
+  return {0.0 + a.x, 0.0 + a.y, 0.0 + a.z, 0};
 }
 
 template <class X, class Y, class Z, class P, class Q, class R>

@@ -27,8 +27,8 @@
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <motor/error.hpp>
-#include <motor/four.hpp>
 #include <motor/lanes.hpp>
+#include <motor/simd.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel {

@@ -6,7 +6,7 @@
 
 #include <dynamics/gimbal/cardan_parts.hpp>
 #include <dynamics/guide/series.hpp>
-#include <motor/four.hpp>
+#include <motor/simd.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
@@ -37,8 +37,8 @@ class ProductsOfSeries {
 
   /// Those of order k, with the factors' coefficients of that order, the right ones of which are
   /// waited for longer.
-  [[nodiscard, gnu::always_inline]] Four of(std::size_t group, int k, const Four& left,
-                                            const Four& right) {
+  [[nodiscard, gnu::always_inline]] Vec4d of(std::size_t group, int k, const Vec4d& left,
+                                             const Vec4d& right) {
     const auto at = static_cast<std::size_t>(k);
     left_[at][group] = left;
     right_[at][group] = right;
@@ -47,16 +47,16 @@ class ProductsOfSeries {
   }
 
   /// Puts in what right factors were not known yet and given as 0.
-  [[gnu::always_inline]] void complete(std::size_t group, int k, const Four& right) {
+  [[gnu::always_inline]] void complete(std::size_t group, int k, const Vec4d& right) {
     right_[std::size_t(k)][group] = right;
   }
 
  private:
-  using Sums = std::array<Four, groups>;
+  using Sums = std::array<Vec4d, groups>;
 
   [[nodiscard]] static Sums zeros() {
     Sums sums;
-    sums.fill(Four(0, 0, 0, 0));
+    sums.fill(Vec4d(0, 0, 0, 0));
     return sums;
   }
 
@@ -64,7 +64,7 @@ class ProductsOfSeries {
     for (std::size_t g = 0; g < groups; ++g) sums[g] += left_[i][g] * right_[j][g];
   }
 
-  using Coefficients = std::array<std::array<Four, groups>, most_series_order + 1>;
+  using Coefficients = std::array<std::array<Vec4d, groups>, most_series_order + 1>;
 
   Coefficients left_;
   Coefficients right_;
@@ -184,7 +184,7 @@ class CardanSeries {
 
       // Of order k + 1, without what alpha'' and beta'' of order k do.
       products.begin(k);
-      const Four angles = products.of(0, k, {cb, sb, cb, sb}, {db, db, 0, 0});
+      const Vec4d angles = products.of(0, k, {cb, sb, cb, sb}, {db, db, 0, 0});
       const double next_sb = w * angles[0];
       const double next_cb = -w * angles[1];
       double next_x2 = angles[2] + next_cb * first_x3;
@@ -192,12 +192,12 @@ class CardanSeries {
       double next_x3 = 0, next_y2 = 0;
       [[maybe_unused]] double y3z3 = 0;
       if constexpr (turns) {
-        const Four turned = products.of(guide, k, {z3, y3, cb, sb}, {da, da, 0, 0});
-        const Four beside = products.of(guide + 1, k, {y3, ca, sa, 0}, {z3, da, da, 0});
+        const Vec4d turned = products.of(guide, k, {z3, y3, cb, sb}, {da, da, 0, 0});
+        const Vec4d beside = products.of(guide + 1, k, {y3, ca, sa, 0}, {z3, da, da, 0});
         y3z3 = beside[0];
         if constexpr (turns_unsteadily) {
           const Components<double>& next_u = u[std::size_t(k) + 1];
-          const Four field =
+          const Vec4d field =
               products.of(guide + 2, k, {ca, sa, ca, sa}, {next_u.y, next_u.z, next_u.z, next_u.y});
           sa = w * beside[1];
           ca = -w * beside[2];
@@ -219,8 +219,8 @@ class CardanSeries {
       // What turns inner ring and rotor, on the ring's axes: rates of their angular momentum, and
       // w x of it.
       const double L = C_1 * (g.regulated ? df : z2 + df);
-      const Four gyro = products.of(1, k, {y2, y2, x2, 0},
-                                    {x2, (ring.c - ring.b) * z2 + L, ring.a_less_c * z2 - L, 0});
+      const Vec4d gyro = products.of(1, k, {y2, y2, x2, 0},
+                                     {x2, (ring.c - ring.b) * z2 + L, ring.a_less_c * z2 - L, 0});
       double on_a = per * ring.a * next_x2 + gyro[1];
       double on_b = per * ring.b * next_y2 + gyro[2];
       const double on_c = per * ring.c * next_z2 + (ring.b - ring.a) * gyro[0];
@@ -232,15 +232,15 @@ class CardanSeries {
           next_c2 = -2 * w * first_df * s2;
         } else {
           spin.begin(k);
-          const Four turned = spin.of(0, k, {c2, s2, 0, 0}, {df, df, 0, 0});
+          const Vec4d turned = spin.of(0, k, {c2, s2, 0, 0}, {df, df, 0, 0});
           next_s2 = 2 * w * turned[0];
           next_c2 = -2 * w * turned[1];
         }
-        const Four by_w =
+        const Vec4d by_w =
             products.of(blades, k, {c2, s2, s2, c2}, {next_x2, next_y2, next_x2, next_y2});
         next_x = (by_w[0] + by_w[1]) + (next_c2 * first_x2 + next_s2 * first_y2);
         next_y = (by_w[2] - by_w[3]) + (next_s2 * first_x2 - next_c2 * first_y2);
-        const Four turned = products.of(blades + 1, k, {z2, z2, x2, y2}, {Y, X, Y, X});
+        const Vec4d turned = products.of(blades + 1, k, {z2, z2, x2, y2}, {Y, X, Y, X});
         on_a += g.n * (per * next_x - turned[0]);
         on_b += g.n * (per * next_y + turned[1]);
         twist = g.n * (turned[2] - turned[3]);
@@ -248,7 +248,7 @@ class CardanSeries {
       const double torque = (k == 0 ? g.torque : 0) - g.friction * df;
       double along = on_c + (g.regulated ? twist : torque);
 
-      const Four on_outer = products.of(2, k, {cb, sb, 0, 0}, {on_a, along, 0, 0});
+      const Vec4d on_outer = products.of(2, k, {cb, sb, 0, 0}, {on_a, along, 0, 0});
       const double left_a =
           resistance(outer, c(0, k), da) + (on_outer[0] + on_outer[1]) +
           (per * outer_ring.x() * next_x3 + (outer_ring.z() - outer_ring.y()) * y3z3);

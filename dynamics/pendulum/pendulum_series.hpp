@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include <dynamics/guide/series.hpp>
-#include <motor/four.hpp>
+#include <motor/simd.hpp>
 
 namespace kreisel::detail {
 
@@ -32,23 +32,23 @@ class PendulumSeries {
   /// (time - t)/h, for the motion that has column 0 at t.
   template <class Coefficients>
   void operator()(double /*t*/, double h, int order, Coefficients& c) const {
-    std::array<double, most_order> turned;    // h phi'
-    std::array<Four, most_order> quarter_on;  // y
-    Four x = waves(c(0, 0));
+    std::array<double, most_order> turned;     // h phi'
+    std::array<Vec4d, most_order> quarter_on;  // y
+    Vec4d x = waves(c(0, 0));
     double drive = drive_;
     for (int k = 0;; ++k) {
       const auto at = static_cast<std::size_t>(k);
       const double weight = h / (k + 1);
-      const Four moment = moments_ * x;
+      const Vec4d moment = moments_ * x;
       c(0, k + 1) = weight * c(1, k);
       c(1, k + 1) = -weight * ((moment[0] + moment[1]) + (moment[2] + moment[3]) + drive);
       if (k + 1 == order) return;
       drive = 0;
       turned[at] = h * c(1, k);
-      quarter_on[at] = Four(x[1], -x[0], 2 * x[3], -2 * x[2]);
+      quarter_on[at] = Vec4d(x[1], -x[0], 2 * x[3], -2 * x[2]);
       // Two sums, lest each term wait for the one before; and the newest coefficients last.
-      Four even(0, 0, 0, 0);
-      Four odd(0, 0, 0, 0);
+      Vec4d even(0, 0, 0, 0);
+      Vec4d odd(0, 0, 0, 0);
       std::size_t i = 1;
       for (; i + 2 < at; i += 2) {
         even += turned[i] * quarter_on[at - i];
@@ -61,13 +61,13 @@ class PendulumSeries {
   }
 
  private:
-  [[nodiscard]] static Four waves(double angle) {
+  [[nodiscard]] static Vec4d waves(double angle) {
     const double s = std::sin(angle);
     const double c = std::cos(angle);
     return {s, c, 2 * s * c, (c - s) * (c + s)};
   }
 
-  Four moments_;
+  Vec4d moments_;
   double drive_;
 };
 

@@ -4,9 +4,8 @@
 #include <cstddef>
 
 #include <dynamics/guide/series.hpp>
-#include <dynamics/rigid/diagonals.hpp>
-#include <dynamics/rigid/tensor_of_four.hpp>
-#include <motor/four.hpp>
+#include <dynamics/rigid/packed_tensor.hpp>
+#include <motor/simd.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
@@ -38,9 +37,9 @@ class AttitudeSeries {
   AttitudeSeries(const Tensor& tensor, const FirstMoment& first_moment, const Felt& felt,
                  const Momentum& momentum = {})
       : tensor_(tensor),
-        first_moment_(four(first_moment)),
+        first_moment_(vec4d(first_moment)),
         felt_(felt),
-        momentum_(four(momentum)) {}
+        momentum_(vec4d(momentum)) {}
 
   /// Fills the columns 1 to `order` of c with the coefficients of (quaternion x, y, z, w; u') in
   /// powers of (time - t)/h, for the motion that has column 0 at t.
@@ -51,7 +50,7 @@ class AttitudeSeries {
     const double norm2 = c.col(0).template head<4>().squaredNorm();
     s.put_attitude(0, {c(0, 0), c(1, 0), c(2, 0), c(3, 0)});
     // At the beginning it is u' that is known, not w.
-    Four w(c(4, 0), c(5, 0), c(6, 0), 0);
+    Vec4d w(c(4, 0), c(5, 0), c(6, 0), 0);
     for (int k = 0;; ++k) {
       Sums sums;
       // What is known already comes first, and the newest coefficients last: they may still be on
@@ -62,7 +61,8 @@ class AttitudeSeries {
         if constexpr (guide_changes) s.add_felt(i, j, felt, sums);
       }
       at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_attitudes(i, j, sums); });
-      const Diagonals R = Diagonals::turn_back(sums.square, sums.next, sums.by_w, 1 / norm2);
+      const Mat3dByDiagonals R =
+          Mat3dByDiagonals::rotation_back(sums.square, sums.next, sums.by_w, 1 / norm2);
       if constexpr (guide_changes) {
         s.turn_back[std::size_t(k)] = R;
         at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_felt(i, j, felt, sums); });
@@ -71,7 +71,7 @@ class AttitudeSeries {
         if constexpr (pulled) sums.gravity = R * felt.g;
       }
       if (k == 0) w += sums.guide;
-      const Four u = w - sums.guide;
+      const Vec4d u = w - sums.guide;
       for (int i = 0; i < 3; ++i) c(4 + i, k) = u[i];
       if (k == order) return;
       s.put_rates(k, w, by_whole_rate ? w : u);
@@ -81,7 +81,7 @@ class AttitudeSeries {
       at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_rates(i, j, sums); });
       const double weight = h / (k + 1);
       w = weight * tensor_.solve(moment(w, sums));
-      Four dq = sums.x + sums.y + sums.z;
+      Vec4d dq = sums.x + sums.y + sums.z;
       if constexpr (by_whole_rate && guide_turns) dq = dq - s.turned_along(k, felt.u.as_is);
       dq = weight / 2 * dq;
       s.put_attitude(k + 1, dq);
@@ -117,50 +117,50 @@ class AttitudeSeries {
   using Of = std::array<T, most_order + 1>;
 
   struct SteadyFelt {
-    Cycles u, g;
+    CyclicVec4d u, g;
   };
   struct ChangingFelt {
-    Of<Cycles> u, g;
+    Of<CyclicVec4d> u, g;
   };
 
   /// The k-th coefficients of products.
   struct Sums {
-    Four square = {0, 0, 0, 0};  ///< of q: xx, yy, zz, ww
-    Four next = {0, 0, 0, 0};    ///< xy, yz, zx
-    Four by_w = {0, 0, 0, 0};    ///< xw, yw, zw
-    Four x = {0, 0, 0, 0};       ///< q (0, u') or q (0, w), by the components of u' or w
-    Four y = {0, 0, 0, 0};
-    Four z = {0, 0, 0, 0};
-    Four mixed = {0, 0, 0, 0};     ///< of w: yz, zx, xy; Resal's: (n A - C w_z)(w_y, -w_x)
-    Four w_square = {0, 0, 0, 0};  ///< xx, yy, zz
-    Four guide = {0, 0, 0, 0};     ///< R^t u
-    Four gravity = {0, 0, 0, 0};   ///< R^t g'
+    Vec4d square = {0, 0, 0, 0};  ///< of q: xx, yy, zz, ww
+    Vec4d next = {0, 0, 0, 0};    ///< xy, yz, zx
+    Vec4d by_w = {0, 0, 0, 0};    ///< xw, yw, zw
+    Vec4d x = {0, 0, 0, 0};       ///< q (0, u') or q (0, w), by the components of u' or w
+    Vec4d y = {0, 0, 0, 0};
+    Vec4d z = {0, 0, 0, 0};
+    Vec4d mixed = {0, 0, 0, 0};     ///< of w: yz, zx, xy; Resal's: (n A - C w_z)(w_y, -w_x)
+    Vec4d w_square = {0, 0, 0, 0};  ///< xx, yy, zz
+    Vec4d guide = {0, 0, 0, 0};     ///< R^t u
+    Vec4d gravity = {0, 0, 0, 0};   ///< R^t g'
   };
 
   /// The coefficients so far, as the products take them. Of the functions that add up the compiler
   /// would not put all in their places by itself, and what they add up is in no register then.
   struct Table {
-    Of<Four> q, q_next;      ///< (x, y, z, w), (y, z, x, w)
-    Of<Four> q_i, q_j, q_k;  ///< the products with the quaternion units
-    Of<Four> w, w_next, w_after;
-    Of<Four> u;  ///< u', or w where that is taken for it
-    Of<Diagonals> turn_back;
-    Of<Four> aside;     ///< on Resal's axes: (-w_y, w_x)
+    Of<Vec4d> q, q_next;      ///< (x, y, z, w), (y, z, x, w)
+    Of<Vec4d> q_i, q_j, q_k;  ///< the products with the quaternion units
+    Of<Vec4d> w, w_next, w_after;
+    Of<Vec4d> u;  ///< u', or w where that is taken for it
+    Of<Mat3dByDiagonals> turn_back;
+    Of<Vec4d> aside;    ///< on Resal's axes: (-w_y, w_x)
     Of<double> excess;  ///< there: C w_z - A n
 
-    void put_attitude(int k, const Four& a) {
+    void put_attitude(int k, const Vec4d& a) {
       const auto at = static_cast<std::size_t>(k);
       q[at] = a;
       q_next[at] = a.next();
-      q_i[at] = Four(a[3], a[2], -a[1], -a[0]);
-      q_j[at] = Four(-a[2], a[3], a[0], -a[1]);
-      if constexpr (!on_resal_axes) q_k[at] = Four(a[1], -a[0], a[3], -a[2]);
+      q_i[at] = Vec4d(a[3], a[2], -a[1], -a[0]);
+      q_j[at] = Vec4d(-a[2], a[3], a[0], -a[1]);
+      if constexpr (!on_resal_axes) q_k[at] = Vec4d(a[1], -a[0], a[3], -a[2]);
     }
 
-    void put_rates(int k, const Four& a, const Four& rate) {
+    void put_rates(int k, const Vec4d& a, const Vec4d& rate) {
       const auto at = static_cast<std::size_t>(k);
       if constexpr (on_resal_axes) {
-        aside[at] = Four(-a[1], a[0], 0, 0);
+        aside[at] = Vec4d(-a[1], a[0], 0, 0);
       } else {
         w[at] = a;
         w_next[at] = a.next();
@@ -170,10 +170,10 @@ class AttitudeSeries {
     }
 
     /// (0, v) q
-    [[nodiscard]] Four turned_along(int k, const Four& v) const {
+    [[nodiscard]] Vec4d turned_along(int k, const Vec4d& v) const {
       const auto at = static_cast<std::size_t>(k);
-      return Four(v[0], -v[0], -v[0], v[0]) * q_i[at] + Four(-v[1], v[1], -v[1], v[1]) * q_j[at] +
-             Four(-v[2], -v[2], v[2], v[2]) * q_k[at];
+      return Vec4d(v[0], -v[0], -v[0], v[0]) * q_i[at] + Vec4d(-v[1], v[1], -v[1], v[1]) * q_j[at] +
+             Vec4d(-v[2], -v[2], v[2], v[2]) * q_k[at];
     }
 
     [[gnu::always_inline]] void add_attitudes(std::size_t i, std::size_t j, Sums& s) const {
@@ -208,8 +208,8 @@ class AttitudeSeries {
     if (k > 0) term(std::size_t(k), 0);
   }
 
-  [[nodiscard]] Four moment(const Four& w, const Sums& sums) const {
-    Four sum = sums.mixed;
+  [[nodiscard]] Vec4d moment(const Vec4d& w, const Sums& sums) const {
+    Vec4d sum = sums.mixed;
     if constexpr (!on_resal_axes) sum = tensor_.gyroscopic_torque(sums.mixed, sums.w_square);
     if constexpr (!Momentum::absent) sum += cross(momentum_, w);
     if constexpr (pulled) sum += cross(first_moment_, sums.gravity);
@@ -221,19 +221,19 @@ class AttitudeSeries {
       const GuideSeries series = felt_.at(t, h, order);
       ChangingFelt felt;
       for (std::size_t k = 0; k <= std::size_t(order); ++k) {
-        felt.u[k] = Cycles(four(series.u[k]));
-        felt.g[k] = Cycles(four(series.g[k]));
+        felt.u[k] = CyclicVec4d(vec4d(series.u[k]));
+        felt.g[k] = CyclicVec4d(vec4d(series.g[k]));
       }
       return felt;
     } else {
-      return SteadyFelt{Cycles(four(felt_.u)), Cycles(four(felt_.g))};
+      return SteadyFelt{CyclicVec4d(vec4d(felt_.u)), CyclicVec4d(vec4d(felt_.g))};
     }
   }
 
-  TensorOfFour<Tensor> tensor_;
-  Four first_moment_;
+  PackedTensor<Tensor> tensor_;
+  Vec4d first_moment_;
   Felt felt_;
-  Four momentum_;
+  Vec4d momentum_;
 };
 
 }  // namespace kreisel::detail

@@ -14,7 +14,7 @@
 #include <dynamics/model/terms.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
 #include <motor/attitude.hpp>
-#include <motor/four.hpp>
+#include <motor/simd.hpp>
 
 namespace kreisel {
 

@@ -18,8 +18,8 @@
 #include <dynamics/rigid/attitude_series.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
-#include <motor/four.hpp>
 #include <motor/lanes.hpp>
+#include <motor/simd.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel {

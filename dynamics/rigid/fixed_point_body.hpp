@@ -23,7 +23,7 @@
 #include <dynamics/rigid/jacobi_integral.hpp>
 #include <motor/attitude.hpp>
 #include <motor/error.hpp>
-#include <motor/four.hpp>
+#include <motor/simd.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel {

@@ -241,8 +241,8 @@ class GaussIRK {
       for (int i = 0; i < stages; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Vector sum = stage_.lazyProduct(ratio_.col(i));
-        alignas(detail::Four) alignas(Vector) const Vector point = y() + (sum + state_.rest);
-        alignas(detail::Four) alignas(Vector) const Vector f =
+        alignas(detail::Vec4d) alignas(Vector) const Vector point = y() + (sum + state_.rest);
+        alignas(detail::Vec4d) alignas(Vector) const Vector f =
             evaluate(t() + (node_[at] + time_.rest), point);
         const Vector z = weight_[at] * f + weight_rest_[at] * f;
         change = change.cwiseMax((z - stage_.col(i)).cwiseAbs());

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-#include <motor/four.hpp>
 #include <motor/lanes.hpp>
+#include <motor/simd.hpp>
 
 namespace kreisel::detail {
 
@@ -39,7 +39,7 @@ class StageMemory {
   /// Puts what `make` returns into stage k.
   template <class Make>
   [[gnu::always_inline]] void keep(std::size_t k, const Make& make) {
-    alignas(few ? 1 : alignof(Four)) alignas(Vector) const Vector rate = make();
+    alignas(few ? 1 : alignof(Vec4d)) alignas(Vector) const Vector rate = make();
     if constexpr (by_fours) {
       keep_fours(stage_[k], rate, std::make_integer_sequence<int, padded / 4>());
     } else {
@@ -72,10 +72,10 @@ class StageMemory {
  private:
   /// Four numbers of a vector, or what it has of them and zeros.
   template <int first, class V>
-  [[nodiscard, gnu::always_inline]] static Four four_of(const V& v) {
+  [[nodiscard, gnu::always_inline]] static Vec4d vec4d_of(const V& v) {
     constexpr int left = int(V::RowsAtCompileTime) - first;
     if constexpr (left >= 4) {
-      return Four::from(v.data() + first);
+      return Vec4d::from(v.data() + first);
     } else {
       return {v[first], left > 1 ? v[first + 1] : 0, left > 2 ? v[first + 2] : 0, 0};
     }
@@ -84,7 +84,7 @@ class StageMemory {
   template <int... group>
   [[gnu::always_inline]] static void keep_fours(Stage& stage, const Vector& rate,
                                                 std::integer_sequence<int, group...> /*all*/) {
-    (four_of<4 * group>(rate).to(stage.data() + 4 * group), ...);
+    (vec4d_of<4 * group>(rate).to(stage.data() + 4 * group), ...);
   }
 
   template <class Terms, int... group>
@@ -94,7 +94,7 @@ class StageMemory {
   }
   template <int first, class Terms>
   [[gnu::always_inline]] static void put_four(Vector& result, const Terms& terms) {
-    const Four sum = terms([](const auto& v) { return four_of<first>(v); });
+    const Vec4d sum = terms([](const auto& v) { return vec4d_of<first>(v); });
     if constexpr (components - first >= 4) {
       sum.to(result.data() + first);
     } else {

@@ -32,13 +32,13 @@ bool knows_series(const BodyTree& tree) {
   return axes;
 }
 
-[[nodiscard]] inline double along(const Four& a, const Four& b) {
-  const Four product = a * b;
+[[nodiscard]] inline double along(const Vec4d& a, const Vec4d& b) {
+  const Vec4d product = a * b;
   return product[0] + product[1] + product[2];
 }
 
 /// (-y, x, -w, z): two vectors of a plane turned by a right angle.
-[[nodiscard]] inline Four turned_left(const Four& a) { return {-a[1], a[0], -a[3], a[2]}; }
+[[nodiscard]] inline Vec4d turned_left(const Vec4d& a) { return {-a[1], a[0], -a[3], a[2]}; }
 
 /// The k-th coefficients of w w^t: those with what is newest, and the others.
 inline void TreeSeries::Branch::begin_products(std::size_t k) {
@@ -55,23 +55,23 @@ inline void TreeSeries::Branch::accelerate(double per_time) {
   dw.as_is = per_time * w_next.as_is;
   dw.next = per_time * w_next.next;
   dw.after = per_time * w_next.after;
-  gamma.main = Four(0, 0, 0, 0) - (squares.next() + squares.after());
+  gamma.main = Vec4d(0, 0, 0, 0) - (squares.next() + squares.after());
   gamma.upper = next - dw.after;
   gamma.lower = next.after() + dw.next;
 }
 
-inline void TreeSeries::Ball::put_attitude(std::size_t k, const Four& coefficient) {
+inline void TreeSeries::Ball::put_attitude(std::size_t k, const Vec4d& coefficient) {
   q[k] = coefficient;
   q_cycled[k] = coefficient.next();
-  Four square(0, 0, 0, 0);
-  Four next = square;
-  Four by_w = square;
+  Vec4d square(0, 0, 0, 0);
+  Vec4d next = square;
+  Vec4d by_w = square;
   for (std::size_t j = 0; j <= k; ++j) {
     square += q[j] * q[k - j];
     next += q[j] * q_cycled[k - j];
     by_w += q[k - j][3] * q[j];
   }
-  turn_back[k] = Diagonals::turn_back(square, next, by_w, scale);
+  turn_back[k] = Mat3dByDiagonals::rotation_back(square, next, by_w, scale);
   turn[k] = turn_back[k].transposed();
 }
 
@@ -88,10 +88,10 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
       spins_(tree.rotors().size()),
       fours_(tree.rates() <= most_inverted ? (static_cast<std::size_t>(tree.rates()) + 3) / 4 : 0),
       inverse_(fours_ * static_cast<std::size_t>(tree.rates())) {
-  const Four zero(0, 0, 0, 0);
+  const Vec4d zero(0, 0, 0, 0);
   Branch& guide = branches_[0];
   guide.gamma = {zero, zero, zero};
-  guide.w_next = Cycles(zero);
+  guide.w_next = CyclicVec4d(zero);
   guide.dw = guide.w_next;
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     const Link& link = tree.links()[i];
@@ -112,7 +112,7 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
       b.way = Way::sliding;
       b.number = sliders_.size();
       const Vector3<double> axis = above.transpose() * link.axis;
-      sliders_.emplace_back().axis = Cycles(four(components(axis)));
+      sliders_.emplace_back().axis = CyclicVec4d(vec4d(components(axis)));
     } else if (link.moves()) {
       b.way = Way::ball;
       b.number = static_cast<std::size_t>(link.factor);
@@ -126,8 +126,8 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
     }
     const Inertia<> T = Pose<>{b.own_axes, Vector3<double>::Zero()} * link.inertia;
     b.mass = T.mass;
-    b.first_moment = Cycles(four(components(T.first_moment)));
-    b.tensor = Diagonals::of(T.tensor.matrix());
+    b.first_moment = CyclicVec4d(vec4d(components(T.first_moment)));
+    b.tensor = Mat3dByDiagonals::of(T.tensor.matrix());
     b.gyroscopic = GyroscopicDifferences(T.tensor);
   }
   for (std::size_t k = 0; k < spins_.size(); ++k) {
@@ -139,7 +139,7 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
     spin.regulated = rotor.regulated();
     spin.about = rotor.about;
     const Matrix3<double>& axes = branches_[spin.carrier].own_axes;
-    spin.axis = four(components(Vector3<double>(axes * rotor.link.axis)));
+    spin.axis = vec4d(components(Vector3<double>(axes * rotor.link.axis)));
   }
 }
 
@@ -173,22 +173,22 @@ void TreeSeries::begin(const Columns& c) {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     Branch& b = branches_[i];
     const Matrix3<double> to_own = b.own_axes * workspace_.pose[i].R.transpose();
-    b.w_next = Cycles(four(components(Vector3<double>(to_own * workspace_.motion[i].w))));
+    b.w_next = CyclicVec4d(vec4d(components(Vector3<double>(to_own * workspace_.motion[i].w))));
     if (i == 0) continue;
     const Branch& parent = branches_[b.parent];
     const Matrix3<double> above = parent.own_axes * workspace_.pose[b.parent].R.transpose();
-    b.r = Cycles(four(components(Vector3<double>(above * workspace_.pose[i].r))));
+    b.r = CyclicVec4d(vec4d(components(Vector3<double>(above * workspace_.pose[i].r))));
     if (b.way == Way::still || b.way == Way::sliding) b.set_outwards(to_own * above.transpose());
-    const Four w = b.outwards * parent.w_next;
+    const Vec4d w = b.outwards * parent.w_next;
     if (b.way == Way::turning) {
       b.cos[0] = std::cos(c(b.q, 0));
       b.sin[0] = std::sin(c(b.q, 0));
-      b.first_turn = Four(w[0], w[1], 0, 0);
+      b.first_turn = Vec4d(w[0], w[1], 0, 0);
     } else if (b.way == Way::ball) {
       Ball& ball = balls_[b.number];
       ball.first_w = w;
       ball.scale = 1 / c.col(0).segment<4>(b.q).squaredNorm();
-      ball.put_attitude(0, Four::from(&c(b.q, 0)));
+      ball.put_attitude(0, Vec4d::from(&c(b.q, 0)));
     }
   }
 }
@@ -223,9 +223,9 @@ void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
 
 void TreeSeries::prepare_guide(std::size_t k, double per_time, const GuideSeries& felt) {
   Branch& guide = branches_[0];
-  guide.a = -1.0 * four(felt.g[k]);
+  guide.a = -1.0 * vec4d(felt.g[k]);
   if (guide_rests_) return;
-  guide.w_next = Cycles(four(felt.u[k + 1]));
+  guide.w_next = CyclicVec4d(vec4d(felt.u[k + 1]));
   guide.begin_products(k);
   for (std::size_t j = 1; j <= k; ++j) guide.add_product(j, k - j);
   guide.accelerate(per_time);
@@ -237,10 +237,10 @@ void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
   const auto last = static_cast<std::size_t>(k);
   double by_cos = c(b.v, k) * b.cos[0];
   double by_sin = c(b.v, k) * b.sin[0];
-  Four outer(0, 0, 0, 0);
-  Four outer_left = outer;
-  Four inner = outer;
-  Four inner_left = outer;
+  Vec4d outer(0, 0, 0, 0);
+  Vec4d outer_left = outer;
+  Vec4d inner = outer;
+  Vec4d inner_left = outer;
   for (std::size_t j = 1; j <= last; ++j) {
     const double cos = b.cos[j];
     const double sin = b.sin[j];
@@ -267,7 +267,7 @@ void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
   Slider& slider = sliders_[b.number];
   slider.w_axis[last] = 2.0 * cross(branches_[b.parent].w[last], slider.axis.as_is);
   b.carried = c(b.v, 0) * slider.w_axis[last];
-  slider.lever = Four(0, 0, 0, 0);
+  slider.lever = Vec4d(0, 0, 0, 0);
   for (std::size_t j = 1; j <= last; ++j) {
     const double q = c(b.q, int(j));
     b.add_product(j, last - j);
@@ -279,9 +279,9 @@ void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
 void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
   Ball& ball = balls_[b.number];
   const auto last = static_cast<std::size_t>(k);
-  Four x(0, 0, 0, 0);
-  Four y = x;
-  Four z = x;
+  Vec4d x(0, 0, 0, 0);
+  Vec4d y = x;
+  Vec4d z = x;
   for (std::size_t j = 0; j <= last; ++j) {
     const double* v = &c(b.v, int(last - j));
     x += v[0] * ball.q[j];
@@ -289,9 +289,9 @@ void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
     z += v[2] * ball.q[j];
   }
   // q (0, v)
-  const Four product = (Four(x[3], x[2], -x[1], -x[0]) + Four(-y[2], y[3], y[0], -y[1])) +
-                       Four(z[1], -z[0], z[3], -z[2]);
-  const Four dq = weight / 2 * product;
+  const Vec4d product = (Vec4d(x[3], x[2], -x[1], -x[0]) + Vec4d(-y[2], y[3], y[0], -y[1])) +
+                        Vec4d(z[1], -z[0], z[3], -z[2]);
+  const Vec4d dq = weight / 2 * product;
   dq.to(&c(b.q, k + 1));
   ball.put_attitude(last + 1, dq);
 
@@ -312,19 +312,19 @@ void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
 
 void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
   c.col(k + 1).segment<3>(b.q + 4) = weight * c.col(k).segment<3>(b.v + 3);
-  b.carried = Four(0, 0, 0, 0);
+  b.carried = Vec4d(0, 0, 0, 0);
   if (guide_rests_) return;
   Ball& ball = balls_[b.number];
   const Branch& guide = branches_[0];
   const auto last = static_cast<std::size_t>(k);
   const auto three = [&](int row) {
-    return Cycles(Four(c(row, k), c(row + 1, k), c(row + 2, k), 0));
+    return CyclicVec4d(Vec4d(c(row, k), c(row + 1, k), c(row + 2, k), 0));
   };
   ball.place[last] = three(b.q + 4);
   ball.slide[last] = three(b.v + 3);
   for (std::size_t j = 0; j <= last; ++j) {
-    const Cycles& slide = ball.slide[last - j];
-    const Four& w = guide.w_cycled[j];
+    const CyclicVec4d& slide = ball.slide[last - j];
+    const Vec4d& w = guide.w_cycled[j];
     b.carried += 2.0 * (w * slide.after - w.next() * slide.next);
     if (j < last) b.carried += guide_gamma_[j] * ball.place[last - j];
   }
@@ -333,11 +333,11 @@ void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
 void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
   const auto last = static_cast<std::size_t>(k);
   for (Spin& spin : spins_) {
-    const Four& w = branches_[spin.carrier].w[last];
+    const Vec4d& w = branches_[spin.carrier].w[last];
     const double rate = c(tree_.coordinates() + spin.v, k);
     spin.momentum[last] = spin.about * (spin.regulated ? rate : rate + along(spin.axis, w));
     spin.aside[last] = cross(w, spin.axis);
-    spin.gyroscopic_moment = Four(0, 0, 0, 0);
+    spin.gyroscopic_moment = Vec4d(0, 0, 0, 0);
     for (std::size_t j = 0; j <= last; ++j) {
       spin.gyroscopic_moment += spin.momentum[j] * spin.aside[last - j];
     }
@@ -350,32 +350,32 @@ void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
     Branch& b = branches_[i];
     const Branch& above = branches_[b.parent];
     const double* own = dv + b.rates;
-    Four a = above.a + above.gamma * b.r;
+    Vec4d a = above.a + above.gamma * b.r;
     if (b.way == Way::sliding) {
       Slider& slider = sliders_[b.number];
       slider.gamma_axis[k] = above.gamma * slider.axis;
       a += b.carried + own[0] * slider.axis.as_is;
     } else if (b.floats) {
-      a += b.carried + Four(own[3], own[4], own[5], 0);
+      a += b.carried + Vec4d(own[3], own[4], own[5], 0);
     }
-    a = b.outwards * Cycles(a);
-    Four w = b.outwards * above.w_next;
+    a = b.outwards * CyclicVec4d(a);
+    Vec4d w = b.outwards * above.w_next;
     if (b.way == Way::turning) {
-      const Four before(w[0], w[1], a[0], a[1]);
+      const Vec4d before(w[0], w[1], a[0], a[1]);
       b.turned[k] = before;
-      const Four turned = b.outer + (b.cos[0] * before - b.sin[0] * turned_left(before));
-      w = Four(turned[0], turned[1], w[2] + weight * own[0], 0);
-      a = Four(turned[2], turned[3], a[2], 0);
+      const Vec4d turned = b.outer + (b.cos[0] * before - b.sin[0] * turned_left(before));
+      w = Vec4d(turned[0], turned[1], w[2] + weight * own[0], 0);
+      a = Vec4d(turned[2], turned[3], a[2], 0);
     } else if (b.way == Way::ball) {
       Ball& ball = balls_[b.number];
       ball.w[k + 1] = w;
       ball.a[k] = a;
-      a = ball.a_sum + ball.turn_back[0] * Cycles(a);
-      const Four turned = ball.w_sum + ball.turn_back[0] * Cycles(w);
-      w = weight * Four(own[0], own[1], own[2], 0);
+      a = ball.a_sum + ball.turn_back[0] * CyclicVec4d(a);
+      const Vec4d turned = ball.w_sum + ball.turn_back[0] * CyclicVec4d(w);
+      w = weight * Vec4d(own[0], own[1], own[2], 0);
       if (b.is_turned) w += turned;
     }
-    b.w_next = Cycles(w);
+    b.w_next = CyclicVec4d(w);
     b.a = a;
     b.accelerate(1 / weight);
     b.force = b.mass * a + b.gamma * b.first_moment;
@@ -393,25 +393,25 @@ void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
 void TreeSeries::go_inwards(std::size_t k) {
   for (std::size_t i = branches_.size() - 1; i > 0; --i) {
     Branch& b = branches_[i];
-    Four f = b.force;
-    Four n = b.moment;
+    Vec4d f = b.force;
+    Vec4d n = b.moment;
     if (b.way == Way::ball && (b.hands_on || b.is_braked)) {
       Ball& ball = balls_[b.number];
       ball.f[k] = f;
       ball.n[k] = n;
-      f = ball.f_sum + ball.turn[0] * Cycles(f);
-      n = ball.n_sum + ball.turn[0] * Cycles(n);
+      f = ball.f_sum + ball.turn[0] * CyclicVec4d(f);
+      n = ball.n_sum + ball.turn[0] * CyclicVec4d(n);
     }
     if (!b.hands_on) continue;
     if (b.way == Way::turning) {
-      const Four before(f[0], f[1], n[0], n[1]);
+      const Vec4d before(f[0], f[1], n[0], n[1]);
       b.back[k] = before;
-      const Four turned = b.inner + (b.cos[0] * before + b.sin[0] * turned_left(before));
-      f = Four(turned[0], turned[1], f[2], 0);
-      n = Four(turned[2], turned[3], n[2], 0);
+      const Vec4d turned = b.inner + (b.cos[0] * before + b.sin[0] * turned_left(before));
+      f = Vec4d(turned[0], turned[1], f[2], 0);
+      n = Vec4d(turned[2], turned[3], n[2], 0);
     }
-    f = b.inwards * Cycles(f);
-    n = b.inwards * Cycles(n) + cross(b.r.as_is, f);
+    f = b.inwards * CyclicVec4d(f);
+    n = b.inwards * CyclicVec4d(n) + cross(b.r.as_is, f);
     if (b.way == Way::sliding) {
       Slider& slider = sliders_[b.number];
       slider.moment[k] = cross(slider.axis.as_is, f);
@@ -441,7 +441,7 @@ void TreeSeries::set_left(int k, const Columns& c) {
       if (!b.floats) continue;
       // What nothing brakes takes no force at any order.
       const Ball& ball = balls_[b.number];
-      const Four f = b.inwards * Cycles(ball.f_sum + ball.turn[0] * Cycles(b.force));
+      const Vec4d f = b.inwards * CyclicVec4d(ball.f_sum + ball.turn[0] * CyclicVec4d(b.force));
       for (int j = 0; j < 3; ++j) left[3 + j] -= f[j];
     }
   }
@@ -460,7 +460,7 @@ void TreeSeries::prepare_response() {
     dv_.fill(0);
     std::copy_n(workspace_.acceleration.data(), tree_.rates(), dv_.begin());
     for (std::size_t i = 0; i < fours_; ++i) {
-      inverse_[std::size_t(j) * fours_ + i] = Four::from(&dv_[4 * i]);
+      inverse_[std::size_t(j) * fours_ + i] = Vec4d::from(&dv_[4 * i]);
     }
   }
 }
@@ -472,7 +472,7 @@ const double* TreeSeries::response() {
   }
   const auto rates = static_cast<std::size_t>(tree_.rates());
   for (std::size_t i = 0; i < fours_; ++i) {
-    Four sum = left_[0] * inverse_[i];
+    Vec4d sum = left_[0] * inverse_[i];
     for (std::size_t j = 1; j < rates; ++j)
       sum += left_[Eigen::Index(j)] * inverse_[j * fours_ + i];
     sum.to(&dv_[4 * i]);

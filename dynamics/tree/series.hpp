@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <dynamics/guide/series.hpp>
-#include <dynamics/rigid/diagonals.hpp>
-#include <dynamics/rigid/tensor_of_four.hpp>
+#include <dynamics/rigid/packed_tensor.hpp>
 #include <dynamics/tree/workspace.hpp>
 #include <motor/api.hpp>
+#include <motor/simd.hpp>
 
 namespace kreisel::detail {
 
@@ -76,39 +76,39 @@ class KREISEL_API TreeSeries {
     int v = 0;
     int rates = 0;                                           ///< where its rates begin among all
     Matrix3<double> own_axes = Matrix3<double>::Identity();  ///< from the body's axes to these
-    Diagonals outwards;  ///< from the parent's own axes to those that the joint turns from
-    Diagonals inwards;   ///< and back
+    Mat3dByDiagonals outwards;  ///< from the parent's own axes to those that the joint turns from
+    Mat3dByDiagonals inwards;   ///< and back
     double mass = 0;
-    Cycles first_moment;
-    Diagonals tensor;
+    CyclicVec4d first_moment;
+    Mat3dByDiagonals tensor;
     GyroscopicDifferences gyroscopic = GyroscopicDifferences({});
 
     // Of where the step begins.
-    Cycles r;         ///< from the parent's origin, on the parent's axes
-    Four first_turn;  ///< (w_x, w_y, 0, 0) of the parent, on the joint's axes
+    CyclicVec4d r;     ///< from the parent's origin, on the parent's axes
+    Vec4d first_turn;  ///< (w_x, w_y, 0, 0) of the parent, on the joint's axes
 
     // Of order k: what does not need the accelerations of this order.
-    Four squares, next;  ///< of w: (xx, yy, zz), (xy, yz, zx)
-    Four gyroscopic_moment;
-    Four outer, inner;  ///< sums for `turned` and `back`
-    Four carried;       ///< where it slides or floats: acceleration, on the parent's axes
+    Vec4d squares, next;  ///< of w: (xx, yy, zz), (xy, yz, zx)
+    Vec4d gyroscopic_moment;
+    Vec4d outer, inner;  ///< sums for `turned` and `back`
+    Vec4d carried;       ///< where it slides or floats: acceleration, on the parent's axes
 
     // And what does.
-    Cycles w_next;  ///< of order k + 1
-    Cycles dw;
-    Four a;           ///< inertial acceleration of the origin, gravity taken off
-    Diagonals gamma;  ///< skew(dw) + w w^t - w^2:  a + gamma r  is the acceleration at r
-    Four force, moment;
+    CyclicVec4d w_next;  ///< of order k + 1
+    CyclicVec4d dw;
+    Vec4d a;                 ///< inertial acceleration of the origin, gravity taken off
+    Mat3dByDiagonals gamma;  ///< skew(dw) + w w^t - w^2:  a + gamma r  is the acceleration at r
+    Vec4d force, moment;
 
     // Series.
-    Of<Four> w, w_cycled;  ///< (x, y, z), (y, z, x)
-    Of<double> cos, sin;   ///< of the angle that it turns by
-    Of<Four> turned;  ///< (w_x, w_y) of order k + 1 and (a_x, a_y), before the joint turns them
-    Of<Four> back;    ///< (f_x, f_y, n_x, n_y), before they are turned back
+    Of<Vec4d> w, w_cycled;  ///< (x, y, z), (y, z, x)
+    Of<double> cos, sin;    ///< of the angle that it turns by
+    Of<Vec4d> turned;  ///< (w_x, w_y) of order k + 1 and (a_x, a_y), before the joint turns them
+    Of<Vec4d> back;    ///< (f_x, f_y, n_x, n_y), before they are turned back
 
     void set_outwards(const Matrix3<double>& turn) {
-      outwards = Diagonals::of(turn);
-      inwards = Diagonals::of(turn.transpose());
+      outwards = Mat3dByDiagonals::of(turn);
+      inwards = Mat3dByDiagonals::of(turn.transpose());
     }
     inline void begin_products(std::size_t k);
     inline void add_product(std::size_t i, std::size_t j);
@@ -117,39 +117,39 @@ class KREISEL_API TreeSeries {
 
   /// What a link that slides has besides, on the parent's axes.
   struct Slider {
-    Cycles axis;
-    Four lever;                   ///< moment of what it hands on, but for the newest
-    Of<Four> gamma_axis, w_axis;  ///< of the parent: gamma e, 2 w x e
-    Of<Four> moment;              ///< e x f
+    CyclicVec4d axis;
+    Vec4d lever;                   ///< moment of what it hands on, but for the newest
+    Of<Vec4d> gamma_axis, w_axis;  ///< of the parent: gamma e, 2 w x e
+    Of<Vec4d> moment;              ///< e x f
   };
 
   /// The sum of products m^t v, with the matrices by their diagonals.
   struct TransposedProducts {
-    Four main = {0, 0, 0, 0};
-    Four upper = {0, 0, 0, 0};
-    Four lower = {0, 0, 0, 0};
+    Vec4d main = {0, 0, 0, 0};
+    Vec4d upper = {0, 0, 0, 0};
+    Vec4d lower = {0, 0, 0, 0};
 
-    void add(const Diagonals& m, const Four& v) {
+    void add(const Mat3dByDiagonals& m, const Vec4d& v) {
       main += m.main * v;
       upper += m.upper * v;
       lower += m.lower * v;
     }
-    [[nodiscard]] Four sum() const { return main + lower.next() + upper.after(); }
+    [[nodiscard]] Vec4d sum() const { return main + lower.next() + upper.after(); }
   };
 
   /// What a link that turns as a ball has besides.
   struct Ball {
-    double scale = 0;               ///< 1/|q|^2
-    Four first_w;                   ///< of the parent, on the joint's axes
-    Four w_sum, a_sum;              ///< of order k: of the parent, turned, without what is newest
-    Four f_sum, n_sum;              ///< of its own, turned back
-    Of<Four> q, q_cycled;           ///< (x, y, z, w), (y, z, x, w)
-    Of<Diagonals> turn, turn_back;  ///< R, R^t
-    Of<Four> w, a;                  ///< of the parent, before the joint turns them
-    Of<Four> f, n;                  ///< of its own, before they are turned back
-    Of<Cycles> place, slide;        ///< of what floats, on guide axes
+    double scale = 0;       ///< 1/|q|^2
+    Vec4d first_w;          ///< of the parent, on the joint's axes
+    Vec4d w_sum, a_sum;     ///< of order k: of the parent, turned, without what is newest
+    Vec4d f_sum, n_sum;     ///< of its own, turned back
+    Of<Vec4d> q, q_cycled;  ///< (x, y, z, w), (y, z, x, w)
+    Of<Mat3dByDiagonals> turn, turn_back;  ///< R, R^t
+    Of<Vec4d> w, a;                        ///< of the parent, before the joint turns them
+    Of<Vec4d> f, n;                        ///< of its own, before they are turned back
+    Of<CyclicVec4d> place, slide;          ///< of what floats, on guide axes
 
-    inline void put_attitude(std::size_t k, const Four& coefficient);
+    inline void put_attitude(std::size_t k, const Vec4d& coefficient);
   };
 
   struct Spin {
@@ -158,10 +158,10 @@ class KREISEL_API TreeSeries {
     int v = 0;
     bool regulated = false;
     double about = 0;
-    Four axis;
-    Four gyroscopic_moment;  ///< of order k
-    Of<double> momentum;     ///< l
-    Of<Four> aside;          ///< w x e
+    Vec4d axis;
+    Vec4d gyroscopic_moment;  ///< of order k
+    Of<double> momentum;      ///< l
+    Of<Vec4d> aside;          ///< w x e
   };
 
   using Columns = Eigen::Ref<Eigen::MatrixXd>;
@@ -198,12 +198,12 @@ class KREISEL_API TreeSeries {
   std::vector<Slider> sliders_;
   std::vector<Ball> balls_;
   std::vector<Spin> spins_;
-  Of<Diagonals> guide_gamma_;
+  Of<Mat3dByDiagonals> guide_gamma_;
 
   /// Beyond which the mass matrix is not inverted: then linear time pays.
   static constexpr int most_inverted = 12;
   std::size_t fours_;  ///< of a column of the inverse, by four; 0 where it is not inverted
-  std::vector<Four> inverse_;
+  std::vector<Vec4d> inverse_;
   std::array<double, most_inverted> dv_;
 };
 

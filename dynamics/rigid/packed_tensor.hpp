@@ -1,7 +1,7 @@
 #pragma once
 
 #include <dynamics/model/structure.hpp>
-#include <motor/four.hpp>
+#include <motor/simd.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel::detail {
@@ -15,55 +15,55 @@ class GyroscopicDifferences {
         beside_(T.xy, T.yz, T.xz, 0) {}
 
   /// -w x (Theta w), from the products (w_y w_z, w_z w_x, w_x w_y) and the squares of w.
-  [[nodiscard]] Four torque(const Four& mixed, const Four& squares) const {
+  [[nodiscard]] Vec4d torque(const Vec4d& mixed, const Vec4d& squares) const {
     return differences_ * mixed + opposite_ * (squares.after() - squares.next()) +
            (beside_ * mixed.next() - beside_.after() * mixed.after());
   }
 
  private:
-  Four differences_, opposite_, beside_;
+  Vec4d differences_, opposite_, beside_;
 };
 
-/// PrincipalTensor or GeneralTensor for vectors that are Four, with w = 0.
+/// PrincipalTensor or GeneralTensor for vectors that are Vec4d, with w = 0.
 template <class Tensor>
-class TensorOfFour;
+class PackedTensor;
 
 template <>
-class TensorOfFour<PrincipalTensor<>> {
+class PackedTensor<PrincipalTensor<>> {
  public:
-  explicit TensorOfFour(const PrincipalTensor<>& tensor) {
+  explicit PackedTensor(const PrincipalTensor<>& tensor) {
     const Symmetric3<double> T = tensor.tensor();
     moments_ = {T.xx, T.yy, T.zz, 1};
     differences_ = {T.yy - T.zz, T.zz - T.xx, T.xx - T.yy, 0};
   }
 
   /// As GyroscopicDifferences.
-  [[nodiscard]] Four gyroscopic_torque(const Four& mixed, const Four& /*squares*/) const {
+  [[nodiscard]] Vec4d gyroscopic_torque(const Vec4d& mixed, const Vec4d& /*squares*/) const {
     return differences_ * mixed;
   }
 
   /// Theta^-1 M
-  [[nodiscard]] Four solve(const Four& M) const { return M / moments_; }
+  [[nodiscard]] Vec4d solve(const Vec4d& M) const { return M / moments_; }
 
   /// The moments of a body of revolution about z.
   [[nodiscard]] double across() const { return moments_[0]; }
   [[nodiscard]] double along() const { return moments_[2]; }
 
  private:
-  Four moments_, differences_;
+  Vec4d moments_, differences_;
 };
 
 template <>
-class TensorOfFour<GeneralTensor> {
+class PackedTensor<GeneralTensor> {
  public:
-  explicit TensorOfFour(const GeneralTensor& tensor)
+  explicit PackedTensor(const GeneralTensor& tensor)
       : tensor_(tensor), differences_(tensor.tensor()) {}
 
-  [[nodiscard]] Four gyroscopic_torque(const Four& mixed, const Four& squares) const {
+  [[nodiscard]] Vec4d gyroscopic_torque(const Vec4d& mixed, const Vec4d& squares) const {
     return differences_.torque(mixed, squares);
   }
 
-  [[nodiscard]] Four solve(const Four& M) const {
+  [[nodiscard]] Vec4d solve(const Vec4d& M) const {
     const Components<double> w = tensor_.solve(Components<double>{M[0], M[1], M[2]});
     return {w.x, w.y, w.z, 0};
   }

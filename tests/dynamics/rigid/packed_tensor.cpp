@@ -4,19 +4,19 @@
 #include <limits>
 
 #include <dynamics/model/structure.hpp>
-#include <dynamics/rigid/tensor_of_four.hpp>
-#include <motor/four.hpp>
+#include <dynamics/rigid/packed_tensor.hpp>
+#include <motor/simd.hpp>
 
 #include <support/sample.hpp>
 
 using namespace kreisel;
-using detail::Four;
+using detail::Vec4d;
 
 namespace {
 
 constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
-Vector3<double> vector(const Four& a) { return {a[0], a[1], a[2]}; }
+Vector3<double> vector(const Vec4d& a) { return {a[0], a[1], a[2]}; }
 
 /// Of a body with moments from 0.2 to 1 on any axes.
 Symmetric3<double> random_tensor(test::Sample& sample) {
@@ -32,9 +32,9 @@ BOOST_AUTO_TEST_SUITE(tensors_of_four)
 
 template <class Tensor>
 void hold_gyroscopic_torque(const Tensor& tensor, const Vector3<double>& w) {
-  const Four mixed(w.y() * w.z(), w.z() * w.x(), w.x() * w.y(), 0);
-  const Four squares(w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), 0);
-  const Four torque = detail::TensorOfFour<Tensor>(tensor).gyroscopic_torque(mixed, squares);
+  const Vec4d mixed(w.y() * w.z(), w.z() * w.x(), w.x() * w.y(), 0);
+  const Vec4d squares(w.x() * w.x(), w.y() * w.y(), w.z() * w.z(), 0);
+  const Vec4d torque = detail::PackedTensor<Tensor>(tensor).gyroscopic_torque(mixed, squares);
   const Vector3<double> expected =
       detail::vector<double>(tensor.gyroscopic_torque(detail::components(w)));
   BOOST_TEST((vector(torque) - expected).norm() <= 16 * u * w.squaredNorm());
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(have_the_same_gyroscopic_torque) {
 }
 
 BOOST_AUTO_TEST_CASE(know_a_body_of_revolution) {
-  const detail::TensorOfFour<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
+  const detail::PackedTensor<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
   BOOST_TEST(T.across() == 2);
   BOOST_TEST(T.along() == 3);
 }
@@ -76,12 +76,12 @@ BOOST_AUTO_TEST_CASE(solve) {
   for (int i = 0; i < 100; ++i) {
     const Symmetric3<double> T = random_tensor(sample);
     const Vector3<double> M = sample.vector();
-    const detail::TensorOfFour<detail::PrincipalTensor<>> principal(
+    const detail::PackedTensor<detail::PrincipalTensor<>> principal(
         detail::PrincipalTensor<>({T.xx, T.yy, T.zz}));
-    BOOST_TEST(vector(principal.solve(four(detail::components(M)))) ==
+    BOOST_TEST(vector(principal.solve(vec4d(detail::components(M)))) ==
                M.cwiseQuotient(Vector3<double>(T.xx, T.yy, T.zz)));
-    const detail::TensorOfFour<detail::GeneralTensor> general{detail::GeneralTensor(T)};
-    const Four w = general.solve(four(detail::components(M)));
+    const detail::PackedTensor<detail::GeneralTensor> general{detail::GeneralTensor(T)};
+    const Vec4d w = general.solve(vec4d(detail::components(M)));
     // Moments of 0.2 to 1 make at most 5 times as much of what is rounded.
     BOOST_TEST((T.matrix() * vector(w) - M).norm() <= 5 * 8 * u * M.norm());
     BOOST_TEST(w[3] == 0);

@@ -2,25 +2,26 @@
 
 #include <limits>
 
-#include <motor/four.hpp>
+#include <motor/simd.hpp>
+#include <motor/static_zero.hpp>
 
 #include <support/sample.hpp>
 
 using namespace kreisel;
-using detail::Four;
+using detail::Vec4d;
 
-BOOST_AUTO_TEST_SUITE(four_numbers)
+BOOST_AUTO_TEST_SUITE(packed_numbers)
 
 BOOST_AUTO_TEST_CASE(calculate_each_by_itself) {
-  const Four a(1, -2, 3, 5);
-  const Four b(0.5, 4, -8, 2);
-  Four c = a;
+  const Vec4d a(1, -2, 3, 5);
+  const Vec4d b(0.5, 4, -8, 2);
+  Vec4d c = a;
   c += b;
-  const Four sum = a + b;
-  const Four difference = a - b;
-  const Four product = a * b;
-  const Four quotient = a / b;
-  const Four twice = 2 * a;
+  const Vec4d sum = a + b;
+  const Vec4d difference = a - b;
+  const Vec4d product = a * b;
+  const Vec4d quotient = a / b;
+  const Vec4d twice = 2 * a;
   for (int i = 0; i < 4; ++i) {
     BOOST_TEST(sum[i] == a[i] + b[i]);
     BOOST_TEST(c[i] == sum[i]);
@@ -31,16 +32,16 @@ BOOST_AUTO_TEST_CASE(calculate_each_by_itself) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(go_round) {
-  const Four a(1, 2, 3, 4);
-  const Four next = a.next();
-  const Four after = a.after();
+BOOST_AUTO_TEST_CASE(permute_cyclically) {
+  const Vec4d a(1, 2, 3, 4);
+  const Vec4d next = a.next();
+  const Vec4d after = a.after();
   BOOST_TEST((next[0] == 2 && next[1] == 3 && next[2] == 1 && next[3] == 4));
   BOOST_TEST((after[0] == 3 && after[1] == 1 && after[2] == 2 && after[3] == 4));
 }
 
-BOOST_AUTO_TEST_CASE(take_absent_components_for_0) {
-  const Four a = detail::four(detail::Components<double, detail::StaticZero, double>{2, {}, -1});
+BOOST_AUTO_TEST_CASE(take_static_zeros_for_0) {
+  const Vec4d a = detail::vec4d(detail::Components<double, detail::StaticZero, double>{2, {}, -1});
   BOOST_TEST((a[0] == 2 && a[1] == 0 && a[2] == -1 && a[3] == 0));
 }
 
@@ -49,7 +50,7 @@ BOOST_AUTO_TEST_CASE(have_the_product_of_vectors) {
   for (int i = 0; i < 100; ++i) {
     const Vector3<double> a = sample.vector();
     const Vector3<double> b = sample.vector();
-    const Four c = cross(four(detail::components(a)), four(detail::components(b)));
+    const Vec4d c = cross(vec4d(detail::components(a)), vec4d(detail::components(b)));
     constexpr double u = std::numeric_limits<double>::epsilon() / 2;
     BOOST_TEST((Vector3<double>(c[0], c[1], c[2]) - a.cross(b)).norm() <=
                4 * u * a.norm() * b.norm());
@@ -58,9 +59,9 @@ BOOST_AUTO_TEST_CASE(have_the_product_of_vectors) {
 }
 
 BOOST_AUTO_TEST_CASE(come_from_memory_and_go_there) {
-  alignas(Four) const double numbers[] = {1, -2, 3, -4};
-  alignas(Four) double copy[4];
-  Four::from(numbers).to(copy);
+  alignas(Vec4d) const double numbers[] = {1, -2, 3, -4};
+  alignas(Vec4d) double copy[4];
+  Vec4d::from(numbers).to(copy);
   for (int i = 0; i < 4; ++i) BOOST_TEST(copy[i] == numbers[i]);
 }
 

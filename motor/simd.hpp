@@ -1,0 +1,274 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+/// Packed vectors and matrices of doubles: every part of the library that is tuned for a processor
+/// or a compiler.
+///
+/// A processor reads two or four doubles with one instruction. Doubles that were stored one by one a
+/// moment before cannot be read together without waiting until they have reached the cache. Eigen's
+/// fixed-size arrays are filled in this way, and g++ -O2 makes calls and loops of Eigen's sums and
+/// products of three numbers. These types are therefore filled in registers, and the kernels of
+/// motor/ and dynamics/inertia.hpp are written component by component and always inlined.
+///
+/// Cost     : measured in benchmarks/kernels.cpp, reported in benchmarks/report.md
+/// Fallback : arrays in place of the vector extension of g++ and clang++, for other compilers and
+///            with KREISEL_PORTABLE_SIMD; same results to the last bit (tests/motor/simd_portable.cpp)
+
+#if !defined(__GNUC__) && !defined(KREISEL_PORTABLE_SIMD)
+#define KREISEL_PORTABLE_SIMD
+#endif
+
+namespace kreisel::detail {
+
+#ifdef KREISEL_PORTABLE_SIMD
+
+/// n doubles in an array, with the operators of the vector extension that are used here.
+template <int n>
+struct PackedDoubles {
+  double numbers[n];
+
+  [[nodiscard]] double operator[](int i) const { return numbers[i]; }
+
+  friend PackedDoubles operator+(const PackedDoubles& a, const PackedDoubles& b) {
+    return each([&](int i) { return a[i] + b[i]; });
+  }
+  friend PackedDoubles operator-(const PackedDoubles& a, const PackedDoubles& b) {
+    return each([&](int i) { return a[i] - b[i]; });
+  }
+  friend PackedDoubles operator*(const PackedDoubles& a, const PackedDoubles& b) {
+    return each([&](int i) { return a[i] * b[i]; });
+  }
+  friend PackedDoubles operator/(const PackedDoubles& a, const PackedDoubles& b) {
+    return each([&](int i) { return a[i] / b[i]; });
+  }
+  friend PackedDoubles operator*(double a, const PackedDoubles& b) {
+    return each([&](int i) { return a * b[i]; });
+  }
+
+ private:
+  template <class Of>
+  [[nodiscard]] static PackedDoubles each(const Of& of) {
+    PackedDoubles result;
+    for (int i = 0; i < n; ++i) result.numbers[i] = of(i);
+    return result;
+  }
+};
+
+using Double2 = PackedDoubles<2>;
+using Double4 = PackedDoubles<4>;
+
+#else
+
+using Double2 = double __attribute__((vector_size(2 * sizeof(double))));
+using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
+
+#endif
+
+/// The vector (x, y, z), where x and y are read and written together.
+template <class S>
+[[nodiscard, gnu::always_inline]] inline Eigen::Matrix<S, 3, 1> by_two(const S& x, const S& y,
+                                                                       const S& z) {
+  // Of six numbers in a row g++ would pack four, and take longer for that than for their products.
+  if constexpr (std::is_same_v<S, double>) {
+    const Double2 xy{x, y};
+    Eigen::Matrix<S, 3, 1> result;
+    std::memcpy(result.data(), &xy, sizeof xy);
+    result[2] = z;
+    return result;
+  } else {
+    return {x, y, z};
+  }
+}
+
+/// A vector of three doubles: (x, y) in one register, z in another.
+class Vec3d {
+ public:
+  [[nodiscard, gnu::always_inline]] static Vec3d from(const double* numbers) {
+    Vec3d result;
+    std::memcpy(&result.xy_, numbers, sizeof result.xy_);
+    result.z_ = numbers[2];
+    return result;
+  }
+  [[gnu::always_inline]] void to(double* numbers) const {
+    std::memcpy(numbers, &xy_, sizeof xy_);
+    numbers[2] = z_;
+  }
+
+  [[nodiscard, gnu::always_inline]] double x() const { return xy_[0]; }
+  [[nodiscard, gnu::always_inline]] double y() const { return xy_[1]; }
+  [[nodiscard, gnu::always_inline]] double z() const { return z_; }
+
+  [[gnu::always_inline]] friend Vec3d operator+(const Vec3d& a, const Vec3d& b) {
+    return {a.xy_ + b.xy_, a.z_ + b.z_};
+  }
+  [[gnu::always_inline]] friend Vec3d operator*(const Vec3d& a, double k) {
+    return {a.xy_ * Double2{k, k}, a.z_ * k};
+  }
+
+ private:
+  Vec3d() = default;  // any numbers
+  Vec3d(const Double2& xy, double z) : xy_(xy), z_(z) {}
+
+  Double2 xy_;
+  double z_;
+};
+
+/// A 3x3 matrix R, kept in registers by its columns while it multiplies several vectors.
+///
+/// A compiler cannot see that storing a product leaves R unchanged. Without this class it would read
+/// R again for each number.
+class Mat3dByColumns {
+ public:
+  /// R from nine numbers, column by column.
+  [[gnu::always_inline]] explicit Mat3dByColumns(const double* R)
+      : a_(Vec3d::from(R)), b_(Vec3d::from(R + 3)), c_(Vec3d::from(R + 6)) {}
+
+  /// R v
+  [[nodiscard, gnu::always_inline]] Vec3d combined(const double* v) const {
+    return a_ * v[0] + b_ * v[1] + c_ * v[2];
+  }
+
+ private:
+  Vec3d a_, b_, c_;
+};
+
+/// A vector (x, y, z) and a fourth number w, in one register of four doubles or two of two.
+///
+/// Memory that is read as a Vec4d should not lie across two lines of the cache: alignas(Vec4d).
+class Vec4d {
+ public:
+  Vec4d() = default;  // any numbers
+#ifdef __AVX__
+  Vec4d(double x, double y, double z, double w) : part_{{x, y, z, w}} {}
+#else
+  Vec4d(double x, double y, double z, double w) : part_{{x, y}, {z, w}} {}
+#endif
+
+  [[nodiscard]] static Vec4d from(const double* numbers) {
+    Vec4d result;
+    std::memcpy(&result.part_, numbers, sizeof result.part_);
+    return result;
+  }
+  void to(double* numbers) const { std::memcpy(numbers, &part_, sizeof part_); }
+
+  [[nodiscard]] double operator[](int i) const { return part_[i / width][i % width]; }
+
+  /// (y, z, x, w)
+  [[nodiscard]] Vec4d next() const {
+    const Vec4d& a = *this;
+    return {a[1], a[2], a[0], a[3]};
+  }
+  /// (z, x, y, w)
+  [[nodiscard]] Vec4d after() const {
+    const Vec4d& a = *this;
+    return {a[2], a[0], a[1], a[3]};
+  }
+
+  Vec4d& operator+=(const Vec4d& b) { return *this = *this + b; }
+
+  friend Vec4d operator+(const Vec4d& a, const Vec4d& b) {
+    return each([&](int i) { return a.part_[i] + b.part_[i]; });
+  }
+  friend Vec4d operator-(const Vec4d& a, const Vec4d& b) {
+    return each([&](int i) { return a.part_[i] - b.part_[i]; });
+  }
+  friend Vec4d operator*(const Vec4d& a, const Vec4d& b) {
+    return each([&](int i) { return a.part_[i] * b.part_[i]; });
+  }
+  friend Vec4d operator/(const Vec4d& a, const Vec4d& b) {
+    return each([&](int i) { return a.part_[i] / b.part_[i]; });
+  }
+  friend Vec4d operator*(double a, const Vec4d& b) {
+    return each([&](int i) { return a * b.part_[i]; });
+  }
+
+ private:
+#ifdef __AVX__
+  using Part = Double4;
+#else
+  using Part = Double2;
+#endif
+  static constexpr int width = int(sizeof(Part) / sizeof(double));
+  static constexpr int parts = 4 / width;
+
+  template <class Of>
+  [[nodiscard]] static Vec4d each(const Of& of) {
+    Vec4d result;
+    for (int i = 0; i < parts; ++i) result.part_[i] = of(i);
+    return result;
+  }
+
+  Part part_[parts];
+};
+
+/// The cross product of the vectors in a and b, with w = 0.
+[[nodiscard]] inline Vec4d cross(const Vec4d& a, const Vec4d& b) {
+  return a.next() * b.after() - a.after() * b.next();
+}
+
+/// A vector and its two cyclic permutations.
+struct CyclicVec4d {
+  Vec4d as_is, next, after;
+
+  CyclicVec4d() = default;
+  explicit CyclicVec4d(const Vec4d& v) : as_is(v), next(v.next()), after(v.after()) {}
+};
+
+/// A 3x3 matrix by its three cyclic diagonals, which multiply the permutations of a vector.
+struct Mat3dByDiagonals {
+  Vec4d main, upper, lower;
+
+  [[nodiscard]] static Mat3dByDiagonals of(const Eigen::Matrix3d& m) {
+    return {Vec4d(m(0, 0), m(1, 1), m(2, 2), 0), Vec4d(m(0, 1), m(1, 2), m(2, 0), 0),
+            Vec4d(m(0, 2), m(1, 0), m(2, 1), 0)};
+  }
+
+  /// R^t of a quaternion q, by the products (xx, yy, zz, ww), (xy, yz, zx) and (xw, yw, zw) of its
+  /// components; scale = 1/|q|^2.
+  [[nodiscard]] static Mat3dByDiagonals rotation_back(const Vec4d& square, const Vec4d& next,
+                                                      const Vec4d& by_w, double scale) {
+    const double ww = square[3];
+    const Vec4d zw = by_w.after();
+    return {scale * ((square + Vec4d(ww, ww, ww, ww)) - (square.next() + square.after())),
+            2 * scale * (next + zw), (2 * scale * (next - zw)).after()};
+  }
+
+  [[nodiscard]] Mat3dByDiagonals transposed() const { return {main, lower.next(), upper.after()}; }
+
+  [[nodiscard]] friend Vec4d operator*(const Mat3dByDiagonals& m, const CyclicVec4d& v) {
+    return m.main * v.as_is + m.upper * v.next + m.lower * v.after;
+  }
+};
+
+/// A vector of the given numbers, stored four at a time and the rest two at a time, as it is read.
+template <class N, class... X>
+[[nodiscard, gnu::always_inline]] inline auto gathered(const X&... numbers) {
+  constexpr int count = int(sizeof...(X));
+  Eigen::Matrix<N, count, 1> result;
+  if constexpr (std::is_same_v<N, double>) {
+    const double all[] = {double(numbers)...};
+    // Not loops, which the compiler would unroll only after it has stored all[].
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      (Vec4d(all[4 * i], all[4 * i + 1], all[4 * i + 2], all[4 * i + 3]).to(result.data() + 4 * i),
+       ...);
+    }
+    (std::make_integer_sequence<int, count / 4>());
+    constexpr int left = count % 4;
+    if constexpr (left >= 2) {
+      const Double2 pair{all[count - left], all[count - left + 1]};
+      std::memcpy(result.data() + count - left, &pair, sizeof pair);
+    }
+    if constexpr (left % 2 == 1) result[count - 1] = all[count - 1];
+  } else {
+    int i = 0;
+    ((result[i++] = N(numbers)), ...);
+  }
+  return result;
+}
+
+}  // namespace kreisel::detail
