@@ -87,13 +87,13 @@ struct Pose {
   friend MotorTensor<S> operator*(const Pose& X, const MotorTensor<S>& T) {
     const Matrix3<S>& R = X.rotation;
     const Matrix3<S> k = skew(X.translation);
-    MotorTensor<S> turned{R * T.rr * R.transpose(), R * T.rm * R.transpose(),
-                          R * T.mr * R.transpose(), R * T.mm * R.transpose()};
-    turned.mr += k * turned.rr;
-    turned.mm += k * turned.rm;
-    turned.rr -= turned.rm * k;
-    turned.mr -= turned.mm * k;
-    return turned;
+    MotorTensor<S> rotated{R * T.rr * R.transpose(), R * T.rm * R.transpose(),
+                           R * T.mr * R.transpose(), R * T.mm * R.transpose()};
+    rotated.mr += k * rotated.rr;
+    rotated.mm += k * rotated.rm;
+    rotated.rr -= rotated.rm * k;
+    rotated.mr -= rotated.mm * k;
+    return rotated;
   }
 };
 

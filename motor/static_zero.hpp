@@ -47,17 +47,18 @@ struct StaticZero {
 };
 
 template <class T>
-inline constexpr bool is_absent = std::is_same_v<T, StaticZero>;
+inline constexpr bool is_static_zero = std::is_same_v<T, StaticZero>;
 
 /// The number that A and B make: doubles yield to dual numbers.
 template <class A, class B>
 using Joint = std::conditional_t<std::is_arithmetic_v<A>, B, A>;
 
 template <class A, class B>
-using Product = std::conditional_t<is_absent<A> || is_absent<B>, StaticZero, Joint<A, B>>;
+using Product = std::conditional_t<is_static_zero<A> || is_static_zero<B>, StaticZero, Joint<A, B>>;
 
 template <class A, class B>
-using Total = std::conditional_t<is_absent<A>, B, std::conditional_t<is_absent<B>, A, Joint<A, B>>>;
+using Total =
+    std::conditional_t<is_static_zero<A>, B, std::conditional_t<is_static_zero<B>, A, Joint<A, B>>>;
 
 /// A vector each of whose components is a number or StaticZero.
 template <class X, class Y = X, class Z = X>
@@ -66,10 +67,10 @@ struct Components {
   Y y = {};
   Z z = {};
 
-  static constexpr bool absent = is_absent<X> && is_absent<Y> && is_absent<Z>;
+  static constexpr bool static_zero = is_static_zero<X> && is_static_zero<Y> && is_static_zero<Z>;
 };
 
-using NoVector = Components<StaticZero>;
+using ZeroVector = Components<StaticZero>;
 
 template <class S>
 [[nodiscard]] Components<S> components(const Vector3<S>& v) {
@@ -127,11 +128,11 @@ template <class X, class Y, class Z, class P, class Q, class R>
 
 /// A rotation as nine numbers; the compiler leaves out those that nobody reads.
 template <class S>
-struct Turn {
+struct Rotation {
   S xx, xy, xz, yx, yy, yz, zx, zy, zz;
 
   /// Of a quaternion of any norm, as Pose::from.
-  [[nodiscard]] static Turn from(const Eigen::Quaternion<S>& q) {
+  [[nodiscard]] static Rotation from(const Eigen::Quaternion<S>& q) {
     const S &x = q.x(), &y = q.y(), &z = q.z(), &w = q.w();
     const S scale = S(2) / S(x * x + y * y + z * z + w * w);
     const S sx = scale * x, sy = scale * y, sz = scale * z;
@@ -140,7 +141,7 @@ struct Turn {
             S(sx * z - sy * w),          S(sy * z + sx * w),          S(S(1) - (sx * x + sy * y))};
   }
 
-  [[nodiscard]] static Turn from(const Matrix3<S>& R) {
+  [[nodiscard]] static Rotation from(const Matrix3<S>& R) {
     return {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
   }
 
@@ -151,7 +152,7 @@ struct Turn {
 
 /// R v
 template <class S, class X, class Y, class Z>
-[[nodiscard, gnu::always_inline]] inline auto rotated(const Turn<S>& R,
+[[nodiscard, gnu::always_inline]] inline auto rotated(const Rotation<S>& R,
                                                       const Components<X, Y, Z>& v) {
   using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
   return Components<N>{N(R.xx * v.x + R.xy * v.y + R.xz * v.z),
@@ -161,7 +162,7 @@ template <class S, class X, class Y, class Z>
 
 /// R^t v
 template <class S, class X, class Y, class Z>
-[[nodiscard, gnu::always_inline]] inline auto rotated_back(const Turn<S>& R,
+[[nodiscard, gnu::always_inline]] inline auto rotated_back(const Rotation<S>& R,
                                                            const Components<X, Y, Z>& v) {
   using N = Total<Product<S, X>, Total<Product<S, Y>, Product<S, Z>>>;
   return Components<N>{N(R.xx * v.x + R.yx * v.y + R.zx * v.z),

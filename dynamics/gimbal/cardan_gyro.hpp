@@ -41,7 +41,7 @@ template <class M>
   if constexpr (SteadyGuide<M>) {
     return guide.steady().u;
   } else {
-    return NoVector{};
+    return ZeroVector{};
   }
 }
 template <class M>
@@ -76,7 +76,7 @@ struct Turning {
 /// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
 /// number or, for a symmetric rotor that counts with the ring, StaticZero.
 template <class N>
-struct TurnedRotor {
+struct RotatedRotor {
   N P;  ///< about A_2
   N Q;  ///< about B_2
   N R;  ///< the product of inertia, + off the diagonal
@@ -225,8 +225,9 @@ class CardanGyro {
     } else if constexpr (SteadyGuide<M>) {
       return detail::CardanSeries(gyro, detail::components(detail::vector<double>(steady_)));
     } else {
-      return detail::CardanSeries(gyro, detail::FeltSeries(guide_, detail::NoVector{},
-                                                           detail::NoVector{}, detail::NoVector{}));
+      return detail::CardanSeries(
+          gyro, detail::FeltSeries(guide_, detail::ZeroVector{}, detail::ZeroVector{},
+                                   detail::ZeroVector{}));
     }
   }
 
@@ -257,7 +258,7 @@ class CardanGyro {
     const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
     const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
     const auto k = momentum_rates<double, double, double, double, double>(
-        turning_at<double>(t), {sa, ca}, {sb, cb}, turned_rotor<double>(state.phi),
+        turning_at<double>(t), {sa, ca}, {sb, cb}, rotated_rotor<double>(state.phi),
         detail::RingMoments<double>(moments_.inner_ring, 0, 0),
         {state.alpha_rate, state.beta_rate, state.phi_rate, dy[3], dy[4]});
     const double friction = rotor_.friction * state.phi_rate;
@@ -282,7 +283,7 @@ class CardanGyro {
     const auto& J_3 = moments_.outer_ring;
     const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
     const auto [sb, cb] = detail::sin_cos(bearings_.inner.reference, state.beta);
-    const auto [P, Q, R, W] = turned_rotor<double>(state.phi);
+    const auto [P, Q, R, W] = rotated_rotor<double>(state.phi);
     const auto [u, du] = turning_at<double>(t);
     const Vector3<double> w_3(state.alpha_rate + u.x, u.y * ca + u.z * sa, u.z * ca - u.y * sa);
     const Vector3<double> w_2(w_3.x() * cb - w_3.z() * sb, w_3.y() + state.beta_rate,
@@ -356,11 +357,10 @@ class CardanGyro {
   /// the bodies.
   [[nodiscard]] Terms terms() const {
     using Felt = decltype(std::declval<const CardanGyro&>().template felt_turning<double>(0.0));
-    constexpr bool turns = !decltype(Felt::u)::absent;
-    constexpr bool turns_unsteadily = !decltype(Felt::du)::absent;
-    constexpr bool spun =
-        !detail::is_absent<decltype(std::declval<const CardanGyro&>().template spin_torque<double>(
-            0.0, 0.0))>;
+    constexpr bool turns = !decltype(Felt::u)::static_zero;
+    constexpr bool turns_unsteadily = !decltype(Felt::du)::static_zero;
+    constexpr bool spun = !detail::is_static_zero<
+        decltype(std::declval<const CardanGyro&>().template spin_torque<double>(0.0, 0.0))>;
     const std::string of_turning = turns ? "" : "the guide does not turn";
     const std::string of_steadiness = turns && !turns_unsteadily ? "the guide moves steadily" : "";
     const std::string of_drive = regulated ? "the motor keeps phi'" : "FrictionlessRotor";
@@ -563,8 +563,8 @@ class CardanGyro {
   }
 
   template <class N, class S>
-  [[nodiscard]] detail::TurnedRotor<N> turned_rotor([[maybe_unused]] const S& phi) const {
-    if constexpr (detail::is_absent<N>) {
+  [[nodiscard]] detail::RotatedRotor<N> rotated_rotor([[maybe_unused]] const S& phi) const {
+    if constexpr (detail::is_static_zero<N>) {
       return {};
     } else {
       using std::cos, std::sin;
@@ -586,7 +586,7 @@ class CardanGyro {
   template <class S, class G, class V, class N, class D>
   [[nodiscard]] auto momentum_rates(const detail::Turning<G, V>& guide,
                                     const detail::SinCos<G>& alpha, const detail::SinCos<S>& beta,
-                                    const detail::TurnedRotor<N>& rotor,
+                                    const detail::RotatedRotor<N>& rotor,
                                     const detail::RingMoments<Parameter>& inner,
                                     const detail::CardanMotion<S, D>& motion) const {
     using K = detail::Total<G, D>;
@@ -617,7 +617,7 @@ class CardanGyro {
 
     // A symmetric rotor, counted with the ring, is left with the momentum of its spin: all of it,
     // or, with C in the ring, that against the ring.
-    constexpr bool counted = detail::is_absent<N>;
+    constexpr bool counted = detail::is_static_zero<N>;
     using Spin = std::conditional_t<counted, S, detail::StaticZero>;
     const S L_c = moments_.rotor.z() * S(counted && regulated ? df : S(z2 + df));
     const Spin H = detail::kept<Spin>(L_c);
@@ -644,7 +644,7 @@ class CardanGyro {
   /// Torque where they have neither springs nor friction.
   template <class N, class Reference, class Torque, class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
-    constexpr bool round = detail::is_absent<N>;
+    constexpr bool round = detail::is_static_zero<N>;
     const Parameter A_1 = moments_.rotor.x();
     const Parameter B_1 = moments_.rotor.y();
     const Parameter C_1 = moments_.rotor.z();
@@ -655,13 +655,13 @@ class CardanGyro {
     using G = std::decay_t<decltype(guide.u.x)>;
     using V = std::decay_t<decltype(guide.du.x)>;
     detail::SinCos<G> alpha;
-    if constexpr (!detail::is_absent<G>) {
+    if constexpr (!detail::is_static_zero<G>) {
       alpha = detail::sin_cos(detail::kept<Reference>(bearings_.outer.reference), y[0]);
     }
     const detail::SinCos<S> beta =
         detail::sin_cos(detail::kept<Reference>(bearings_.inner.reference), y[1]);
     const auto& [sb, cb] = beta;
-    const detail::TurnedRotor<N> rotor = turned_rotor<N>(y[2]);
+    const detail::RotatedRotor<N> rotor = rotated_rotor<N>(y[2]);
     const auto& [P, Q, R, W] = rotor;
     const auto k = momentum_rates<S, G, V, N, detail::StaticZero>(guide, alpha, beta, rotor, inner,
                                                                   {y[3], y[4], y[5]});
@@ -677,7 +677,7 @@ class CardanGyro {
       }
     }();
     const auto resisted = [](const auto& bearing, const S& q, const S& dq) {
-      if constexpr (detail::is_absent<Torque>) {
+      if constexpr (detail::is_static_zero<Torque>) {
         return detail::StaticZero{};
       } else {
         return resistance(bearing, q, dq);

@@ -130,7 +130,7 @@ class CardanSeries {
   }
 
  private:
-  static constexpr bool turns = !is_absent<Turning>;
+  static constexpr bool turns = !is_static_zero<Turning>;
   static constexpr bool turns_unsteadily = requires(Turning & turning) { turning.at(0.0, 0.0, 0); };
 
   /// Of the mass matrix of alpha'' and beta''; ab with its sign turned.

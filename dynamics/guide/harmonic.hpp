@@ -134,7 +134,7 @@ class HarmonicFrame {
     const std::vector<Vector3<double>> a = a_.coefficients(t, h, order);
     GuideSeries result;
     GuideSeries::Coefficients down;
-    down[0] = rotated_back(detail::Turn<double>::from(pose_(t).q), g);
+    down[0] = rotated_back(detail::Rotation<double>::from(pose_(t).q), g);
     for (std::size_t n = 0; n < u.size(); ++n) {
       result.u[n] = detail::components(u[n]);
       result.g[n] = down[n] - detail::components(a[n]);

@@ -12,7 +12,7 @@ struct RestingFrame {
 
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& /*t*/) const { return {X, {}, {}}; }
 
-  [[nodiscard]] SteadyMotion<detail::NoVector, detail::NoVector> steady() const { return {}; }
+  [[nodiscard]] SteadyMotion<detail::ZeroVector, detail::ZeroVector> steady() const { return {}; }
 };
 
 namespace detail {

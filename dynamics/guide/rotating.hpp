@@ -26,14 +26,14 @@ struct RotatingFrame {
 
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     using detail::components;
-    const auto axes = detail::Turn<S>::from(X.value.rotation);
+    const auto axes = detail::Rotation<S>::from(X.value.rotation);
     const auto u = components(angular_velocity);
     const auto a = components(origin_acceleration);
     const auto w = t * u;
     // Its translation: the integral of exp(u s) a.
     const Pose<S> turn = exp(Motor<S>{detail::vector<S>(w), detail::vector<S>(t * a)});
     const auto v = rotated_back(
-        detail::Turn<S>::from(turn.rotation),
+        detail::Rotation<S>::from(turn.rotation),
         rotated_back(axes, components(origin_velocity)) + components(turn.translation));
     FrameMotion<G, I, S> motion;
     detail::multiply(X.value.rotation, turn.rotation, motion.X.value.rotation);

@@ -95,7 +95,7 @@ using Kept = Components<std::conditional_t<vanishes<Quantity, Axis::x, Parts...>
 /// A number, or nothing of it.
 template <class T, class N>
 [[nodiscard]] T kept(const N& x) {
-  if constexpr (is_absent<T>) {
+  if constexpr (is_static_zero<T>) {
     return {};
   } else {
     return T(x);

@@ -229,7 +229,7 @@ template <class A, class E, class F, class H, class K>
                                  const A& phi) {
   using std::cos, std::sin;
   const A s = sin(phi);
-  if constexpr (is_absent<F> && is_absent<H> && is_absent<K>) {
+  if constexpr (is_static_zero<F> && is_static_zero<H> && is_static_zero<K>) {
     return s * e;
   } else {
     const A c = cos(phi);
@@ -446,7 +446,7 @@ class PendulumField {
 
   /// What the field computes of (23): see kreisel::terms.
   [[nodiscard]] Terms terms() const {
-    constexpr bool moves = !detail::is_absent<decltype(Equation::h)>;
+    constexpr bool moves = !detail::is_static_zero<decltype(Equation::h)>;
     constexpr bool crooked = moves && !principal;
     constexpr bool damped = !std::is_same_v<Damping, NoDamping>;
     const char* const at_rest = moves ? "" : "the guide rests, gravity straight down";

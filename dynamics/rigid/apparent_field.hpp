@@ -71,7 +71,7 @@ template <class A, class... Loads>
     (add(loads), ...);
     return components(sum);
   } else {
-    return NoVector{};
+    return ZeroVector{};
   }
 }
 
@@ -172,13 +172,13 @@ template <bool gravity, class P, class M, class... Loads>
     const auto u = without<GuideRate, Loads...>(motion.u);
     using U = std::remove_const_t<decltype(u)>;
     if constexpr (!gravity) {
-      return Known<U, NoVector, Nothing>{u, {}, {}};
+      return Known<U, ZeroVector, Nothing>{u, {}, {}};
     } else {
-      const auto carried = carried_acceleration(u, NoVector{}, motion.origin_acceleration, r);
+      const auto carried = carried_acceleration(u, ZeroVector{}, motion.origin_acceleration, r);
       const auto in_guide = field_on<Guide>(loads...) - carried;
-      const auto inertial =
-          rotated_back(Turn<double>::from(guide(0).X.value.rotation), field_on<Inertial>(loads...));
-      if constexpr (has_field<Inertial, Loads...> && !U::absent) {
+      const auto inertial = rotated_back(Rotation<double>::from(guide(0).X.value.rotation),
+                                         field_on<Inertial>(loads...));
+      if constexpr (has_field<Inertial, Loads...> && !U::static_zero) {
         static_assert(!restricts_felt_gravity<Loads...>,
                       "gravity that rests in the inertial frame turns in this guide");
         const Components<double> n = direction(components(vector<double>(u)));
@@ -221,7 +221,7 @@ class FeltSeries {
     series_ =
         guide_.series(t, unit_, most_series_order, components(vector<double>(inertial_field_)));
     series_.g[0] = series_.g[0] + field_;
-    if constexpr (!P::absent) take_off_carried();
+    if constexpr (!P::static_zero) take_off_carried();
     reach_ = unit_ * std::min(reached(series_.u, most_series_order),
                               reached(series_.g, most_series_order - 1));
   }
@@ -250,7 +250,7 @@ class FeltSeries {
 
 /// The motion of a guide M as a body with these loads feels it at the guide-fixed point r.
 ///
-/// P is NoVector where r is the guide's origin. Without `gravity` g' is StaticZero: it does not matter
+/// P is ZeroVector where r is the guide's origin. Without `gravity` g' is StaticZero: it does not matter
 /// to what is held at its centre of mass.
 template <bool gravity, class P, class M, class... Loads>
 class ApparentField {
@@ -274,14 +274,14 @@ class ApparentField {
   template <class N>
   [[nodiscard]] auto at(const M& guide, const N& t, const Loads&... loads) const {
     if constexpr (requires { known_.field.at(t); }) {
-      return felt(known_.u, NoVector{}, known_.g + known_.field.at(t));
+      return felt(known_.u, ZeroVector{}, known_.g + known_.field.at(t));
     } else if constexpr (SteadyGuide<M>) {
-      return felt(known_.u, NoVector{}, known_.g);
+      return felt(known_.u, ZeroVector{}, known_.g);
     } else if constexpr (!gravity && never_turns<M>) {
-      return felt(NoVector{}, NoVector{}, NoVector{});
+      return felt(ZeroVector{}, ZeroVector{}, ZeroVector{});
     } else if constexpr (!gravity && std::is_same_v<N, double>) {
       const FrameTurning<N> now = turning(guide, t);
-      return felt(components(now.u), components(now.du), NoVector{});
+      return felt(components(now.u), components(now.du), ZeroVector{});
     } else {
       return in(guide_at<N>(guide, t), loads...);
     }
@@ -291,7 +291,7 @@ class ApparentField {
   template <class N>
   [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const Loads&... loads) const {
     if constexpr (never_turns<M>) {
-      return in(now, NoVector{}, NoVector{}, Vector3<N>(now.dV.value.moment), loads...);
+      return in(now, ZeroVector{}, ZeroVector{}, Vector3<N>(now.dV.value.moment), loads...);
     } else {
       return in(now, components(now.V.value.resultant), components(now.dV.value.resultant),
                 now.origin_acceleration(), loads...);
@@ -310,11 +310,11 @@ class ApparentField {
     if constexpr (gravity) {
       const auto g =
           field_on<Guide>(loads...) +
-          rotated_back(Turn<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
+          rotated_back(Rotation<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
           carried_acceleration(u, du, components(a), r_);
       return felt(u, du, g);
     } else {
-      return felt(u, du, NoVector{});
+      return felt(u, du, ZeroVector{});
     }
   }
 
@@ -336,8 +336,8 @@ template <class M>
     return guide.series(t, h, order, g);
   } else {
     const UniformGravity<Inertial> field{vector<double>(g)};
-    const ApparentField<true, NoVector, M, UniformGravity<Inertial>> felt({}, guide, "guide",
-                                                                          field);
+    const ApparentField<true, ZeroVector, M, UniformGravity<Inertial>> felt({}, guide, "guide",
+                                                                            field);
     const auto whole = felt.whole(guide, field);
     if constexpr (requires { whole.at(t, h, order); }) {
       return whole.at(t, h, order);
@@ -378,7 +378,7 @@ template <class L, class... Loads>
 template <class M>
 [[nodiscard]] constexpr bool turns() {
   if constexpr (SteadyGuide<M>) {
-    return !decltype(std::declval<const M&>().steady().u)::absent;
+    return !decltype(std::declval<const M&>().steady().u)::static_zero;
   } else {
     return !never_turns<M>;
   }
@@ -397,9 +397,9 @@ template <class L>
 /// and why not.
 template <class Now, class M, class... Loads>
 struct FeltTerms {
-  static constexpr bool turns = !decltype(Now::u)::absent;
-  static constexpr bool turns_unsteadily = !decltype(Now::du)::absent;
-  static constexpr bool pulled = !decltype(Now::g)::absent;
+  static constexpr bool turns = !decltype(Now::u)::static_zero;
+  static constexpr bool turns_unsteadily = !decltype(Now::du)::static_zero;
+  static constexpr bool pulled = !decltype(Now::g)::static_zero;
 
   [[nodiscard]] static std::string of_turning() {
     const std::string said = said_of<GuideRate, Loads...>();

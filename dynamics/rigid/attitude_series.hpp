@@ -29,7 +29,7 @@ enum class RateAxes {
 /// Source : recurrences for products: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 ///          Differential Equations I, I.8
 template <class Tensor, class FirstMoment, class Felt, RateAxes axes = RateAxes::body,
-          class Momentum = NoVector>
+          class Momentum = ZeroVector>
 class AttitudeSeries {
  public:
   static constexpr int most_order = most_series_order;
@@ -64,7 +64,7 @@ class AttitudeSeries {
       const Mat3dByDiagonals R =
           Mat3dByDiagonals::rotation_back(sums.square, sums.next, sums.by_w, 1 / norm2);
       if constexpr (guide_changes) {
-        s.turn_back[std::size_t(k)] = R;
+        s.rotation_back[std::size_t(k)] = R;
         at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_felt(i, j, felt, sums); });
       } else {
         if constexpr (guide_turns) sums.guide = R * felt.u;
@@ -82,7 +82,7 @@ class AttitudeSeries {
       const double weight = h / (k + 1);
       w = weight * tensor_.solve(moment(w, sums));
       Vec4d dq = sums.x + sums.y + sums.z;
-      if constexpr (by_whole_rate && guide_turns) dq = dq - s.turned_along(k, felt.u.as_is);
+      if constexpr (by_whole_rate && guide_turns) dq = dq - s.rotated_along(k, felt.u.as_is);
       dq = weight / 2 * dq;
       s.put_attitude(k + 1, dq);
       for (int i = 0; i < 4; ++i) c(i, k + 1) = dq[i];
@@ -97,18 +97,18 @@ class AttitudeSeries {
     if constexpr (guide_changes) {
       return true;
     } else {
-      return !decltype(Felt::u)::absent;
+      return !decltype(Felt::u)::static_zero;
     }
   }
   [[nodiscard]] static constexpr bool feels_gravity() {
     if constexpr (guide_changes) {
       return true;
     } else {
-      return !decltype(Felt::g)::absent;
+      return !decltype(Felt::g)::static_zero;
     }
   }
   static constexpr bool guide_turns = feels_a_turning();
-  static constexpr bool pulled = !FirstMoment::absent && feels_gravity();
+  static constexpr bool pulled = !FirstMoment::static_zero && feels_gravity();
 
   /// q' is taken as  (q (0, w) - (0, u) q)/2,  which does not have to wait for R.
   static constexpr bool by_whole_rate = !on_resal_axes && !guide_changes;
@@ -144,7 +144,7 @@ class AttitudeSeries {
     Of<Vec4d> q_i, q_j, q_k;  ///< the products with the quaternion units
     Of<Vec4d> w, w_next, w_after;
     Of<Vec4d> u;  ///< u', or w where that is taken for it
-    Of<Mat3dByDiagonals> turn_back;
+    Of<Mat3dByDiagonals> rotation_back;
     Of<Vec4d> aside;    ///< on Resal's axes: (-w_y, w_x)
     Of<double> excess;  ///< there: C w_z - A n
 
@@ -170,7 +170,7 @@ class AttitudeSeries {
     }
 
     /// (0, v) q
-    [[nodiscard]] Vec4d turned_along(int k, const Vec4d& v) const {
+    [[nodiscard]] Vec4d rotated_along(int k, const Vec4d& v) const {
       const auto at = static_cast<std::size_t>(k);
       return Vec4d(v[0], -v[0], -v[0], v[0]) * q_i[at] + Vec4d(-v[1], v[1], -v[1], v[1]) * q_j[at] +
              Vec4d(-v[2], -v[2], v[2], v[2]) * q_k[at];
@@ -196,8 +196,8 @@ class AttitudeSeries {
 
     [[gnu::always_inline]] void add_felt(std::size_t i, std::size_t j, const ChangingFelt& felt,
                                          Sums& s) const {
-      s.guide += turn_back[i] * felt.u[j];
-      if constexpr (pulled) s.gravity += turn_back[i] * felt.g[j];
+      s.guide += rotation_back[i] * felt.u[j];
+      if constexpr (pulled) s.gravity += rotation_back[i] * felt.g[j];
     }
   };
 
@@ -211,7 +211,7 @@ class AttitudeSeries {
   [[nodiscard]] Vec4d moment(const Vec4d& w, const Sums& sums) const {
     Vec4d sum = sums.mixed;
     if constexpr (!on_resal_axes) sum = tensor_.gyroscopic_torque(sums.mixed, sums.w_square);
-    if constexpr (!Momentum::absent) sum += cross(momentum_, w);
+    if constexpr (!Momentum::static_zero) sum += cross(momentum_, w);
     if constexpr (pulled) sum += cross(first_moment_, sums.gravity);
     return sum;
   }

@@ -154,7 +154,7 @@ class BasicEulerTop {
     const S imaginary = 2 * w.x() * w.y() - (k.x() * gamma.y + k.y() * gamma.x) / C;
     return {twice_kinetic / 2 + potential, gamma.x * L.x + gamma.y * L.y + gamma.z * L.z, L.z,
             real * real + imaginary * imaginary,
-            detail::vector<S>(rotated(detail::Turn<S>::from(q), L))};
+            detail::vector<S>(rotated(detail::Rotation<S>::from(q), L))};
   }
 
   /// Those of the invariants that this top keeps, by name.
@@ -207,7 +207,7 @@ class BasicEulerTop {
  private:
   /// A guide at rest with gravity, in units of its size.
   struct Downwards {
-    detail::NoVector u = {};
+    detail::ZeroVector u = {};
     detail::Components<S> g = {0, 0, -1};
     struct {
     } field = {};
@@ -247,7 +247,7 @@ class BasicEulerTop {
   /// Inertial z on body axes, the last row of the rotation.
   template <class N>
   [[nodiscard]] static detail::Components<N> vertical(const Eigen::Quaternion<N>& q) {
-    const detail::Turn<N> R = detail::Turn<N>::from(q);
+    const detail::Rotation<N> R = detail::Rotation<N>::from(q);
     return {R.zx, R.zy, R.zz};
   }
 

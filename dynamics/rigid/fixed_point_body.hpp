@@ -102,7 +102,7 @@ class FixedPointBody {
   /// with g' what a body at rest in the guide feels at O' of uniform gravity, and M all other loads.
   template <class N>
   [[nodiscard]] Vector3<N> acceleration(const LoadContext<N>& s) const {
-    const auto turn = detail::Turn<N>::from(s.X.value.rotation);
+    const auto turn = detail::Rotation<N>::from(s.X.value.rotation);
     const auto u = detail::components(s.V_rel.value.resultant);
     return std::apply(
         [&](const Loads&... all) -> Vector3<N> {
@@ -119,12 +119,12 @@ class FixedPointBody {
                                                  const Eigen::Matrix<N, 7, 1>& y) const {
     const Eigen::Quaternion<N> q(y[3], y[0], y[1], y[2]);
     const Vector3<N> u(y[4], y[5], y[6]);
-    const auto turn = detail::Turn<N>::from(q);
+    const auto turn = detail::Rotation<N>::from(q);
     const auto du = std::apply(
         [&](const Loads&... all) {
           if constexpr (!has_forces) {
             return acceleration_of(turn, detail::components(u), felt_.at(guide_, N(t), all...),
-                                   detail::NoVector{});
+                                   detail::ZeroVector{});
           } else {
             LoadContext<N> s = situation_in<N>(t, turn.matrix(), u);
             if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
@@ -161,8 +161,8 @@ class FixedPointBody {
   /// What acceleration() computes of its formula: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     using Now = detail::FeltTerms<FeltNow, M, Loads...>;
-    constexpr bool heavy = !FirstMomentKept::absent && Now::pulled;
-    const std::string of_weight = FirstMomentKept::absent || Now::of_gravity().empty()
+    constexpr bool heavy = !FirstMomentKept::static_zero && Now::pulled;
+    const std::string of_weight = FirstMomentKept::static_zero || Now::of_gravity().empty()
                                       ? detail::said_of<FirstMoment, Loads...>()
                                       : Now::of_gravity();
     Terms list;
@@ -195,7 +195,7 @@ class FixedPointBody {
     if constexpr (SteadyGuide<M>) {
       const auto motion = guide_.steady();
       const Vector3<S> carried = detail::vector<S>(detail::carried_acceleration(
-          motion.u, detail::NoVector{}, motion.origin_acceleration, detail::components(point_)));
+          motion.u, detail::ZeroVector{}, motion.origin_acceleration, detail::components(point_)));
       return remade(inertia_, RestingFrame<>{guide_((begin + end) / 2).X},
                     std::tuple_cat(loads_, std::tuple(UniformGravity<Guide>{-carried})));
     } else {
@@ -297,7 +297,7 @@ class FixedPointBody {
   }
 
   template <class N, class U, class T>
-  [[nodiscard]] detail::Components<N> acceleration_of(const detail::Turn<N>& R,
+  [[nodiscard]] detail::Components<N> acceleration_of(const detail::Rotation<N>& R,
                                                       const detail::Components<N>& u_rel,
                                                       const U& guide, const T& torque) const {
     const auto u = rotated_back(R, guide.u);
@@ -320,12 +320,13 @@ class FixedPointBody {
           },
           loads_);
     } else {
-      return detail::NoVector{};
+      return detail::ZeroVector{};
     }
   }
 
   using FirstMomentKept = detail::Kept<FirstMoment, S, Loads...>;
-  using Felt = detail::ApparentField<!FirstMomentKept::absent, detail::Components<S>, M, Loads...>;
+  using Felt =
+      detail::ApparentField<!FirstMomentKept::static_zero, detail::Components<S>, M, Loads...>;
 
   using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
                                                           std::declval<const Loads&>()...));

@@ -62,7 +62,7 @@ class FreeBody {
         tensor_(detail::tensor_of<Loads...>(about_centre(inertia.value), "free body")),
         felt_(std::apply(
             [this](const Loads&... all) {
-              return Felt(detail::NoVector{}, guide_, "free body", all...);
+              return Felt(detail::ZeroVector{}, guide_, "free body", all...);
             },
             loads_)) {
     detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
@@ -88,8 +88,9 @@ class FreeBody {
       const LoadContext<N>& s) const {
     return std::apply(
         [&](const Loads&... all) -> Rate<Body, Velocity<Body, Guide, Body, N>> {
-          return {acceleration_of(detail::Turn<N>::from(s.X.value.rotation), s.X.value.translation,
-                                  s.V_rel.value, felt_.in(s.guide, all...), force(s))
+          return {acceleration_of(detail::Rotation<N>::from(s.X.value.rotation),
+                                  s.X.value.translation, s.V_rel.value, felt_.in(s.guide, all...),
+                                  force(s))
                       .motor()};
         },
         loads_);
@@ -106,7 +107,7 @@ class FreeBody {
     const Vector3<N> r(y[4], y[5], y[6]);
     const Vector3<N> u(y[7], y[8], y[9]);
     const Vector3<N> v(y[10], y[11], y[12]);
-    const auto turn = detail::Turn<N>::from(q);
+    const auto turn = detail::Rotation<N>::from(q);
     const Eigen::Matrix<N, 4, 1> dq = attitude_rate(q, u);
     const auto dr = rotated(turn, detail::components(v));
     const auto rate = [&](const Acceleration<N>& dV) {
@@ -149,7 +150,7 @@ class FreeBody {
     list.add("relative", "u' x (Theta_c u')");
     list.add("relative", "products of inertia in Theta_c", !detail::principal<Loads...>,
              detail::said_of<ProductsOfInertia, Loads...>());
-    list.add("relative", "c apart from O'", !CentreKept::absent, of_centre);
+    list.add("relative", "c apart from O'", !CentreKept::static_zero, of_centre);
     list.add("guide", "u x (Theta_c u)", Now::turns, Now::of_turning());
     list.add("guide", "Theta_c ou", Now::turns_unsteadily, Now::of_unsteadiness());
     list.add("guide", "m g'", Now::pulled, Now::of_gravity());
@@ -271,7 +272,7 @@ class FreeBody {
     P force;
     T torque;
   };
-  using NoForce = Wrench<detail::NoVector, detail::NoVector>;
+  using NoForce = Wrench<detail::ZeroVector, detail::ZeroVector>;
 
   static constexpr bool has_forces = (detail::is_force<Loads> || ...);
   static constexpr bool guide_is_read = (detail::reads_guide<Loads>() || ...);
@@ -303,7 +304,7 @@ class FreeBody {
   };
 
   template <class N, class U, class F>
-  [[nodiscard]] Acceleration<N> acceleration_of(const detail::Turn<N>& R,
+  [[nodiscard]] Acceleration<N> acceleration_of(const detail::Rotation<N>& R,
                                                 const Vector3<N>& position, const Motor<N>& V,
                                                 const U& guide, const F& load) const {
     const auto u_rel = detail::components(V.resultant);
@@ -314,8 +315,8 @@ class FreeBody {
     const auto dw =
         tensor_.solve(tensor_.gyroscopic_torque(w) + load.torque - cross(centre_, load.force));
     const auto u_centrifugal = detail::without<CentrifugalForce, Loads...>(guide.u);
-    const auto g = rotated_back(
-        R, guide.g - detail::carried_acceleration(u_centrifugal, guide.du, detail::NoVector{}, r));
+    const auto g = rotated_back(R, guide.g - detail::carried_acceleration(u_centrifugal, guide.du,
+                                                                          detail::ZeroVector{}, r));
     const auto du = dw - rotated_back(R, guide.du) + cross(u_rel, u);
     const auto dv = load.force / inertia_.value.mass + g - cross(dw, centre_) -
                     cross(w, cross(w, centre_)) - cross(w + u, v_rel);
@@ -345,7 +346,7 @@ class FreeBody {
   }
 
   using CentreKept = detail::Kept<FirstMoment, S, Loads...>;
-  using Felt = detail::ApparentField<true, detail::NoVector, M, Loads...>;
+  using Felt = detail::ApparentField<true, detail::ZeroVector, M, Loads...>;
 
   using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
                                                           std::declval<const Loads&>()...));

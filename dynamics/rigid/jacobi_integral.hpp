@@ -19,7 +19,7 @@ template <class M, class L>
   if constexpr (is_without<L> || std::is_same_v<L, UniformGravity<Guide>>) {
     return true;
   } else if constexpr (std::is_same_v<L, UniformGravity<Inertial>>) {
-    return decltype(std::declval<const M&>().steady().u)::absent;
+    return decltype(std::declval<const M&>().steady().u)::static_zero;
   } else if constexpr (requires { load.keeps_energy(); }) {
     return load.keeps_energy();
   } else {
@@ -54,7 +54,7 @@ template <class M, class... Loads>
                      vector<double>(motion.origin_acceleration).dot(first_moment) +
                      (0.0 + ... + potential(s, loads));
     constexpr bool rests =
-        decltype(motion.u)::absent && decltype(motion.origin_acceleration)::absent;
+        decltype(motion.u)::static_zero && decltype(motion.origin_acceleration)::static_zero;
     return {{rests ? "energy" : "Jacobi integral", H}};
   } else {
     return {};

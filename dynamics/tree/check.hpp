@@ -39,7 +39,8 @@ namespace kreisel::detail {
 [[nodiscard]] inline Vector3<double> normalized(const Vector3<double>& a) { return a / length(a); }
 
 [[nodiscard]] inline Vector3<double> axis_on_body(const kreisel::Joint& joint) {
-  return transposed_product(Turn<double>::from(joint.orientation).matrix(), normalized(joint.axis));
+  return transposed_product(Rotation<double>::from(joint.orientation).matrix(),
+                            normalized(joint.axis));
 }
 
 inline void check_axis(const BodyDescription& b, const Vector3<double>& axis, const char* which) {

@@ -38,7 +38,7 @@ template <class S>
 
 template <class S>
 [[nodiscard]] Matrix3<S> rotation(const S* q) {
-  return Turn<S>::from(Eigen::Quaternion<S>(q[3], q[0], q[1], q[2])).matrix();
+  return Rotation<S>::from(Eigen::Quaternion<S>(q[3], q[0], q[1], q[2])).matrix();
 }
 
 template <class S>

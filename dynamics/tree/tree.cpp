@@ -110,7 +110,7 @@ void BodyTree::append(int body) {
   link.rule = b.rule;
   link.position = b.joint.position;
   link.parent = b.parent == "guide" ? 0 : static_cast<int>(this->link(index_.at(b.parent)));
-  link.still = detail::Turn<double>::from(b.joint.orientation).matrix();
+  link.still = detail::Rotation<double>::from(b.joint.orientation).matrix();
   switch (b.joint.kind) {
     case JointKind::fixed: break;
     case JointKind::revolute: detail::turn_about(link, b.joint.axis); break;

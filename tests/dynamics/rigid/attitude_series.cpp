@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(knows_what_a_guide_makes_felt_wherever_it_is_asked) {
   for (const HarmonicFrame<>& guide : {even, uneven}) {
     const auto anew = [&guide] {
       return detail::FeltSeries(guide, detail::components(point), detail::components(in_guide.g),
-                                detail::NoVector{});
+                                detail::ZeroVector{});
     };
     const auto hold = [&guide](auto& felt, double t, double h) {
       const GuideSeries series = felt.at(t, h, most_series_order);
