@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   const FixedPointBody ball(body, V3::Zero(), ground, down);
   const FixedPointBody hanging(body, V3::Zero(), ground, down, Without<ProductsOfInertia>{},
                                Without<FirstMoment, Axis::x, Axis::y>{},
-                               Without<FeltGravity, Axis::x, Axis::y>{},
+                               Without<ApparentGravity, Axis::x, Axis::y>{},
                                Without<GuideRate, Axis::y>{});
   const PendulumField plane(rod, meridian);
   const CardanBearings bearings{{outer_stiffness, outer_damping}, {inner_stiffness, inner_damping}};

@@ -70,7 +70,7 @@ std::vector<Case> pendulums() {
   const by_hand::BallPendulum ball_hand{ball_moments, earth, arm * gravity};
   const Without<ProductsOfInertia> principal;
   const Without<FirstMoment, Axis::x, Axis::y> hanging;
-  const Without<FeltGravity, Axis::x, Axis::y> plumb;
+  const Without<ApparentGravity, Axis::x, Axis::y> plumb;
   const auto general_ball =
       field(FixedPointBody(body, V3::Zero(), any_guide(ground), any_load(down)));
   const auto by_hand_ball = [=](double, const Top& y) { return ball_hand.rates(y); };

@@ -70,13 +70,13 @@ std::vector<Case> tops() {
         form("pruned", start,
              field(FixedPointBody(principal_heavy, V3::Zero(), RestingFrame<>{}, down,
                                   Without<ProductsOfInertia>{},
-                                  Without<FeltGravity, Axis::x, Axis::y>{}))),
+                                  Without<ApparentGravity, Axis::x, Axis::y>{}))),
         form("by hand", start, heavy_top), form("by hand for norm 1", start, unit_top)}},
       {"heavy top with products of inertia",
        {form("general", start, field(FixedPointBody(heavy, V3::Zero(), rest, any_load(down)))),
         form("pruned", start,
              field(FixedPointBody(heavy, V3::Zero(), RestingFrame<>{}, down,
-                                  Without<FeltGravity, Axis::x, Axis::y>{}))),
+                                  Without<ApparentGravity, Axis::x, Axis::y>{}))),
         form("by hand", start, general_top)}},
   };
 }

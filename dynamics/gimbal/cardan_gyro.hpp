@@ -226,8 +226,8 @@ class CardanGyro {
       return detail::CardanSeries(gyro, detail::components(detail::vector<double>(steady_)));
     } else {
       return detail::CardanSeries(
-          gyro, detail::FeltSeries(guide_, detail::ZeroVector{}, detail::ZeroVector{},
-                                   detail::ZeroVector{}));
+          gyro, detail::ApparentSeries(guide_, detail::ZeroVector{}, detail::ZeroVector{},
+                                       detail::ZeroVector{}));
     }
   }
 
@@ -356,9 +356,10 @@ class CardanGyro {
   /// What rates() computes: see kreisel::terms. H = C_1 u_C1 is the momentum of the spin, i counts
   /// the bodies.
   [[nodiscard]] Terms terms() const {
-    using Felt = decltype(std::declval<const CardanGyro&>().template felt_turning<double>(0.0));
-    constexpr bool turns = !decltype(Felt::u)::static_zero;
-    constexpr bool turns_unsteadily = !decltype(Felt::du)::static_zero;
+    using Apparent =
+        decltype(std::declval<const CardanGyro&>().template apparent_turning<double>(0.0));
+    constexpr bool turns = !decltype(Apparent::u)::static_zero;
+    constexpr bool turns_unsteadily = !decltype(Apparent::du)::static_zero;
     constexpr bool spun = !detail::is_static_zero<
         decltype(std::declval<const CardanGyro&>().template spin_torque<double>(0.0, 0.0))>;
     const std::string of_turning = turns ? "" : "the guide does not turn";
@@ -552,7 +553,7 @@ class CardanGyro {
   /// What the equations feel of the guide: of a steady one that turns no rate, of one at rest
   /// nothing.
   template <class S>
-  [[nodiscard]] auto felt_turning(const S& t) const {
+  [[nodiscard]] auto apparent_turning(const S& t) const {
     if constexpr (detail::is_resting<M> || detail::never_turns<M>) {
       return detail::Turning<detail::StaticZero, detail::StaticZero>{};
     } else if constexpr (SteadyGuide<M>) {
@@ -651,7 +652,7 @@ class CardanGyro {
     const Parameter A_3 = moments_.outer_ring.x();
     const detail::RingMoments<Parameter>& inner = round ? counted_ring_ : bare_ring_;
 
-    const auto guide = felt_turning<S>(t);
+    const auto guide = apparent_turning<S>(t);
     using G = std::decay_t<decltype(guide.u.x)>;
     using V = std::decay_t<decltype(guide.du.x)>;
     detail::SinCos<G> alpha;

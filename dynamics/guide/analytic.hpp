@@ -39,10 +39,10 @@ class AnalyticFrame {
       return rotated_back(k, R(0, i).derivative(h), R(1, i).derivative(h), R(2, i).derivative(h));
     };
     const PowerSeries u[] = {turning(2, 1), turning(0, 2), turning(1, 0)};
-    const auto felt = [&](double along, int i) {
+    const auto apparent = [&](double along, int i) {
       return along - pose.translation[i].derivative(h).derivative(h);
     };
-    const PowerSeries x = felt(g.x, 0), y = felt(g.y, 1), z = felt(g.z, 2);
+    const PowerSeries x = apparent(g.x, 0), y = apparent(g.y, 1), z = apparent(g.z, 2);
     const PowerSeries f[] = {rotated_back(0, x, y, z), rotated_back(1, x, y, z),
                              rotated_back(2, x, y, z)};
     GuideSeries result;

@@ -29,8 +29,8 @@ struct GuideRate {
   static constexpr const char* name = "GuideRate";
 };
 /// g' = g - a of what rests in the guide at O', on guide axes.
-struct FeltGravity {
-  static constexpr const char* name = "FeltGravity";
+struct ApparentGravity {
+  static constexpr const char* name = "ApparentGravity";
 };
 
 /// Of a FreeBody's place on a guide that turns: m u x (u x r). It does not vanish, and Without<> of it
@@ -64,7 +64,7 @@ enum class Axis { x, y, z };
 ///            Without<ProductsOfInertia>{})
 ///
 /// It stands among the loads, and is one that does nothing. The scene holds it against its numbers
-/// when it is built. GuideRate and FeltGravity can be known only on a guide in steady motion.
+/// when it is built. GuideRate and ApparentGravity can be known only on a guide in steady motion.
 template <class Quantity, Axis... axes>
 struct Without {
   static constexpr bool ignores_spin = true;

@@ -23,7 +23,7 @@ namespace kreisel::detail {
 /// u and ou of the guide, and g' = g - a: uniform gravity less the inertial acceleration of the
 /// guide-fixed point in question.
 template <class U, class Du, class G>
-struct Felt {
+struct Apparent {
   U u;
   Du du;
   G g;
@@ -149,9 +149,9 @@ TurningSeries(Known<U, G, TurningField>) -> TurningSeries<U, G>;
 struct Nothing {};
 
 template <class... Loads>
-inline constexpr bool restricts_felt_gravity = (vanishes<FeltGravity, Axis::x, Loads...> ||
-                                                vanishes<FeltGravity, Axis::y, Loads...> ||
-                                                vanishes<FeltGravity, Axis::z, Loads...>);
+inline constexpr bool restricts_apparent_gravity = (vanishes<ApparentGravity, Axis::x, Loads...> ||
+                                                    vanishes<ApparentGravity, Axis::y, Loads...> ||
+                                                    vanishes<ApparentGravity, Axis::z, Loads...>);
 
 template <class... Loads>
 inline constexpr bool restricts_guide_rate = (vanishes<GuideRate, Axis::x, Loads...> ||
@@ -163,8 +163,8 @@ template <bool gravity, class P, class M, class... Loads>
 [[nodiscard]] auto known_motion(const P& r, const M& guide, const std::string& what,
                                 const Loads&... loads) {
   if constexpr (!SteadyGuide<M>) {
-    static_assert(!restricts_guide_rate<Loads...> && !restricts_felt_gravity<Loads...>,
-                  "Without<GuideRate> and Without<FeltGravity> take a guide in steady motion");
+    static_assert(!restricts_guide_rate<Loads...> && !restricts_apparent_gravity<Loads...>,
+                  "Without<GuideRate> and Without<ApparentGravity> take a guide in steady motion");
     return Nothing{};
   } else {
     const auto motion = guide.steady();
@@ -179,7 +179,7 @@ template <bool gravity, class P, class M, class... Loads>
       const auto inertial = rotated_back(Rotation<double>::from(guide(0).X.value.rotation),
                                          field_on<Inertial>(loads...));
       if constexpr (has_field<Inertial, Loads...> && !U::static_zero) {
-        static_assert(!restricts_felt_gravity<Loads...>,
+        static_assert(!restricts_apparent_gravity<Loads...>,
                       "gravity that rests in the inertial frame turns in this guide");
         const Components<double> n = direction(components(vector<double>(u)));
         const Components<double> all = components(vector<double>(inertial));
@@ -190,8 +190,9 @@ template <bool gravity, class P, class M, class... Loads>
             u, in_guide + along, TurningField(all, along, components(vector<double>(u)))};
       } else {
         const auto all = in_guide + inertial;
-        check_vanishing<FeltGravity, Loads...>(vector<double>(all), what + ", felt gravity");
-        const auto g = without<FeltGravity, Loads...>(all);
+        check_vanishing<ApparentGravity, Loads...>(vector<double>(all),
+                                                   what + ", apparent gravity");
+        const auto g = without<ApparentGravity, Loads...>(all);
         return Known<U, std::remove_const_t<decltype(g)>, Nothing>{u, g, {}};
       }
     }
@@ -203,9 +204,9 @@ template <bool gravity, class P, class M, class... Loads>
 /// A guide mostly moves slower than what it carries: a series of its motion serves several steps of
 /// the body, shifted to where each begins.
 template <class M, class P, class InGuide, class InInertial>
-class FeltSeries {
+class ApparentSeries {
  public:
-  FeltSeries(const M& guide, const P& r, const InGuide& field, const InInertial& inertial_field)
+  ApparentSeries(const M& guide, const P& r, const InGuide& field, const InInertial& inertial_field)
       : guide_(guide), r_(r), field_(field), inertial_field_(inertial_field) {}
 
   [[nodiscard]] GuideSeries at(double t, double h, int order) {
@@ -267,21 +268,21 @@ class ApparentField {
     } else {
       const auto in_guide = field_on<Guide>(loads...);
       const auto inertial = field_on<Inertial>(loads...);
-      return FeltSeries(guide, r_, in_guide, inertial);
+      return ApparentSeries(guide, r_, in_guide, inertial);
     }
   }
 
   template <class N>
   [[nodiscard]] auto at(const M& guide, const N& t, const Loads&... loads) const {
     if constexpr (requires { known_.field.at(t); }) {
-      return felt(known_.u, ZeroVector{}, known_.g + known_.field.at(t));
+      return apparent(known_.u, ZeroVector{}, known_.g + known_.field.at(t));
     } else if constexpr (SteadyGuide<M>) {
-      return felt(known_.u, ZeroVector{}, known_.g);
+      return apparent(known_.u, ZeroVector{}, known_.g);
     } else if constexpr (!gravity && never_turns<M>) {
-      return felt(ZeroVector{}, ZeroVector{}, ZeroVector{});
+      return apparent(ZeroVector{}, ZeroVector{}, ZeroVector{});
     } else if constexpr (!gravity && std::is_same_v<N, double>) {
       const FrameTurning<N> now = turning(guide, t);
-      return felt(components(now.u), components(now.du), ZeroVector{});
+      return apparent(components(now.u), components(now.du), ZeroVector{});
     } else {
       return in(guide_at<N>(guide, t), loads...);
     }
@@ -312,14 +313,14 @@ class ApparentField {
           field_on<Guide>(loads...) +
           rotated_back(Rotation<N>::from(now.X.value.rotation), field_on<Inertial>(loads...)) -
           carried_acceleration(u, du, components(a), r_);
-      return felt(u, du, g);
+      return apparent(u, du, g);
     } else {
-      return felt(u, du, ZeroVector{});
+      return apparent(u, du, ZeroVector{});
     }
   }
 
   template <class U, class Du, class G>
-  [[nodiscard]] static Felt<U, Du, G> felt(const U& u, const Du& du, const G& g) {
+  [[nodiscard]] static Apparent<U, Du, G> apparent(const U& u, const Du& du, const G& g) {
     return {u, du, g};
   }
 
@@ -336,9 +337,9 @@ template <class M>
     return guide.series(t, h, order, g);
   } else {
     const UniformGravity<Inertial> field{vector<double>(g)};
-    const ApparentField<true, ZeroVector, M, UniformGravity<Inertial>> felt({}, guide, "guide",
-                                                                            field);
-    const auto whole = felt.whole(guide, field);
+    const ApparentField<true, ZeroVector, M, UniformGravity<Inertial>> apparent({}, guide, "guide",
+                                                                                field);
+    const auto whole = apparent.whole(guide, field);
     if constexpr (requires { whole.at(t, h, order); }) {
       return whole.at(t, h, order);
     } else {
@@ -396,7 +397,7 @@ template <class L>
 /// Whether a body feels the guide's turning, its angular acceleration and g', as its Felt type says,
 /// and why not.
 template <class Now, class M, class... Loads>
-struct FeltTerms {
+struct ApparentTerms {
   static constexpr bool turns = !decltype(Now::u)::static_zero;
   static constexpr bool turns_unsteadily = !decltype(Now::du)::static_zero;
   static constexpr bool pulled = !decltype(Now::g)::static_zero;
@@ -412,7 +413,7 @@ struct FeltTerms {
   }
 
   [[nodiscard]] static std::string of_gravity() {
-    const std::string said = said_of<FeltGravity, Loads...>();
+    const std::string said = said_of<ApparentGravity, Loads...>();
     return pulled || !said.empty() ? said : "no gravity, and the guide does not accelerate";
   }
 

@@ -25,27 +25,27 @@ enum class RateAxes {
 /// with R quadratic in q, whose norm does not change. On Resal's axes those turn by (u'_x, u'_y, 0),
 /// and  Theta w' = ((A n - C w_z) w_y, (C w_z - A n) w_x, 0) + s x R^t g',  n = (R^t u)_z.
 ///
-/// Felt   : u and g' on guide axes; or at(t, h, order), which gives their series
+/// Apparent   : u and g' on guide axes; or at(t, h, order), which gives their series
 /// Source : recurrences for products: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 ///          Differential Equations I, I.8
-template <class Tensor, class FirstMoment, class Felt, RateAxes axes = RateAxes::body,
+template <class Tensor, class FirstMoment, class Apparent, RateAxes axes = RateAxes::body,
           class Momentum = ZeroVector>
 class AttitudeSeries {
  public:
   static constexpr int most_order = most_series_order;
 
-  AttitudeSeries(const Tensor& tensor, const FirstMoment& first_moment, const Felt& felt,
+  AttitudeSeries(const Tensor& tensor, const FirstMoment& first_moment, const Apparent& apparent,
                  const Momentum& momentum = {})
       : tensor_(tensor),
         first_moment_(vec4d(first_moment)),
-        felt_(felt),
+        apparent_(apparent),
         momentum_(vec4d(momentum)) {}
 
   /// Fills the columns 1 to `order` of c with the coefficients of (quaternion x, y, z, w; u') in
   /// powers of (time - t)/h, for the motion that has column 0 at t.
   template <class Coefficients>
   void operator()(double t, double h, int order, Coefficients& c) {
-    const auto felt = felt_now(t, h, order);
+    const auto apparent = apparent_now(t, h, order);
     Table s;
     const double norm2 = c.col(0).template head<4>().squaredNorm();
     s.put_attitude(0, {c(0, 0), c(1, 0), c(2, 0), c(3, 0)});
@@ -58,17 +58,17 @@ class AttitudeSeries {
       for (std::size_t i = 1, j = std::size_t(k) - 1; i < std::size_t(k); ++i, --j) {
         s.add_attitudes(i, j, sums);
         s.add_rates(i, j, sums);
-        if constexpr (guide_changes) s.add_felt(i, j, felt, sums);
+        if constexpr (guide_changes) s.add_apparent(i, j, apparent, sums);
       }
       at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_attitudes(i, j, sums); });
       const Mat3dByDiagonals R =
           Mat3dByDiagonals::rotation_back(sums.square, sums.next, sums.by_w, 1 / norm2);
       if constexpr (guide_changes) {
         s.rotation_back[std::size_t(k)] = R;
-        at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_felt(i, j, felt, sums); });
+        at_the_ends(k, [&](std::size_t i, std::size_t j) { s.add_apparent(i, j, apparent, sums); });
       } else {
-        if constexpr (guide_turns) sums.guide = R * felt.u;
-        if constexpr (pulled) sums.gravity = R * felt.g;
+        if constexpr (guide_turns) sums.guide = R * apparent.u;
+        if constexpr (pulled) sums.gravity = R * apparent.g;
       }
       if (k == 0) w += sums.guide;
       const Vec4d u = w - sums.guide;
@@ -82,7 +82,7 @@ class AttitudeSeries {
       const double weight = h / (k + 1);
       w = weight * tensor_.solve(moment(w, sums));
       Vec4d dq = sums.x + sums.y + sums.z;
-      if constexpr (by_whole_rate && guide_turns) dq = dq - s.rotated_along(k, felt.u.as_is);
+      if constexpr (by_whole_rate && guide_turns) dq = dq - s.rotated_along(k, apparent.u.as_is);
       dq = weight / 2 * dq;
       s.put_attitude(k + 1, dq);
       for (int i = 0; i < 4; ++i) c(i, k + 1) = dq[i];
@@ -91,20 +91,20 @@ class AttitudeSeries {
 
  private:
   static constexpr bool on_resal_axes = axes == RateAxes::resal;
-  static constexpr bool guide_changes = requires(Felt & felt) { felt.at(0.0, 0.0, 0); };
+  static constexpr bool guide_changes = requires(Apparent & apparent) { apparent.at(0.0, 0.0, 0); };
 
   [[nodiscard]] static constexpr bool feels_a_turning() {
     if constexpr (guide_changes) {
       return true;
     } else {
-      return !decltype(Felt::u)::static_zero;
+      return !decltype(Apparent::u)::static_zero;
     }
   }
   [[nodiscard]] static constexpr bool feels_gravity() {
     if constexpr (guide_changes) {
       return true;
     } else {
-      return !decltype(Felt::g)::static_zero;
+      return !decltype(Apparent::g)::static_zero;
     }
   }
   static constexpr bool guide_turns = feels_a_turning();
@@ -116,10 +116,10 @@ class AttitudeSeries {
   template <class T>
   using Of = std::array<T, most_order + 1>;
 
-  struct SteadyFelt {
+  struct SteadyApparent {
     CyclicVec4d u, g;
   };
-  struct ChangingFelt {
+  struct ChangingApparent {
     Of<CyclicVec4d> u, g;
   };
 
@@ -194,10 +194,10 @@ class AttitudeSeries {
       }
     }
 
-    [[gnu::always_inline]] void add_felt(std::size_t i, std::size_t j, const ChangingFelt& felt,
-                                         Sums& s) const {
-      s.guide += rotation_back[i] * felt.u[j];
-      if constexpr (pulled) s.gravity += rotation_back[i] * felt.g[j];
+    [[gnu::always_inline]] void add_apparent(std::size_t i, std::size_t j,
+                                             const ChangingApparent& apparent, Sums& s) const {
+      s.guide += rotation_back[i] * apparent.u[j];
+      if constexpr (pulled) s.gravity += rotation_back[i] * apparent.g[j];
     }
   };
 
@@ -216,23 +216,23 @@ class AttitudeSeries {
     return sum;
   }
 
-  [[nodiscard]] auto felt_now(double t, double h, int order) {
+  [[nodiscard]] auto apparent_now(double t, double h, int order) {
     if constexpr (guide_changes) {
-      const GuideSeries series = felt_.at(t, h, order);
-      ChangingFelt felt;
+      const GuideSeries series = apparent_.at(t, h, order);
+      ChangingApparent apparent;
       for (std::size_t k = 0; k <= std::size_t(order); ++k) {
-        felt.u[k] = CyclicVec4d(vec4d(series.u[k]));
-        felt.g[k] = CyclicVec4d(vec4d(series.g[k]));
+        apparent.u[k] = CyclicVec4d(vec4d(series.u[k]));
+        apparent.g[k] = CyclicVec4d(vec4d(series.g[k]));
       }
-      return felt;
+      return apparent;
     } else {
-      return SteadyFelt{CyclicVec4d(vec4d(felt_.u)), CyclicVec4d(vec4d(felt_.g))};
+      return SteadyApparent{CyclicVec4d(vec4d(apparent_.u)), CyclicVec4d(vec4d(apparent_.g))};
     }
   }
 
   PackedTensor<Tensor> tensor_;
   Vec4d first_moment_;
-  Felt felt_;
+  Apparent apparent_;
   Vec4d momentum_;
 };
 

@@ -70,9 +70,9 @@ class FixedPointBody {
         first_moment_(
             detail::without<FirstMoment, Loads...>(detail::components(inertia.value.first_moment))),
         tensor_(detail::tensor_of<Loads...>(inertia.value.tensor, "held body")),
-        felt_(std::apply(
+        apparent_(std::apply(
             [this](const Loads&... all) {
-              return Felt(detail::components(point_), guide_, "held body", all...);
+              return Apparent(detail::components(point_), guide_, "held body", all...);
             },
             loads_)) {
     check(inertia.value, Mass::positive, "held body");
@@ -106,7 +106,8 @@ class FixedPointBody {
     const auto u = detail::components(s.V_rel.value.resultant);
     return std::apply(
         [&](const Loads&... all) -> Vector3<N> {
-          return detail::vector<N>(acceleration_of(turn, u, felt_.in(s.guide, all...), torque(s)));
+          return detail::vector<N>(
+              acceleration_of(turn, u, apparent_.in(s.guide, all...), torque(s)));
         },
         loads_);
   }
@@ -123,17 +124,17 @@ class FixedPointBody {
     const auto du = std::apply(
         [&](const Loads&... all) {
           if constexpr (!has_forces) {
-            return acceleration_of(turn, detail::components(u), felt_.at(guide_, N(t), all...),
+            return acceleration_of(turn, detail::components(u), apparent_.at(guide_, N(t), all...),
                                    detail::ZeroVector{});
           } else {
             LoadContext<N> s = situation_in<N>(t, turn.matrix(), u);
             if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
             if constexpr (guide_is_read && !SteadyGuide<M>) {
-              return acceleration_of(turn, detail::components(u), felt_.in(s.guide, all...),
+              return acceleration_of(turn, detail::components(u), apparent_.in(s.guide, all...),
                                      torque(s));
             } else {
-              return acceleration_of(turn, detail::components(u), felt_.at(guide_, N(t), all...),
-                                     torque(s));
+              return acceleration_of(turn, detail::components(u),
+                                     apparent_.at(guide_, N(t), all...), torque(s));
             }
           }
         },
@@ -160,7 +161,7 @@ class FixedPointBody {
 
   /// What acceleration() computes of its formula: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
-    using Now = detail::FeltTerms<FeltNow, M, Loads...>;
+    using Now = detail::ApparentTerms<ApparentNow, M, Loads...>;
     constexpr bool heavy = !FirstMomentKept::static_zero && Now::pulled;
     const std::string of_weight = FirstMomentKept::static_zero || Now::of_gravity().empty()
                                       ? detail::said_of<FirstMoment, Loads...>()
@@ -267,11 +268,11 @@ class FixedPointBody {
 
   template <detail::RateAxes axes>
   [[nodiscard]] auto series_on() const {
-    const auto felt =
-        std::apply([&](const Loads&... all) { return felt_.whole(guide_, all...); }, loads_);
-    using FeltWhole = std::remove_const_t<decltype(felt)>;
-    return detail::AttitudeSeries<detail::TensorOf<Loads...>, FirstMomentKept, FeltWhole, axes>(
-        tensor_, first_moment_, felt);
+    const auto apparent =
+        std::apply([&](const Loads&... all) { return apparent_.whole(guide_, all...); }, loads_);
+    using ApparentWhole = std::remove_const_t<decltype(apparent)>;
+    return detail::AttitudeSeries<detail::TensorOf<Loads...>, FirstMomentKept, ApparentWhole, axes>(
+        tensor_, first_moment_, apparent);
   }
 
   template <class OtherGuide, class... Others>
@@ -325,11 +326,11 @@ class FixedPointBody {
   }
 
   using FirstMomentKept = detail::Kept<FirstMoment, S, Loads...>;
-  using Felt =
+  using Apparent =
       detail::ApparentField<!FirstMomentKept::static_zero, detail::Components<S>, M, Loads...>;
 
-  using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
-                                                          std::declval<const Loads&>()...));
+  using ApparentNow = decltype(std::declval<const Apparent&>().at(std::declval<const M&>(), S(0),
+                                                                  std::declval<const Loads&>()...));
 
   InertiaTensor<Body, S> inertia_;
   Vector3<S> point_;
@@ -337,7 +338,7 @@ class FixedPointBody {
   std::tuple<Loads...> loads_;
   FirstMomentKept first_moment_;
   detail::TensorOf<Loads...> tensor_;
-  Felt felt_;
+  Apparent apparent_;
 };
 
 static_assert(Scene<FixedPointBody<RestingFrame<>>> && HasSeries<FixedPointBody<RestingFrame<>>>);

@@ -60,9 +60,9 @@ class FreeBody {
         centre_(detail::without<FirstMoment, Loads...>(
             detail::components(checked_centre(inertia.value)))),
         tensor_(detail::tensor_of<Loads...>(about_centre(inertia.value), "free body")),
-        felt_(std::apply(
+        apparent_(std::apply(
             [this](const Loads&... all) {
-              return Felt(detail::ZeroVector{}, guide_, "free body", all...);
+              return Apparent(detail::ZeroVector{}, guide_, "free body", all...);
             },
             loads_)) {
     detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
@@ -89,8 +89,8 @@ class FreeBody {
     return std::apply(
         [&](const Loads&... all) -> Rate<Body, Velocity<Body, Guide, Body, N>> {
           return {acceleration_of(detail::Rotation<N>::from(s.X.value.rotation),
-                                  s.X.value.translation, s.V_rel.value, felt_.in(s.guide, all...),
-                                  force(s))
+                                  s.X.value.translation, s.V_rel.value,
+                                  apparent_.in(s.guide, all...), force(s))
                       .motor()};
         },
         loads_);
@@ -118,15 +118,16 @@ class FreeBody {
         [&](const Loads&... all) {
           if constexpr (!has_forces) {
             return rate(
-                acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), NoForce{}));
+                acceleration_of(turn, r, {u, v}, apparent_.at(guide_, N(t), all...), NoForce{}));
           } else {
             LoadContext<N> s = situation_in<N>(t, turn.matrix(), r, {u, v});
             if constexpr (guide_is_read) s.guide = detail::guide_at<N>(guide_, t);
             if constexpr (guide_is_read && !SteadyGuide<M>) {
-              return rate(acceleration_of(turn, r, {u, v}, felt_.in(s.guide, all...), force(s)));
+              return rate(
+                  acceleration_of(turn, r, {u, v}, apparent_.in(s.guide, all...), force(s)));
             } else {
               return rate(
-                  acceleration_of(turn, r, {u, v}, felt_.at(guide_, N(t), all...), force(s)));
+                  acceleration_of(turn, r, {u, v}, apparent_.at(guide_, N(t), all...), force(s)));
             }
           }
         },
@@ -143,7 +144,7 @@ class FreeBody {
 
   /// What acceleration() computes of its formula: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
-    using Now = detail::FeltTerms<FeltNow, M, Loads...>;
+    using Now = detail::ApparentTerms<ApparentNow, M, Loads...>;
     const std::string of_centre = detail::said_of<FirstMoment, Loads...>();
     const std::string of_centrifugal = detail::said_of<CentrifugalForce, Loads...>();
     Terms list;
@@ -346,17 +347,17 @@ class FreeBody {
   }
 
   using CentreKept = detail::Kept<FirstMoment, S, Loads...>;
-  using Felt = detail::ApparentField<true, detail::ZeroVector, M, Loads...>;
+  using Apparent = detail::ApparentField<true, detail::ZeroVector, M, Loads...>;
 
-  using FeltNow = decltype(std::declval<const Felt&>().at(std::declval<const M&>(), S(0),
-                                                          std::declval<const Loads&>()...));
+  using ApparentNow = decltype(std::declval<const Apparent&>().at(std::declval<const M&>(), S(0),
+                                                                  std::declval<const Loads&>()...));
 
   InertiaTensor<Body, S> inertia_;
   M guide_;
   std::tuple<Loads...> loads_;
   CentreKept centre_;
   detail::TensorOf<Loads...> tensor_;
-  Felt felt_;
+  Apparent apparent_;
 };
 
 static_assert(Scene<FreeBody<RestingFrame<>>>);

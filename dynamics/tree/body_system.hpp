@@ -282,7 +282,7 @@ class BodySystem {
     const auto moving = detail::components(on_guide ? on_guide->g : zero);
     const auto resting = detail::components(at_rest ? at_rest->g : zero);
     if constexpr (AnalyticGuide<M>) {
-      return [felt = detail::FeltSeries(guide_, detail::ZeroVector{}, moving, resting)](
+      return [felt = detail::ApparentSeries(guide_, detail::ZeroVector{}, moving, resting)](
                  double t, double h, int order) mutable { return felt.at(t, h, order); };
     } else {
       return [guide = guide_, moving, resting](double t, double h, int order) {

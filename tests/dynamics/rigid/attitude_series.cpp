@@ -113,8 +113,8 @@ BOOST_AUTO_TEST_CASE(knows_what_a_guide_makes_felt_wherever_it_is_asked) {
   const HarmonicFrame<> uneven({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}}, heave, -60, 60);
   for (const HarmonicFrame<>& guide : {even, uneven}) {
     const auto anew = [&guide] {
-      return detail::FeltSeries(guide, detail::components(point), detail::components(in_guide.g),
-                                detail::ZeroVector{});
+      return detail::ApparentSeries(guide, detail::components(point),
+                                    detail::components(in_guide.g), detail::ZeroVector{});
     };
     const auto hold = [&guide](auto& felt, double t, double h) {
       const GuideSeries series = felt.at(t, h, most_series_order);
