@@ -25,7 +25,7 @@ Coefficients platform(double speed, bool as_printed = false) {
   tensor << .3, .01, -.008, .01, .25, .012, -.008, .012, .35;
   GyroPlatform p;
   p.platform = InertiaTensor<Body>::about_centre(10, {0, 0, 0}, tensor);
-  p.place_4 = {.05, 0, .04}, p.place_9 = {-.05, .02, .03}, p.arm_5 = .06, p.arm_7 = -.06;
+  p.position_4 = {.05, 0, .04}, p.position_9 = {-.05, .02, .03}, p.arm_5 = .06, p.arm_7 = -.06;
   p.frame_4 = {.5, {1.2e-3, 1.5e-3, 1e-3}}, p.frame_9 = {.4, {.8e-3, .9e-3, 1.1e-3}};
   p.housing_5 = {.3, {2.4e-4, 2.1e-4, 2.3e-4}}, p.housing_7 = {.3, {2.5e-4, 2e-4, 2.2e-4}};
   p.housing_10 = {.3, {2.2e-4, 2e-4, 2.5e-4}};

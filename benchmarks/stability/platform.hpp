@@ -10,8 +10,8 @@ namespace stability {
   GyroPlatform p;
   p.platform = InertiaTensor<Body>::about_centre(
       10, {0, 0, 0}, Vector3<double>(.3, .25, .35).asDiagonal().toDenseMatrix());
-  p.place_4 = {.05, 0, .04};
-  p.place_9 = {-.05, .02, .03};
+  p.position_4 = {.05, 0, .04};
+  p.position_9 = {-.05, .02, .03};
   p.arm_5 = .06;
   p.arm_7 = -.06;
   p.frame_4 = {.5, {1.2e-3, 1.5e-3, 1e-3}};

@@ -48,10 +48,10 @@ struct GyroPlatform {
     double across = 0;  ///< about any axis through the centre at right angles to it
   };
 
-  InertiaTensor<Body> platform = {};                  ///< about O, of the platform alone
-  Vector3<double> place_4 = Vector3<double>::Zero();  ///< of the joints, from O
-  Vector3<double> place_9 = Vector3<double>::Zero();  ///< and of housing 10 in frame 9
-  double arm_5 = 0;  ///< of the housings, from place_4 along axis 2
+  InertiaTensor<Body> platform = {};                     ///< about O, of the platform alone
+  Vector3<double> position_4 = Vector3<double>::Zero();  ///< of the joints, from O
+  Vector3<double> position_9 = Vector3<double>::Zero();  ///< and of housing 10 in frame 9
+  double arm_5 = 0;  ///< of the housings, from position_4 along axis 2
   double arm_7 = 0;
   Part frame_4, housing_5, housing_7, frame_9, housing_10;
   Wheel rotor_6, rotor_8, rotor_11;
@@ -100,12 +100,12 @@ struct GyroPlatform {
     root.joint = base;
     root.inertia = platform;
     return {root,
-            body("frame 4", "platform", {0, 1, 0}, place_4, frame_4),
+            body("frame 4", "platform", {0, 1, 0}, position_4, frame_4),
             body("housing 5", "frame 4", {0, 0, 1}, {0, arm_5, 0}, housing_5),
             rotor("rotor 6", "housing 5", {1, 0, 0}, 0, rotor_6),
             body("housing 7", "frame 4", {0, 0, -1}, {0, arm_7, 0}, housing_7),
             rotor("rotor 8", "housing 7", {-1, 0, 0}, 0, rotor_8),
-            body("frame 9", "platform", {0, 0, 1}, place_9, frame_9),
+            body("frame 9", "platform", {0, 0, 1}, position_9, frame_9),
             body("housing 10", "frame 9", {1, 0, 0}, {0, 0, 0}, housing_10),
             rotor("rotor 11", "housing 10", {0, 1, 0}, 1, rotor_11)};
   }
@@ -281,10 +281,10 @@ struct GyroPlatform {
       sum.diagonal() += about;
     };
     const Vector3<double> along(0, 1, 0);
-    add(frame_4.mass, place_4, F);
-    add(housing_5.mass + rotor_6.mass, place_4 + arm_5 * along, H);
-    add(housing_7.mass + rotor_8.mass, place_4 + arm_7 * along, K);
-    add(frame_9.mass + housing_10.mass + rotor_11.mass, place_9, f + h);
+    add(frame_4.mass, position_4, F);
+    add(housing_5.mass + rotor_6.mass, position_4 + arm_5 * along, H);
+    add(housing_7.mass + rotor_8.mass, position_4 + arm_7 * along, K);
+    add(frame_9.mass + housing_10.mass + rotor_11.mass, position_9, f + h);
     return sum;
   }
 

@@ -11,7 +11,7 @@ namespace kreisel {
 /// Units  : metre, m/s, m/s^2
 template <class S = double>
 struct Translation {
-  Vector3<S> place = Vector3<S>::Zero();
+  Vector3<S> position = Vector3<S>::Zero();
   Vector3<S> velocity = Vector3<S>::Zero();
   Vector3<S> acceleration = Vector3<S>::Zero();
 };
@@ -36,7 +36,7 @@ class TranslatingFrame {
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     const Translation<S> now = path_(t);
     FrameMotion<G, I, S> motion;
-    motion.X.value.translation = now.place;
+    motion.X.value.translation = now.position;
     motion.V.value.moment = now.velocity;
     motion.dV.value.moment = now.acceleration;
     return motion;

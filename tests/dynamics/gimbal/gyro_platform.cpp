@@ -39,8 +39,8 @@ GyroPlatform platform() {
   };
   GyroPlatform p;
   p.platform = test::model_inertia(model["root"]);
-  p.place_4 = numbers(body(0)["r"]);
-  p.place_9 = numbers(body(5)["r"]);
+  p.position_4 = numbers(body(0)["r"]);
+  p.position_9 = numbers(body(5)["r"]);
   p.arm_5 = numbers(body(1)["r"])[1];
   p.arm_7 = numbers(body(3)["r"])[1];
   p.frame_4 = part(0);
