@@ -14,7 +14,7 @@
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
-#include <dynamics/pendulum/pendulum_departure.hpp>
+#include <dynamics/pendulum/pendulum_encke.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/rigid/small_oscillations.hpp>
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(of_single_numbers) {
   const Eigen::Quaterniond no_attitude(infinite, 0, 0, 0);
   BOOST_CHECK_THROW(exact::LagrangeTop(1, 1, 1, {0, 0, 1}, no_attitude), InvalidInput);
   BOOST_CHECK_THROW(detail::require_start(no_attitude, {0, 0, 1}), InvalidInput);
-  BOOST_CHECK_THROW(PendulumDeparture(infinite, [](double, double, double) { return 0.0; }),
+  BOOST_CHECK_THROW(EnckePendulum(infinite, [](double, double, double) { return 0.0; }),
                     InvalidInput);
   BOOST_CHECK_THROW(CardanGyro({{infinite, 1, 1}}, {}, RestingFrame<>{}), InvalidInput);
   const CardanBearings turned{{}, {.stiffness = 1, .reference = 0.1}};

@@ -10,7 +10,7 @@
 
 namespace kreisel {
 
-/// What a small disturbance makes of the swing of a plane pendulum, as the departure d from the
+/// What a small disturbance makes of the swing of a plane pendulum, as the deviation d from the
 /// undisturbed swing a (Encke's way), which is carried along:
 ///
 ///   a'' = -k sin a,   d'' = -2 k cos(a + d/2) sin(d/2) + disturbance(t, a + d, a' + d')
@@ -24,10 +24,10 @@ namespace kreisel {
 /// Source : J. F. Encke, Berliner Astronomisches Jahrbuch fuer 1857; the disturbance of the rotating
 ///          earth: paper 002 (23) with one angle
 /// Units  : 1/s^2 (k = m g l/Theta), radian, s
-/// Error  : of d over 30 s <= 1e-12 of it                (tests/dynamics/pendulum/pendulum_departure.cpp)
+/// Error  : of d over 30 s <= 1e-12 of it                (tests/dynamics/pendulum/pendulum_encke.cpp)
 /// Throws : InvalidInput where k is not a finite number above 0
 template <class D>
-class PendulumDeparture {
+class EnckePendulum {
  public:
   template <class S>
   using Components = Eigen::Matrix<S, 4, 1>;
@@ -36,13 +36,13 @@ class PendulumDeparture {
   struct State {
     double angle = 0;      ///< a
     double rate = 0;       ///< a'
-    double departure = 0;  ///< d
-    double departure_rate = 0;
+    double deviation = 0;  ///< d
+    double deviation_rate = 0;
   };
 
-  PendulumDeparture(double k, D disturbance) : k_(k), disturbance_(std::move(disturbance)) {
+  EnckePendulum(double k, D disturbance) : k_(k), disturbance_(std::move(disturbance)) {
     if (!(k > 0 && std::isfinite(k))) {
-      throw InvalidInput("pendulum departure: k = m g l/Theta must be a finite number above 0");
+      throw InvalidInput("Encke pendulum: k = m g l/Theta must be a finite number above 0");
     }
   }
 
@@ -60,7 +60,7 @@ class PendulumDeparture {
   static constexpr std::array<int, 4> blocks = {1, 1, 1, 1};
 
   [[nodiscard]] static Vector to_vector(const State& s) {
-    return {s.angle, s.rate, s.departure, s.departure_rate};
+    return {s.angle, s.rate, s.deviation, s.deviation_rate};
   }
   [[nodiscard]] static State from_vector(const Vector& y) { return {y[0], y[1], y[2], y[3]}; }
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include <dynamics/pendulum/pendulum_departure.hpp>
+#include <dynamics/pendulum/pendulum_encke.hpp>
 #include <dynamics/solve/solve.hpp>
 
 using namespace kreisel;
@@ -69,19 +69,19 @@ Real swing(Real angle, Real w2, double end) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(pendulum_departure)
+BOOST_AUTO_TEST_SUITE(pendulum_encke)
 
 BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
-  const PendulumDeparture pendulum(k, earth);
+  const EnckePendulum pendulum(k, earth);
   for (const double amplitude : {0.1, 1.0}) {
     const double end = 30;
     const Real w2 = Real(earth_rate) * earth_rate;
     const Real truth = swing(amplitude, w2, end) - swing(amplitude, 0, end);
     const auto run = solve(pendulum, {amplitude},
                            {.output_times = {end}, .tolerance = 1e-12, .absolute_scale = 0});
-    const double d = run.states[0].departure;
+    const double d = run.states[0].deviation;
     const double off = static_cast<double>(abs(d - truth) / abs(truth));
-    BOOST_TEST_MESSAGE("amplitude " << amplitude << ": departure " << d << ", off by " << off);
+    BOOST_TEST_MESSAGE("amplitude " << amplitude << ": deviation " << d << ", off by " << off);
     BOOST_TEST(off <= 1e-12);
     BOOST_TEST(run.report.tolerance_kept);
   }
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
 
 // Both parts together are the disturbed pendulum, which a brake holds by its whole rate.
 BOOST_AUTO_TEST_CASE(is_what_the_disturbed_pendulum_has_more) {
-  const PendulumDeparture pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
+  const EnckePendulum pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
     return S(t - S(0.3) * angle - S(0.2) * rate);
   });
   const double a = 0.7, da = -1.1, d = 0.2, dd = 0.4;
@@ -100,16 +100,16 @@ BOOST_AUTO_TEST_CASE(is_what_the_disturbed_pendulum_has_more) {
 }
 
 BOOST_AUTO_TEST_CASE(does_not_depart_undisturbed) {
-  const PendulumDeparture pendulum(
+  const EnckePendulum pendulum(
       k, []<class S>(const S& /*t*/, const S& /*angle*/, const S& /*rate*/) -> S { return S(0); });
   const auto run = solve(pendulum, {0.3}, {.output_times = {10}, .tolerance = 1e-10});
-  BOOST_TEST(run.states[0].departure == 0);
+  BOOST_TEST(run.states[0].deviation == 0);
 }
 
 BOOST_AUTO_TEST_CASE(refuses_what_does_not_swing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  BOOST_CHECK_THROW(PendulumDeparture(-1, earth), InvalidInput);
-  BOOST_CHECK_THROW(PendulumDeparture(nan, earth), InvalidInput);
+  BOOST_CHECK_THROW(EnckePendulum(-1, earth), InvalidInput);
+  BOOST_CHECK_THROW(EnckePendulum(nan, earth), InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
