@@ -8,9 +8,11 @@
 
 namespace kreisel {
 
-/// Aerospace angles: turn by yaw about z, then by pitch about the new y, then by roll about the new
-/// x. For input and output only: at pitch = +-pi/2 yaw and roll are not determined apart, so no
-/// state of the library is kept in them.
+/// Aerospace angles: a rotation by yaw about z, then by pitch about the new y, then by roll about
+/// the new x.
+///
+/// For input and output only: at pitch = +-pi/2 yaw and roll cannot be told apart, so no state of
+/// the library is kept in these angles.
 ///
 /// Units  : radian
 template <class S = double>
@@ -19,7 +21,7 @@ struct YawPitchRoll {
   S pitch = S(0);
   S roll = S(0);
 
-  /// Rz(yaw) Ry(pitch) Rx(roll): takes components on the turned axes to the axes turned from.
+  /// Rz(yaw) Ry(pitch) Rx(roll): takes components on the rotated axes to the original axes.
   [[nodiscard]] Matrix3<S> rotation() const {
     using std::cos;
     using std::sin;
@@ -35,27 +37,24 @@ struct YawPitchRoll {
 
   /// The angles of a rotation: yaw and roll in [-pi, pi], pitch in [-pi/2, pi/2].
   ///
-  /// Error  : of pitch <= 4u everywhere, of yaw and roll <= 4u / cos(pitch); of the rotation that
-  ///          the three describe together <= 8u everywhere (tests/motor/attitude.cpp)
+  /// Error  : pitch <= 4u everywhere, yaw and roll <= 4u / cos(pitch); the rotation that the three
+  ///          describe together <= 8u everywhere (tests/motor/attitude.cpp)
   [[nodiscard]] static YawPitchRoll of(const Matrix3<S>& R) {
     using std::atan2;
     using std::cos;
     using std::hypot;
     using std::sin;
     const S yaw = atan2(R(1, 0), R(0, 0));
-    // Roll from what is left when this yaw is turned back: consistent with it at pitch = pi/2 too,
-    // where only the sum or difference of both is known.
+    // Roll of the rotation that remains after this yaw is removed. It is consistent with the yaw
+    // also at pitch = pi/2, where only their sum or difference is determined.
     const S cy = cos(yaw), sy = sin(yaw);
     return {yaw, atan2(-R(2, 0), hypot(R(0, 0), R(1, 0))),
             atan2(sy * R(0, 2) - cy * R(1, 2), cy * R(1, 1) - sy * R(0, 1))};
   }
 };
 
-/// The rate of the attitude q of a body that turns with the angular velocity w on its own axes:
-/// q' = q (0, w/2), as x, y, z, w.
-///
-/// Written out, because Eigen's product goes through packed registers and waits for what has just
-/// been stored one by one.
+/// The rate of the attitude q of a body whose angular velocity on its own axes is w: q' = q (0,
+/// w/2), as x, y, z, w.
 ///
 /// Units  : rad/s
 template <class S>
@@ -68,14 +67,16 @@ template <class S>
           q.w() * z + q.x() * y - q.y() * x, -(q.x() * x + q.y() * y + q.z() * z)};
 }
 
-/// The attitude q after a turn by the vector w on the turning body's axes:  q exp(w/2).
+/// The attitude q after a rotation by the vector w on the rotating body's axes:  q exp(w/2).
 ///
-/// The product is added up as  q + q w/2 + q (exp(w/2) - 1 - w/2),  so that a small turn is not
-/// rounded before it meets q: equal turns would repeat that error, and it would grow with the angle
-/// turned in all. And q is never scaled to norm 1, which would round in a preferred direction. Over
-/// 1e9 steps the norm walks off by 1e-12, which no reader of an attitude here notices
-/// (Pose::from and all scenes divide by |q|^2), and the attitude by 3e-12 rad
-/// (benchmarks/group_drift.cpp; tests/motor/attitude.cpp runs 1e6 of them).
+/// The product is summed as  q + q w/2 + q (exp(w/2) - 1 - w/2),  so that a small rotation is not
+/// rounded before it is added to q. Equal rotations would repeat that rounding error, and the error
+/// would grow with the total angle. q is never scaled to norm 1, because scaling would round in a
+/// preferred direction.
+///
+/// Over 1e9 steps the norm drifts by 1e-12 and the attitude by 3e-12 rad
+/// (benchmarks/group_drift.cpp; tests/motor/attitude.cpp runs 1e6 steps). The drift of the norm has
+/// no effect here: Pose::from and all scenes divide by |q|^2.
 ///
 /// Units  : radian
 template <class S>

@@ -13,11 +13,12 @@
 
 namespace kreisel {
 
-/// A displacement without frame tags: rotation R and translation x,  p -> R p + x.
+/// A displacement without frame tags: rotation R and translation x,  p -> R p + x. Robotics: a
+/// pose, an element of SE(3).
 ///
-/// Read as a change of coordinates it takes components written in a frame B to components written
-/// in a frame A: R turns B axes into A axes, x is the origin of B written in A. The rotation is a
-/// matrix: displacing costs less than with a quaternion (benchmarks/kernels.cpp).
+/// Read as a change of coordinates, it takes components written in a frame B to components written
+/// in a frame A. R rotates B axes into A axes, x is the origin of B written in A. The rotation is a
+/// matrix: applying it costs less than applying a quaternion (benchmarks/kernels.cpp).
 ///
 /// Units  : [translation] = metre
 template <class S = double>
@@ -27,7 +28,7 @@ struct Pose {
 
   using Scalar = S;
 
-  /// The pose of a quaternion of any norm whose square is a normal number (1e-150 to 1e150): q and
+  /// The pose of a quaternion of any norm whose square is a normal number (1e-150 to 1e150). q and
   /// s q give the same rotation to rounding.
   [[nodiscard]] static Pose from(const Eigen::Quaternion<S>& q,
                                  const Vector3<S>& translation = Vector3<S>::Zero()) {
@@ -38,7 +39,7 @@ struct Pose {
     return {Matrix3<S>::Identity() + turn, translation};
   }
 
-  /// A point:  R p + x.
+  /// The displaced point:  R p + x.
   [[nodiscard, gnu::always_inline]] Vector3<S> point(const Vector3<S>& p) const {
     using detail::component;
     return {component(rotation, 0, p) + translation.x(),
@@ -64,7 +65,8 @@ struct Pose {
     return X;
   }
 
-  /// A motor:  {R a; R a0 + x x R a}. Axes and point of reduction change together. Cost: 42 flops.
+  /// The displaced motor:  {R a; R a0 + x x R a}. Axes and point of reduction change together.
+  /// Cost: 42 flops.
   [[gnu::always_inline]] friend Motor<S> operator*(const Pose& X, const Motor<S>& a) {
     detail::Read<S> px = X.translation.x(), py = X.translation.y(), pz = X.translation.z();
     const auto moved = [&](const auto& n, const auto& m) -> Motor<S> {
@@ -83,7 +85,7 @@ struct Pose {
     }
   }
 
-  /// A motor tensor, by congruence:  (X T) (X A) = X (T A)  for every motor A.
+  /// The displaced motor tensor, by congruence:  (X T) (X A) = X (T A)  for every motor A.
   friend MotorTensor<S> operator*(const Pose& X, const MotorTensor<S>& T) {
     const Matrix3<S>& R = X.rotation;
     const Matrix3<S> k = skew(X.translation);
@@ -99,7 +101,7 @@ struct Pose {
 
 namespace detail {
 
-/// c[0] + c[1] x + c[2] x^2 + ..., by pairs, which need not wait for each other.
+/// c[0] + c[1] x + c[2] x^2 + ..., summed in pairs that do not wait for each other.
 template <std::size_t n>
 [[nodiscard, gnu::always_inline]] inline double by_pairs(double x, const std::array<double, n>& c) {
   if constexpr (n == 1) {
@@ -115,14 +117,14 @@ template <std::size_t n>
   }
 }
 
-/// first + second x + third x^2 + ..., where the first is the greatest: it is added last, so that no
-/// more is rounded at its size.
+/// first + second x + third x^2 + ..., where the first term is the greatest. It is added last, so
+/// that nothing else is rounded at its size.
 template <class... Rest>
 [[nodiscard, gnu::always_inline]] inline double polynomial(double x, double first, Rest... rest) {
   return first + x * by_pairs(x, std::array{rest...});
 }
 
-/// Below this squared angle three terms of a series in it leave an error under u/5000.
+/// The squared angle below which three terms of a series in it have an error under u/5000.
 template <class S>
 [[nodiscard]] S small_squared_angle() {
   using std::cbrt;
@@ -130,7 +132,7 @@ template <class S>
   return bound;
 }
 
-/// How a rotation by theta is made of powers of its vector, smooth functions of theta^2:
+/// The coefficients of a rotation by theta in powers of its vector, smooth functions of theta^2:
 ///
 ///   sine = sin(theta)/theta,  versine = (1 - cos(theta))/theta^2,  rest = (1 - sine)/theta^2.
 template <class S>
@@ -145,8 +147,9 @@ struct OverPowers {
     using std::sqrt;
     if constexpr (std::is_same_v<S, double>) {
       if (t2 < 10) {
-        // Through them at Chebyshev's points of [0, 10], by as many as leave less than rounding: no
-        // root, no quotient, and nothing that cancels. About the middle, where the terms are small.
+        // Polynomials through the Chebyshev points of [0, 10], with as many points as bring the
+        // error below rounding. They need no root and no quotient, and nothing cancels. They are
+        // centred on the middle, where the terms are small.
         const double x = t2 - 5;
         return {polynomial(x, 0.351844907875699, -0.09691177843328656, 0.005740644068100509,
                            -0.00014917585773936058, 2.186424820636489e-06, -2.0616823366817982e-08,
@@ -174,14 +177,14 @@ struct OverPowers {
 
 }  // namespace detail
 
-/// The exponential of a motor A = (w; v): the displacement that a constant velocity motor A brings
-/// about in unit time (a screw motion),
+/// The exponential of a motor A = (w; v): the displacement by a constant velocity motor (twist) A
+/// in unit time, a screw motion,
 ///
 ///   R = 1 + a S + b S^2,   x = v + b S v + c S^2 v = a v + b S v + c w w.v,   S = skew(w),
 ///   a = sin(theta)/theta,  b = (1 - cos(theta))/theta^2,  c = (1 - a)/theta^2,   theta = |w|.
 ///
-/// In doubles a, b and c are polynomials in theta^2 where it is below 10, so that no case of small
-/// angles is left. Of the two forms of x each errs less on its side of theta = 1.
+/// In doubles a, b and c are polynomials in theta^2 where theta^2 is below 10, so small angles need
+/// no case of their own. Each of the two forms of x has the smaller error on its side of theta = 1.
 ///
 /// Source : Rodrigues; the exponential map of SE(3)
 /// Error  : |R - exact| <= 8u, |x - exact| <= 8u |v| up to theta = pi, beyond it both times
@@ -193,7 +196,7 @@ template <class S>
   const S t2 = w.x * w.x + w.y * w.y + w.z * w.z;
   const auto over = detail::OverPowers<S>::of(t2);
   const auto bw = over.versine * w;
-  // Before the rotation, which would have to wait for it in registers.
+  // Computed before the rotation, which would otherwise have to wait in registers.
   detail::Components<S> x;
   if (t2 < S(1)) {
     const auto wv = cross(w, v);
@@ -233,9 +236,9 @@ template <class S>
 
 namespace detail {
 
-/// Modified Rodrigues parameters tan(theta/4) n of a rotation by theta about n, by that row of 4 q q^t,
-/// q its quaternion, that has the i-th component of the vector throughout: as the quaternion, without
-/// its root and quotient.
+/// Modified Rodrigues parameters tan(theta/4) n of a rotation by theta about n, without a root and
+/// a quotient. They come from the row of 4 q q^t that contains the i-th vector component of the
+/// quaternion q.
 template <int i, class S>
 [[nodiscard]] Components<S> rodrigues_by_row(const Matrix3<S>& R) {
   using std::abs;
@@ -252,20 +255,21 @@ template <int i, class S>
   return {scale * n[0], scale * n[1], scale * n[2]};
 }
 
-/// Beyond 120 degrees the greatest component is one of the vector. Not inline, for others not to save
-/// the registers that it takes.
+/// Rotations beyond 120 degrees, where the greatest component of the quaternion is one of its
+/// vector. Not inline: other callers must not save the registers that this function takes.
 template <class S>
 [[nodiscard, gnu::noinline]] Components<S> rodrigues_of_wide_turn(const Matrix3<S>& R) {
   if (R(0, 0) > R(1, 1) && R(0, 0) > R(2, 2)) return rodrigues_by_row<0>(R);
   return R(1, 1) > R(2, 2) ? rodrigues_by_row<1>(R) : rodrigues_by_row<2>(R);
 }
 
-/// Modified Rodrigues parameters m = tan(theta/4) n, |m| <= 1. Up to 120 degrees by the skew part of R,
-/// k = 2 sin(theta) n, which vanishes at the half turn:
+/// Modified Rodrigues parameters m = tan(theta/4) n, |m| <= 1. Up to 120 degrees they come from the
+/// skew part of R, k = 2 sin(theta) n, which vanishes at the half turn:
 ///
 ///   m = 4 k/(a + sqrt(a^2 + 16 k^2)),   a = (1 + trace)^2 + k^2  (= 8 (1 + cos(theta))).
 ///
-/// The trace alone would give a too, but would err twice as much where R is a rotation to rounding only.
+/// The trace alone would also give a, but with twice the error where R is a rotation only to
+/// rounding.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline Components<S> rodrigues(const Matrix3<S>& R) {
   using std::sqrt;
@@ -277,14 +281,15 @@ template <class S>
   return S(S(4) / (a + sqrt(a * a + S(16) * k2))) * k;
 }
 
-/// What the arc is less than its tangent, of p = tan^2(theta/4):  theta/4 = (1 - p h(p)) tan(theta/4).
+/// The relative difference h of arc and tangent for p = tan^2(theta/4):  theta/4 = (1 - p h(p))
+/// tan(theta/4).
 template <class S>
 [[nodiscard, gnu::always_inline]] inline S arc_less(const S& p) {
   using std::atan2;
   using std::sqrt;
   if constexpr (std::is_same_v<S, double>) {
-    // Through h at Chebyshev's points of [0, 1], by as many as leave p h less than rounding. About
-    // their middle, where the terms are small.
+    // A polynomial through h at the Chebyshev points of [0, 1], with as many points as bring the
+    // error of p h below rounding. It is centred on their middle, where the terms are small.
     return polynomial(p - 0.5, 0.2591604972657936, -0.11081482513071414, 0.054814840604579904,
                       -0.029135862645225958, 0.016172974900145312, -0.009243096224092707,
                       0.005394792734515503, -0.0031991751955030576, 0.0019209389488175712,
@@ -304,19 +309,20 @@ template <class S>
 
 /// The logarithm of a displacement: the motor A with exp(A) = X and |A.resultant| <= pi.
 ///
-/// By the modified Rodrigues parameters m of R, whose length is tan(theta/4), M = skew(m):
+/// It uses the modified Rodrigues parameters m of R, whose length is tan(theta/4), with M =
+/// skew(m):
 ///
 ///   resultant = 4 f m,   moment = x - 2 f M x + g M^2 x = f (1 - p) x - 2 f M x + g m m.x,
 ///   p = m.m,   f = 1 - p h = (theta/4)/tan(theta/4),   g = (1 - (1 - p) f)/p = 1 + h (1 - p).
 ///
-/// Nothing in it cancels at small angles, and nothing vanishes at the half turn. Of the two forms of the
-/// moment each errs less on its side of theta = 1.
+/// Nothing cancels at small angles, and nothing vanishes at the half turn. Each of the two forms of
+/// the moment has the smaller error on its side of theta = 1.
 ///
-/// Several answers: at the half turn both signs of the axis are right; the one returned has its
-/// largest component positive unless rounding says otherwise.
+/// Several answers: at the half turn both signs of the axis are right. The axis returned has a
+/// positive largest component unless rounding decides otherwise.
 ///
-/// Error  : of log(exp(A)), relative in each half, measured over 1e6 motors, in units of 1e-16
-///          (tests/motor/displacement.cpp prints it)
+/// Error  : log(exp(A)), relative in each half, measured over 1e6 motors, in units of 1e-16
+///          (printed by tests/motor/displacement.cpp)
 ///            theta      < 1e-8   1e-8..1e-3   1e-3..1   1..pi-1e-3   pi-1e-3..pi
 ///            resultant     1          9           9           7            5
 ///            moment        1          2           4           9.5         10.5

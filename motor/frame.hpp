@@ -7,18 +7,20 @@
 
 namespace kreisel {
 
-/// Frames are empty tags; any empty struct of the user's may be one. A frame has axes and an
+/// Frames are empty tag types; any empty struct of the user's can be one. A frame has axes and an
 /// origin: "written in E" means components on E's axes AND reduction at E's origin.
 ///
-/// Tags know no time: two values in one frame taken at different times type-check together. Do not
-/// keep tagged values across a time step.
+/// Tags contain no time: two values in one frame taken at different times type-check together. Do
+/// not keep tagged values across a time step.
 struct Inertial {};  ///< where Newton's law holds; paper 002: Sigma', marked by a dot
 struct Guide {};     ///< from where the body is watched; Sigma° (Fuehrung), marked by a ring
 struct Body {};      ///< fixed in the rigid body, origin O'; Sigma*, marked by a star
 
-/// The velocity motor (angular velocity; velocity of In's origin) of frame Of against frame From.
+/// The velocity motor (twist) of frame Of against frame From: (angular velocity; velocity of In's
+/// origin).
 ///
-/// The moment is the velocity of that point of Of which now coincides with the origin of In.
+/// The moment is the velocity of the point of Of that coincides with the origin of In at this
+/// instant.
 ///
 /// Source : paper 002 section 2: V' = Velocity<Body, Guide, ..>, F = Velocity<Guide, Inertial, ..>
 /// Frame  : written in In, which may be any frame
@@ -34,7 +36,8 @@ struct Velocity {
   using WrittenIn = Velocity<Of, From, E, S>;
 };
 
-/// A momentum motor (momentum; angular momentum about In's origin), written in In.
+/// A momentum motor (momentum; angular momentum about In's origin), written in In. Robotics:
+/// spatial momentum.
 ///
 /// Source : paper 002 section 3, J = {G; J}
 /// Units  : (kg m/s; kg m^2/s)
@@ -49,7 +52,7 @@ struct Momentum {
   using WrittenIn = Momentum<E, S>;
 };
 
-/// A force motor (force; torque about In's origin), written in In.
+/// A force motor (wrench): (force; torque about In's origin), written in In.
 ///
 /// Source : paper 002 (1), P = {P; M}
 /// Units  : (N; N m)
@@ -64,14 +67,15 @@ struct Force {
   using WrittenIn = Force<E, S>;
 };
 
-/// A quantity whose type tells in which frame it is written.
+/// A quantity whose type names the frame in which it is written.
 template <class Q>
 concept Tagged = requires {
   typename Q::Frame;
   typename Q::Value;
 };
 
-/// The way out of the types: the bare value. The way in is braces, Force<Body>{motor}.
+/// The bare value of a tagged quantity: the only way out of the types. Braces are the way in:
+/// Force<Body>{motor}.
 template <Tagged Q>
 [[nodiscard]] const typename Q::Value& untagged(const Q& q) {
   return q.value;
@@ -79,9 +83,10 @@ template <Tagged Q>
 
 namespace detail {
 
-/// The type of the result of a legal use. An illegal one is refused in the way of which each
-/// compiler speaks most briefly: clang by the substitution that fails here; g++, to whom that is
-/// worth twice as many lines, by the static_assert in the body (tests/misuse counts them).
+/// The type of the result of a legal use. An illegal use is refused in the way for which each
+/// compiler prints the shortest message (tests/misuse counts the lines). For clang that is the
+/// substitution that fails here. For g++ it is the static_assert in the body; the substitution
+/// would print twice as many lines.
 template <bool legal, class Result>
 struct Checked {
   using Type = Result;
@@ -96,13 +101,14 @@ struct Checked<false, Result> {
 
 }  // namespace detail
 
-/// What adds to what. A pair that is not listed does not add; other headers list theirs.
+/// The list of pairs that can be added. A pair that is not listed does not add; other headers
+/// extend the list.
 template <class A, class B>
 struct Sum {
   using Type = void;
 };
 
-/// V_AB + V_BC = V_AC: velocities join along a chain of frames and in no other way.
+/// V_AB + V_BC = V_AC: velocities add along a chain of frames and in no other way.
 template <class A, class B, class C, class E, class S>
 struct Sum<Velocity<A, B, E, S>, Velocity<B, C, E, S>> {
   using Type = Velocity<A, C, E, S>;
@@ -118,7 +124,7 @@ struct Sum<Force<E, S>, Force<E, S>> {
   using Type = Force<E, S>;
 };
 
-/// The type of -Q; only a velocity changes its name: -V_AB = V_BA.
+/// The type of -Q. Only a velocity changes its type: -V_AB = V_BA.
 template <class Q>
 struct Negative {
   using Type = Q;
@@ -155,8 +161,9 @@ template <Tagged A, Tagged B>
 
 /// A change of coordinates: takes components written in From to components written in To.
 ///
-/// It rewrites a quantity and does not change what it is: a velocity against the inertial frame
-/// stays one. What a velocity is measured against changes by a sum, an observer by seen_from.
+/// It rewrites a quantity and does not change its meaning: a velocity against the inertial frame
+/// stays one. A sum changes the frame against which a velocity is measured; seen_from changes the
+/// observer.
 ///
 /// Source : paper 002 section 3, the step between the columns of Tafel 1
 template <class To, class From, class S = double>
@@ -165,7 +172,7 @@ struct Displacement {
 
   [[nodiscard]] Displacement<From, To, S> inverse() const { return {value.inverse()}; }
 
-  /// A position written in From, written in To.
+  /// The position p_From, written in To.
   [[nodiscard]] Vector3<S> point(const Vector3<S>& p_From) const { return value.point(p_From); }
 };
 
@@ -177,7 +184,7 @@ template <class A, class B, class B2, class C, class S>
   if constexpr (std::is_same_v<B, B2>) return Displacement<A, C, S>{a.value * b.value};
 }
 
-/// Any motor quantity written in From, written in To. Axes and point of reduction change together.
+/// The motor quantity Q, written in To. Axes and point of reduction change together.
 template <class To, class From, class S, Tagged Q>
 [[nodiscard, gnu::always_inline]] inline auto operator*(const Displacement<To, From, S>& X,
                                                         const Q& q) {
@@ -190,7 +197,7 @@ template <class To, class From, class S, Tagged Q>
   }
 }
 
-/// The power of a force on what moves with velocity V:  P . v + M . u.
+/// The power of a force on a body that moves with velocity V:  P . v + M . u.
 ///
 /// Units  : W
 template <class E, class E2, class Of, class From, class S>

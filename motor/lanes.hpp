@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <type_traits>
 
-/// What code asks that branches on numbers, for one number and for a pack of them alike
-/// (dynamics/ensemble/pack.hpp): comparisons give a bool or one bool a lane.
+/// Functions for code that branches on numbers, written for one number and for a pack of numbers
+/// alike (dynamics/ensemble/pack.hpp). A comparison gives one bool, or one bool per lane.
 namespace kreisel::detail {
 
 [[nodiscard]] constexpr bool all(bool condition) { return condition; }
@@ -18,7 +18,7 @@ template <class N>
   return condition ? yes : no;
 }
 
-/// The greatest over the lanes; a NaN stays.
+/// The greatest value over the lanes; NaN if any lane is NaN.
 template <class N>
 requires std::is_floating_point_v<N>
 [[nodiscard]] constexpr N greatest_lane(N x) { return x; }
@@ -28,18 +28,19 @@ inline constexpr bool is_pack = false;
 template <class N>
 requires(N::lanes > 0) inline constexpr bool is_pack<N> = true;
 
-/// How many numbers a number holds.
+/// The number of lanes of a number: 1 unless it is a pack.
 template <class N>
 inline constexpr int lanes_of = 1;
 template <class N>
 requires is_pack<N>
 inline constexpr int lanes_of<N> = N::lanes;
 
-/// What lanes share, like the time: of a pack double, else the number itself.
+/// The type of values that all lanes share, such as the time: double for a pack, else the number
+/// itself.
 template <class N>
 using ScalarOf = std::conditional_t<is_pack<N>, double, N>;
 
-/// Whether all components of a vector are finite, in all lanes.
+/// True if all components of a vector are finite, in all lanes.
 template <class Vector>
 [[nodiscard]] bool finite(const Vector& v) {
   using N = typename Vector::Scalar;
@@ -50,7 +51,7 @@ template <class Vector>
   }
 }
 
-/// The numbers that `get` takes from as many objects as N has lanes, side by side: of a vector each
+/// The numbers that `get` takes from as many objects as N has lanes, packed; for a vector, each
 /// component.
 template <class N, class Object, class Get>
 [[nodiscard]] auto gathered(const std::array<const Object*, std::size_t(N::lanes)>& objects,

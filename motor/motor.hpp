@@ -19,8 +19,9 @@ using Matrix3 = Eigen::Matrix<S, 3, 3>;
 
 namespace detail {
 
-/// A number that is read before anything of a result is stored: by value, for the compiler cannot
-/// tell that what it stores is none of what it has yet to read. No copies of dual numbers, though.
+/// The type in which an operand is read before any part of a result is stored. Numbers are read by
+/// value, because the compiler cannot see that storing the result leaves the operands unchanged.
+/// Dual numbers are not copied.
 template <class S>
 using Read = std::conditional_t<std::is_arithmetic_v<S>, const S, const S&>;
 
@@ -38,7 +39,8 @@ template <class S>
   return {component(R, 0, v), component(R, 1, v), component(R, 2, v)};
 }
 
-/// C = A B. In place: nine numbers made first and stored later have not room enough in registers.
+/// C = A B, computed in place: nine numbers computed first and stored later do not fit the
+/// registers.
 template <class S>
 [[gnu::always_inline]] inline void multiply(const Matrix3<S>& A, const Matrix3<S>& B,
                                             Matrix3<S>& C) {
@@ -66,9 +68,9 @@ template <class S>
           R(0, 2) * v.x() + R(1, 2) * v.y() + R(2, 2) * v.z()};
 }
 
-// Sums and products in namespace kreisel::detail are these, for they fit more closely than Eigen's,
-// each of which makes the compiler a dozen classes that nothing else needs: half of what it took for
-// a system of bodies.
+// Namespace kreisel::detail uses these sums and products in place of Eigen's. Each of Eigen's makes
+// the compiler instantiate a dozen classes that nothing else needs: half of the compile time of a
+// system of bodies.
 
 template <class S>
 [[nodiscard, gnu::always_inline]] inline Vector3<S> operator+(const Vector3<S>& a,
@@ -127,8 +129,8 @@ template <class S>
 
 }  // namespace detail
 
-/// A motor: the field of moments  m(P) = m(O) + r x OP  of a screw, kept as its reduction (r; m) at
-/// a point O.
+/// A motor (screw): the field of moments  m(P) = m(O) + r x OP,  stored as its reduction (r; m) at
+/// a point O. Robotics: a spatial vector, that is a twist or a wrench.
 ///
 /// Velocity motors (angular velocity; velocity of O), force motors (force; torque about O) and
 /// momentum motors (momentum; angular momentum about O) share this type, because all of them obey
@@ -174,7 +176,7 @@ struct Motor {
 };
 
 /// Motor product  [A B] = (a x b; a x b0 + a0 x b): the rate of B when the velocity motor A carries
-/// it along.
+/// B.
 ///
 /// Source : paper 002 section 2, "[A B]", motorisches Produkt; the Lie bracket of se(3)
 /// Error  : componentwise <= 2u (resultant), 4u (moment) * sum of |terms|, u = 2^-53

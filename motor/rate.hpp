@@ -6,15 +6,16 @@
 
 namespace kreisel {
 
-/// The time derivative of the motor Q seen by an observer fixed in the frame Observer. A motor
-/// again: T, the true moment of the differentiated motor.
+/// The time derivative of the motor Q seen by an observer fixed in the frame Observer: T, the true
+/// moment of the differentiated motor. The derivative is a motor.
 ///
-/// Definition: write Q in Observer (its axes, a point fixed in it), differentiate the components;
-/// the result is a motor and may be written anywhere. Its moment at a point does not depend on the
-/// frame in which it is resolved. Nests: Rate<A, Rate<B, Q>> is a second derivative.
+/// Definition: write Q in Observer (its axes, a point fixed in it) and differentiate the
+/// components. The result is a motor and may be written in any frame: its moment at a point does
+/// not depend on the frame in which the moment is resolved. Rates nest: Rate<A, Rate<B, Q>> is a
+/// second derivative.
 ///
-/// The rate of a velocity is the spatial acceleration; that of a point of the body differs from it
-/// by omega x v, which makes PlainRate.
+/// The rate of a velocity is the spatial acceleration. The acceleration of a point of the body
+/// differs from it by omega x v: see PlainRate.
 ///
 /// Source : paper 002 section 2: star, ring and dot over a motor = Rate<Body, Q>, Rate<Guide, Q>,
 ///          Rate<Inertial, Q>
@@ -33,8 +34,9 @@ struct Rate {
 
 /// The plain derivatives (D u; D v) of the two vectors of a motor seen from Observer: P.
 ///
-/// v is the moment of Q at the origin of the frame Q is written in, and that point may move against
-/// the observer; so this pair is no motor, cannot be reduced elsewhere and cannot be displaced.
+/// v is the moment of Q at the origin of the frame in which Q is written. That point may move
+/// against the observer, so this pair is no motor: it cannot be reduced elsewhere and cannot be
+/// displaced.
 ///
 /// Source : paper 002 section 3, star, ring and dot over the vectors u and v of (12)-(17)
 /// Frame  : on the axes of Q::Frame, v taken at its moving origin
@@ -50,7 +52,7 @@ struct PlainRate {
 
 namespace detail {
 
-/// The rate of a sum where there is one: void stays void.
+/// The rate of a sum, if the sum exists: void stays void.
 template <template <class, class> class AnyRate, class Observer, class Q>
 struct RateOf {
   using Type = AnyRate<Observer, Q>;
@@ -82,14 +84,14 @@ struct Negative<PlainRate<O, Q>> {
 
 namespace detail {
 
-/// Whether V is the velocity of the frame Of against the frame From, written where Q is written.
+/// True if V is the velocity of the frame Of against the frame From, written where Q is written.
 template <class V, class Of, class From, class Q>
 inline constexpr bool is_velocity_of =
     std::is_same_v<V, Velocity<Of, From, typename Q::Frame, typename Q::Scalar>>;
 
 }  // namespace detail
 
-/// Hands a rate from the observer Old to the observer New:
+/// The rate for the observer New, from the rate for the observer Old:
 ///
 ///   (d/dt)_New Q = (d/dt)_Old Q - [V Q],   V = velocity of New against Old.
 ///
@@ -97,7 +99,7 @@ inline constexpr bool is_velocity_of =
 ///
 /// Source : paper 002 section 2, .A = *A + [V A], .A = oA + [F A], (3a)-(4c)
 /// Frame  : all three written in one frame, which may move against both observers
-/// Error  : that of one motor product, <= 5u * sum of |terms|
+/// Error  : the error of one motor product, <= 5u * sum of |terms|
 template <class New, class Old, class Q, class V>
 [[nodiscard, gnu::always_inline]] inline auto seen_from(const Rate<Old, Q>& rate, const V& velocity,
                                                         const std::type_identity_t<Q>& q) ->
@@ -111,8 +113,8 @@ template <class New, class Old, class Q, class V>
   }
 }
 
-/// The plain derivatives P of a rate T:  D u as it is,  D v = T's moment - w x u,
-/// w = velocity, against the observer, of the origin of the frame Q is written in.
+/// The plain derivatives P of a rate T:  D u unchanged,  D v = T's moment - w x u,  where w is the
+/// velocity, against the observer, of the origin of the frame in which Q is written.
 ///
 /// Source : the rule of the moving reference point; paper 002 (13), (17a-f) mix P and T
 template <class Observer, class Q, class V>
@@ -138,7 +140,8 @@ template <class Observer, class Q, class V>
   }
 }
 
-/// T = P when the observer sits in the frame Q is written in: differentiate body data in the body.
+/// T = P when the observer is the frame in which Q is written: body data are differentiated in the
+/// body.
 template <class Q>
 [[nodiscard]] PlainRate<typename Q::Frame, Q> plain_rate(const Rate<typename Q::Frame, Q>& rate) {
   return {rate.value};

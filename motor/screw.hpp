@@ -8,7 +8,7 @@
 
 namespace kreisel {
 
-/// What a motor is, seen as a screw.
+/// The kinds of screw that a motor can be.
 enum class ScrewKind {
   zero,    ///< resultant and moment vanish: no axis, no direction
   couple,  ///< the resultant vanishes, the moment is the same everywhere; pitch infinite
@@ -36,7 +36,7 @@ struct Screw {
 
 namespace detail {
 
-/// The largest component in absolute value: the scale that keeps squares from over- and underflow.
+/// The largest absolute component: the scale that keeps squares from overflow and underflow.
 template <class S>
 [[nodiscard]] S largest(const Vector3<S>& v) {
   return v.cwiseAbs().maxCoeff();
@@ -120,7 +120,7 @@ template <class S>
   return s;
 }
 
-/// The motor of a screw, reduced at the point from which screw.point is drawn.
+/// The motor of a screw, reduced at the origin of screw.point.
 template <class S>
 [[nodiscard]] Motor<S> motor(const Screw<S>& s) {
   const Vector3<S> resultant = s.intensity * s.direction;

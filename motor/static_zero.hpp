@@ -5,17 +5,15 @@
 #include <motor/motor.hpp>
 #include <motor/simd.hpp>
 
-/// Zeros that are known when the program is compiled. Formulas are written once, for all that may
-/// be there; what a scene does not have is StaticZero by its type, and takes with it all that it
-/// multiplies.
+/// Zeros that are known at compile time. A formula is written once, with every term that a scene
+/// can have. A quantity that a scene does not have is StaticZero by its type, and so is every
+/// product of it.
 ///
-/// Products of vectors and rotations are always put where they are called. As functions of their own,
-/// which g++ -O2 makes of them, they would read packed what the caller has just stored one by one,
-/// and the processor would wait.
+/// Products of vectors and rotations are always inlined; motor/simd.hpp says why.
 
 namespace kreisel::detail {
 
-/// A zero known when the program is compiled.
+/// A zero that is known at compile time.
 struct StaticZero {
   template <class T>
   friend StaticZero operator*(const T&, StaticZero) {
@@ -49,7 +47,7 @@ struct StaticZero {
 template <class T>
 inline constexpr bool is_static_zero = std::is_same_v<T, StaticZero>;
 
-/// The number that A and B make: doubles yield to dual numbers.
+/// The number type of a sum or product of A and B: dual numbers win over doubles.
 template <class A, class B>
 using Joint = std::conditional_t<std::is_arithmetic_v<A>, B, A>;
 
@@ -60,7 +58,7 @@ template <class A, class B>
 using Total =
     std::conditional_t<is_static_zero<A>, B, std::conditional_t<is_static_zero<B>, A, Joint<A, B>>>;
 
-/// A vector each of whose components is a number or StaticZero.
+/// A vector whose components are each a number or StaticZero.
 template <class X, class Y = X, class Z = X>
 struct Components {
   X x = {};
@@ -82,13 +80,13 @@ template <class S>
   return {a.x, a.y, a.z};
 }
 
-/// StaticZero components come out as 0.
+/// The vector of the components. StaticZero components become 0.
 template <class S, class X, class Y, class Z>
 [[nodiscard]] Vector3<S> vector(const Components<X, Y, Z>& a) {
   return {S(S(0) + a.x), S(S(0) + a.y), S(S(0) + a.z)};
 }
 
-/// The components and w = 0. StaticZero components come out as 0.
+/// The components and w = 0. StaticZero components become 0.
 template <class X, class Y, class Z>
 [[nodiscard]] Vec4d vec4d(const Components<X, Y, Z>& a) {
   return {0.0 + a.x, 0.0 + a.y, 0.0 + a.z, 0};
@@ -126,12 +124,12 @@ template <class X, class Y, class Z, class P, class Q, class R>
       First(a.y * b.z - a.z * b.y), Second(a.z * b.x - a.x * b.z), Third(a.x * b.y - a.y * b.x)};
 }
 
-/// A rotation as nine numbers; the compiler leaves out those that nobody reads.
+/// A rotation matrix as nine numbers; the compiler drops the numbers that are not read.
 template <class S>
 struct Rotation {
   S xx, xy, xz, yx, yy, yz, zx, zy, zz;
 
-  /// Of a quaternion of any norm, as Pose::from.
+  /// The rotation of a quaternion of any norm, as Pose::from.
   [[nodiscard]] static Rotation from(const Eigen::Quaternion<S>& q) {
     const S &x = q.x(), &y = q.y(), &z = q.z(), &w = q.w();
     const S scale = S(2) / S(x * x + y * y + z * z + w * w);

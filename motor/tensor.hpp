@@ -43,8 +43,8 @@ struct MotorTensor {
 
 /// The transposed tensor T^t:  reciprocal(A, T B) = reciprocal(T^t A, B)  for all A and B.
 ///
-/// The reciprocal product is the natural one of motors, so this is not the transposed 6x6 matrix:
-/// the blocks rr and mm change places. Inertia tensors are symmetric in this sense.
+/// The reciprocal product is the natural product of motors, so this is not the transposed 6x6
+/// matrix: the blocks rr and mm are exchanged. Inertia tensors are symmetric in this sense.
 template <class S>
 [[nodiscard]] MotorTensor<S> transpose(const MotorTensor<S>& T) {
   return {T.mm.transpose(), T.rm.transpose(), T.mr.transpose(), T.rr.transpose()};
