@@ -8,37 +8,39 @@
 #include <motor/api.hpp>
 #include <motor/error.hpp>
 
-/// Decompositions of matrices whose size is known at run time, by Eigen. They are the slowest of
-/// Eigen to compile, and are the same for every scene. A matrix without rows or columns has no values.
+/// Decompositions of matrices whose size is known at run time, by Eigen. They are compiled once, in
+/// libkreisel: they are the slowest of Eigen to compile and the same for every scene. A matrix
+/// without rows or columns has no eigenvalues.
 
 namespace kreisel::detail {
 
-/// A x = value x; the columns of `vectors` have norm 1.
+/// Eigenvalues and eigenvectors: A x = value x. The columns of `vectors` have norm 1.
 struct Eigenpairs {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd vectors;
 };
 
-/// Throws : ComputationFailed if the QR iteration does not converge; as all below for eigenvalues
+/// Throws : ComputationFailed if the QR iteration does not converge; so do all functions below that
+///          compute eigenvalues
 KREISEL_API [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
 
-/// As eigenpairs(), without vectors.
+/// The values of eigenpairs(), without the vectors.
 KREISEL_API [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
-/// Of a symmetric or Hermitian matrix, whose values are real and whose vectors are orthonormal.
+/// Eigenpairs of a symmetric or Hermitian matrix: real values and orthonormal vectors.
 template <class Matrix>
 struct RealEigenpairs {
   Eigen::VectorXd values;  ///< rising
   Matrix vectors;
 };
 
-/// Only the lower triangle is read.
+/// The eigenpairs of a symmetric matrix, of which only the lower triangle is read.
 KREISEL_API [[nodiscard]] RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(
     const Eigen::MatrixXd& A);
 KREISEL_API [[nodiscard]] RealEigenpairs<Eigen::MatrixXcd> hermitian_eigenpairs(
     const Eigen::MatrixXcd& A);
 
-/// A = U diag(values) V^*, with square U and V.
+/// Singular values: A = U diag(values) V^*, with square U and V.
 template <class Matrix>
 struct SingularValues {
   Eigen::VectorXd values;  ///< falling
@@ -50,22 +52,22 @@ KREISEL_API [[nodiscard]] SingularValues<Eigen::MatrixXd> singular_values(const 
 KREISEL_API [[nodiscard]] SingularValues<Eigen::MatrixXcd> singular_values(
     const Eigen::MatrixXcd& A);
 
-/// By full pivoting; nothing where A has not its full rank, to rounding.
+/// The inverse, by full pivoting; nothing if A does not have full rank, to rounding.
 KREISEL_API [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A);
 
 /// A^-1 b, by full pivoting.
 KREISEL_API [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
                                                     const Eigen::VectorXcd& b);
 
-/// The shortest of all x that come nearest to  A x = b.
+/// The shortest of all x that minimise  |A x - b|.
 struct ShortestSolution {
   Eigen::VectorXd x;
   int rank = 0;  ///< of A
 };
 
-/// By a complete orthogonal decomposition.
+/// The shortest solution, by a complete orthogonal decomposition.
 ///
-/// threshold : a pivot is 0 below so much of the greatest
+/// threshold : a pivot below this fraction of the greatest pivot counts as 0
 KREISEL_API [[nodiscard]] ShortestSolution shortest_solution(const Eigen::MatrixXd& A,
                                                              const Eigen::VectorXd& b,
                                                              double threshold);

@@ -24,7 +24,7 @@ template <class S = double>
 struct Symmetric3 {
   S xx = S(0), yy = S(0), zz = S(0), xy = S(0), xz = S(0), yz = S(0);
 
-  /// From a full matrix, of which the mean of both triangles is taken.
+  /// The symmetric part of a full matrix: the mean of both triangles.
   [[nodiscard]] static Symmetric3 from(const Matrix3<S>& m) {
     return {m(0, 0),
             m(1, 1),
@@ -38,7 +38,7 @@ struct Symmetric3 {
     return (Matrix3<S>() << xx, xy, xz, xy, yy, yz, xz, yz, zz).finished();
   }
 
-  /// R m R^t. Cost: 75 flops, of the six different numbers alone.
+  /// R m R^t. Cost: 75 flops, since only the six different numbers are computed.
   [[nodiscard]] Symmetric3 rotated(const Matrix3<S>& R) const {
     using detail::component;
     const Vector3<S> x = *this * Vector3<S>(R(0, 0), R(0, 1), R(0, 2));
@@ -104,13 +104,13 @@ struct Inertia {
 
   using Scalar = S;
 
-  /// The same as 36 numbers.
+  /// The same tensor as 36 numbers.
   [[nodiscard]] MotorTensor<S> motor_tensor() const {
     const Matrix3<S> s = skew(first_moment);
     return {-s, mass * Matrix3<S>::Identity(), tensor.matrix(), s};
   }
 
-  /// The momentum of a velocity (or the force of an acceleration). Cost: 48 flops.
+  /// T V: the momentum of a velocity, or the force of an acceleration. Cost: 48 flops.
   [[gnu::always_inline]] friend Motor<S> operator*(const Inertia& T, const Motor<S>& V) {
     using detail::Read;
     Read<S> ux = V.resultant.x(), uy = V.resultant.y(), uz = V.resultant.z();
@@ -125,7 +125,7 @@ struct Inertia {
          sx * vy - sy * vx + xz * ux + yz * uy + zz * uz}};
   }
 
-  /// Two bodies rigidly joined, both reduced at the same origin on the same axes.
+  /// The inertia of two rigidly joined bodies, both reduced at the same origin on the same axes.
   friend Inertia operator+(const Inertia& a, const Inertia& b) {
     using detail::operator+;
     return {a.mass + b.mass, a.first_moment + b.first_moment, a.tensor + b.tensor};
@@ -136,7 +136,7 @@ struct Inertia {
   }
   friend Inertia operator-(const Inertia& a) { return Inertia{} - a; }
 
-  /// Turned by R, then shifted by x: the origin of the old frame lies at x in the new one.
+  /// T rotated by R, then shifted by x: the origin of the old frame lies at x in the new one.
   ///
   /// Theta' = R Theta R^t + offset_product(R s, x) + m offset_product(x, x) / 2
   friend Inertia operator*(const Pose<S>& X, const Inertia& T) {
@@ -149,8 +149,8 @@ struct Inertia {
   }
 };
 
-/// [V T] - [T V]: the rate of T seen by an observer against whom the body moves with V; again ten
-/// numbers, with the mass's rate 0.
+/// [V T] - [T V]: the rate of T seen by an observer against whom the body moves with V. The rate
+/// has ten numbers too, and the rate of the mass is 0.
 ///
 /// Source : paper 002 section 2, oT = [V' T] - [T V']
 template <class S>
@@ -164,8 +164,8 @@ template <class S>
 
 namespace detail {
 
-/// A symmetric positive definite 3x3 matrix made ready to solve: L D L^t, without pivoting, which
-/// such matrices do without. Eigen's takes the compiler longer than a whole scene.
+/// The factors L D L^t of a symmetric positive definite 3x3 matrix, ready to solve. Such matrices
+/// need no pivoting. Eigen's factorisation takes longer to compile than a whole scene.
 template <class S = double>
 class FactoredSymmetric3 {
  public:
@@ -178,7 +178,7 @@ class FactoredSymmetric3 {
     pivots_ = {m.xx, yy, m.zz - zx_ * m.xz - zy_ * yz};
   }
 
-  /// D: none is smaller than the least eigenvalue. Behind one that is 0 stand no numbers.
+  /// D. No pivot is smaller than the least eigenvalue. Pivots after one that is 0 are not numbers.
   [[nodiscard]] const Vector3<S>& pivots() const { return pivots_; }
 
   /// A vector x for which  x^t m x  is the k-th pivot.
@@ -204,11 +204,12 @@ class FactoredSymmetric3 {
 
 }  // namespace detail
 
-/// An inertia made ready to solve  T A = P  for A: the acceleration of a free body under a force.
+/// An inertia factored to solve  T A = P  for A: the acceleration of a free body under a force.
 ///
-/// Throws : ComputationFailed when T is singular (mass 0, point, needle), naming what is missing
-/// Error  : of the angular half <= 8u |Theta| |M_S| / lambda^2, M_S the torque about the centre of
-///          mass, lambda the least moment of inertia about it
+/// Throws : ComputationFailed when T is singular (mass 0, point, needle); the message names what is
+///          missing
+/// Error  : angular half <= 8u |Theta| |M_S| / lambda^2, M_S the torque about the centre of mass,
+///          lambda the least moment of inertia about it
 template <class S = double>
 class FactoredInertia {
  public:
@@ -238,9 +239,9 @@ class FactoredInertia {
   detail::FactoredSymmetric3<S> factor_;
 };
 
-/// Solves  T A = P  for A, once.
+/// The solution A of  T A = P, for a single P.
 ///
-/// Throws : as FactoredInertia does
+/// Throws : ComputationFailed, as FactoredInertia
 template <class S>
 [[nodiscard]] Motor<S> solve(const Inertia<S>& T, const Motor<S>& P) {
   return FactoredInertia<S>(T).solve(P);
@@ -248,8 +249,8 @@ template <class S>
 
 namespace detail {
 
-/// What of a tensor given passes as rounding: 1e-12 of its greatest entry, or more where the number
-/// has not so many digits.
+/// The greatest violation that counts as rounding of a given tensor: 1e-12 of the greatest entry,
+/// or more for numbers with fewer digits.
 template <class S>
 [[nodiscard]] S tensor_slack(const Symmetric3<S>& t) {
   using std::abs;
@@ -261,8 +262,8 @@ template <class S>
   return (digits > S(1e-12) ? digits : S(1e-12)) * largest;
 }
 
-/// The number in a dual number (Eigen's AutoDiffScalar), which is all that a check looks at; of a
-/// pack the first lane's.
+/// The value of a number, without its derivatives (Eigen's AutoDiffScalar); for a pack, the first
+/// lane. Checks look only at this value.
 template <class S>
 [[nodiscard]] auto number_in(const S& x) {
   if constexpr (requires { x.derivatives(); }) {
@@ -274,8 +275,8 @@ template <class S>
   }
 }
 
-/// The eigenvalues, ascending, by Jacobi's rotations: Eigen's solver takes the compiler as long as
-/// half a scene.
+/// The eigenvalues in ascending order, by Jacobi rotations. Eigen's solver takes half as long to
+/// compile as a scene.
 template <class S>
 [[nodiscard]] std::array<S, 3> principal_moments(const Symmetric3<S>& t) {
   using std::abs;
@@ -306,7 +307,7 @@ template <class S>
       m[q][other] = m[other][q] = sine * a + cosine * b;
     }
   }
-  // Three comparisons: a sort of the library's for any number of them is longer than all this.
+  // Three comparisons, because the library's sort for any number of elements is longer.
   const auto order = [](S& less, S& more) {
     if (more < less) std::swap(less, more);
   };
@@ -317,7 +318,7 @@ template <class S>
   return moments;
 }
 
-/// Throws : InvalidInput, saying what is refused and why, with its numbers
+/// Throws : InvalidInput with the name of the tensor, the reason and the numbers
 [[noreturn]] inline void refuse_inertia(const std::string& what, const char* why, double a = 0,
                                         double b = 0, double c = 0) {
   char text[160];
@@ -325,8 +326,8 @@ template <class S>
   throw InvalidInput(what + ": " + text);
 }
 
-/// The legal tensor nearest to one whose principal moments a <= b <= c violate a + b >= c or a >= 0,
-/// by the sum of squares of all entries:
+/// The legal tensor nearest to a tensor whose principal moments a <= b <= c violate a + b >= c or a
+/// >= 0, in the sum of squares of all entries:
 ///
 ///   T + e/3 (1 - 2 v v^t)  with e = c - a - b and v along c;  (b + c)/2 (1 - v v^t)  with v along
 ///   a, if the first has a moment below 0
@@ -338,7 +339,7 @@ template <class S>
       t.xx * t.xx + t.xy * t.xy + t.xz * t.xz, t.xy * t.xy + t.yy * t.yy + t.yz * t.yz,
       t.xz * t.xz + t.yz * t.yz + t.zz * t.zz, t.xx * t.xy + t.xy * t.yy + t.xz * t.yz,
       t.xx * t.xz + t.xy * t.yz + t.xz * t.zz, t.xy * t.xz + t.yy * t.yz + t.yz * t.zz};
-  // v v^t of the moment x beside p and q: (T - p)(T - q) over what that is along v
+  // v v^t of the moment x, from the other moments p and q: (T - p)(T - q) over its value along v
   const auto along = [&](double x, double p, double q) {
     return 1 / ((x - p) * (x - q)) * (square - (p + q) * t + p * q * one);
   };
@@ -346,7 +347,7 @@ template <class S>
   return (b + c) / 2 * (one - along(a, b, c));
 }
 
-/// Refuses principal moments; where they are off by 1e-3 at most, as rounded numbers are, the
+/// Refuses principal moments. If the violation is at most 1e-3, as with rounded numbers, the
 /// message ends with the nearest legal tensor.
 ///
 /// Throws : InvalidInput
@@ -371,17 +372,18 @@ template <class S>
 
 }  // namespace detail
 
-/// Whether a body without mass is legal: a massless ring is a limit that some scenes take.
+/// The rule for bodies without mass: some scenes allow a massless ring as a limit.
 enum class Mass { positive, zero_allowed };
 
-/// Refuses what no distribution of mass can have.
+/// Refuses an inertia that no distribution of mass can have.
 ///
-/// A mass below 0, a tensor about the centre of mass that is not positive semidefinite or violates
-/// the triangle inequality of its principal moments. Needles, discs and points are legal limits;
-/// violations up to 1e-12 of the tensor given (in float 8e-6) pass as rounding.
+/// Refused are a mass below 0 and a tensor about the centre of mass that is not positive
+/// semidefinite or violates the triangle inequality of its principal moments. Needles, discs and
+/// points are legal limits. Violations up to 1e-12 of the given tensor (in float 8e-6) pass as
+/// rounding.
 ///
-/// Throws : InvalidInput, naming the inequality violated with its numbers, and the nearest legal
-///          tensor where rounding to three digits or more explains the violation
+/// Throws : InvalidInput with the violated inequality and its numbers. If rounding to three digits
+///          or more explains the violation, the message adds the nearest legal tensor
 template <class S>
 void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& what = "inertia") {
   using Number = decltype(detail::number_in(T.mass));
@@ -434,7 +436,7 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
 
 /// The inertia tensor of a rigid body, written in In: T of the paper.
 ///
-/// Braces take numbers as they are; about_centre and about_origin check them.
+/// Braces take numbers unchecked; about_centre and about_origin check them.
 ///
 /// Source : paper 002 (1), (10)
 /// Units  : kg, kg m, kg m^2
@@ -448,7 +450,7 @@ struct InertiaTensor {
   template <class E>
   using WrittenIn = InertiaTensor<E, S>;
 
-  /// From mass, centre of mass and the tensor about the centre of mass.
+  /// The inertia tensor from mass, centre of mass and the tensor about the centre of mass.
   ///
   /// Throws : InvalidInput as check() does
   [[nodiscard]] static InertiaTensor about_centre(const S& mass, const Vector3<S>& centre,
@@ -461,7 +463,7 @@ struct InertiaTensor {
     return {{mass, s, centred.tensor + offset_product(centre, half)}};
   }
 
-  /// From mass, centre of mass and the tensor about the origin of In.
+  /// The inertia tensor from mass, centre of mass and the tensor about the origin of In.
   ///
   /// Throws : InvalidInput as check() does
   [[nodiscard]] static InertiaTensor about_origin(const S& mass, const Vector3<S>& centre,
@@ -501,7 +503,7 @@ template <class E, class S, class Of, class From, class E2>
   if constexpr (std::is_same_v<E, E2>) return Momentum<E, S>{T.value * V.value};
 }
 
-/// The force motor  T (derivative of a velocity).
+/// The force motor  T dV, dV the derivative of a velocity.
 template <class E, class S, class O, class Of, class From, class E2>
 [[nodiscard, gnu::always_inline]] inline auto operator*(
     const InertiaTensor<E, S>& T, const Rate<O, Velocity<Of, From, E2, S>>& dV) {
@@ -509,7 +511,7 @@ template <class E, class S, class O, class Of, class From, class E2>
   if constexpr (std::is_same_v<E, E2>) return Force<E, S>{T.value * dV.value};
 }
 
-/// The rate of the inertia of a body B seen from an observer O against whom it moves with V.
+/// The rate of the inertia of a body B seen from an observer O against whom B moves with V.
 ///
 /// Source : paper 002 section 2, oT = [V' T] - [T V']
 template <class B, class O, class E, class S>

@@ -2,8 +2,9 @@
 
 #include <motor/api.hpp>
 
-/// Vectors of four numbers are laid out and passed as the processor has them. A program for AVX and a
-/// libkreisel without it do not fit together: the program does not link, for want of this function.
+/// A function whose name contains the instruction set, because it fixes the layout of packed
+/// vectors. A program for AVX and a libkreisel without AVX do not fit together: linking fails,
+/// because this function is missing.
 #if defined(__AVX512F__)
 #define KREISEL_SAME_MARCH same_march_as_libkreisel_avx512
 #elif defined(__AVX__)

@@ -8,17 +8,19 @@
 
 namespace kreisel {
 
-/// A frame whose pose is a function of time that the user writes, as PosedFrame, and who promises
-/// that it is analytic all along and changes no faster than what the guide carries: no distinction of
-/// cases, no short pulse. Then solve() takes the Taylor series of formula and motion together, which
-/// look at the formula where a step begins and nowhere else.
+/// A frame whose pose is an analytic function of time that the user writes, as for PosedFrame.
 ///
-/// The function is called with PowerSeries besides: sine, cosine, tangent, exponential, hyperbolic
-/// functions, logarithm, roots and powers are known to it.
+/// The user promises that the function is analytic at all times and changes no faster than the
+/// bodies on the guide: no distinction of cases, no short pulse. solve() then uses the Taylor
+/// series of the function and the motion together. Such a series evaluates the function only where
+/// a step begins.
 ///
-/// Source : R^t R' = skew(u);  R^t (g - x'')  is what a body at the origin feels
+/// The function is also called with PowerSeries, for which sine, cosine, tangent, exponential,
+/// hyperbolic functions, logarithm, roots and powers are defined.
+///
+/// Source : R^t R' = skew(u);  R^t (g - x'') is the apparent gravity of a body at the origin
 /// Units  : metre, rad/s, m/s^2, second
-/// Error  : as PosedFrame; of the series summed up <= 40u * 10 m/s^2 (tests/dynamics/guide/analytic)
+/// Error  : as PosedFrame; of the summed series <= 40u * 10 m/s^2 (tests/dynamics/guide/analytic)
 template <class Function, class G = Guide, class I = Inertial>
 class AnalyticFrame {
  public:
@@ -26,7 +28,7 @@ class AnalyticFrame {
 
   [[nodiscard]] FrameMotion<G, I> operator()(double t) const { return posed_(t); }
 
-  /// As AnalyticGuide asks for.
+  /// The series that the concept AnalyticGuide requires.
   [[nodiscard]] GuideSeries series(double t, double h, int order,
                                    const detail::Components<double>& g) const {
     const Pose<PowerSeries> pose = posed_.function()(PowerSeries::time(t, h, order + 1));
@@ -58,7 +60,7 @@ class AnalyticFrame {
   PosedFrame<Function, G, I> posed_;
 };
 
-/// The frame G whose pose in I is the analytic function given.
+/// The frame G whose pose in I is the given analytic function.
 template <class G = Guide, class I = Inertial, class Function>
 [[nodiscard]] AnalyticFrame<Function, G, I> analytic(Function pose) {
   return AnalyticFrame<Function, G, I>(std::move(pose));

@@ -11,7 +11,7 @@ namespace kreisel {
 
 namespace detail {
 
-/// Whether each motion is one against the frame of the motion before.
+/// True if each motion is relative to the frame of the motion before it.
 template <class...>
 inline constexpr bool join = true;
 
@@ -21,11 +21,12 @@ inline constexpr bool join<Outer, Inner, Rest...> =
 
 }  // namespace detail
 
-/// Frames in frames: each moves against the one before, the last is the guide.
+/// A chain of frames, each of which moves against the one before; the last frame is the guide
+/// (carrier frame).
 ///
 ///   const Chain guide(earth, ship, device);  // <Earth, Inertial>, <Ship, Earth>, <Guide, Ship>
 ///
-/// A link that does not begin where the one before ends does not compile.
+/// A link that does not start in the frame where the link before ends does not compile.
 template <class... Links>
 class Chain {
   static_assert(detail::join<decltype(std::declval<const Links&>()(0))...>,

@@ -17,8 +17,8 @@ struct SineCosine {
   S cosine;
 };
 
-/// Sine and cosine of an angle in degrees, exact where they are: multiples of 90 give 0 and 1, of
-/// 45 give the same number twice, of 30 give 1/2.
+/// Sine and cosine of an angle in degrees, exact where the values are: multiples of 90 give 0 and
+/// 1, of 45 give the same number twice, of 30 give 1/2.
 ///
 /// The reduction to |rest| <= 45 is exact (fmod, then a difference within a factor of two), so that
 /// latitude 90 has cosine 0 and not 6e-17.
@@ -52,7 +52,7 @@ template <class S>
   }
 }
 
-/// Where an instrument stands on the rotating earth, and which way its horizontal axis points.
+/// The site of an instrument on the rotating earth, and the direction of its horizontal axis.
 ///
 /// Units  : degrees for latitude and azimuth, metre, radian per second
 template <class S = double>
@@ -71,7 +71,7 @@ struct EarthSite {
 
 namespace detail {
 
-/// Throws : InvalidInput  "latitude = 91 degrees lies outside [-90, 90] degrees", NaN included
+/// Throws : InvalidInput  "latitude = 91 degrees lies outside [-90, 90] degrees", also for NaN
 template <class S>
 void require_within(std::string_view key, const S& value, const S& least, const S& greatest,
                     std::string_view unit) {
@@ -95,7 +95,7 @@ void require_positive(std::string_view key, const S& value, std::string_view uni
 
 }  // namespace detail
 
-/// Refuses a site that is none on (or near) the earth.
+/// Refuses a site that is not on (or near) the earth.
 ///
 /// Throws : InvalidInput, naming key, value and range. Latitude [-90, 90], azimuth [-360, 360],
 ///          height [-11000, 1e7], rotation_rate [-1000, 1000] (a turntable may stand in for the
@@ -108,7 +108,8 @@ void check(const EarthSite<S>& site) {
   detail::require_within("rotation_rate", site.rotation_rate, S(-1000), S(1000), "rad/s");
 }
 
-/// What a guide frame fixed to the earth gives a pendulum hung up at its origin.
+/// The angular velocity and gravity of a guide frame fixed to the earth, for a pendulum suspended
+/// at the frame's origin.
 ///
 /// Frame  : x down along the effective gravity, z horizontal with the site's azimuth, y = z x x
 ///          (azimuth 90: z east, y north)
@@ -127,12 +128,12 @@ struct EarthGuide {
   }
 };
 
-/// The earth's rotation on the guide's axes, the latitude being that of the effective vertical:
+/// The earth's rotation on the guide's axes, for the latitude of the effective vertical:
 ///
 ///   u_x = -u sin(theta),  u_y = u cos(theta) sin(alpha),  u_z = u cos(theta) cos(alpha)
 ///
 /// Source : paper 002 section 5, where sin and cos are printed as for the colatitude
-/// Error  : <= 8u relative in each component; 0, and |u_x| = |u_y|, where they are so exactly
+/// Error  : <= 8u relative in each component; exact where a component is 0 or |u_x| = |u_y|
 template <class S>
 [[nodiscard]] Vector3<S> earth_rotation(const EarthSite<S>& site) {
   const auto [sin_latitude, cos_latitude] = sine_cosine_degrees(site.latitude);
@@ -145,7 +146,7 @@ template <class S>
 ///
 /// Units  : height in metre above the sphere of mean radius 6371008.8 m; 1/s^2
 /// Error  : <= 1.0 % against WGS84 normal gravity from -11 km to 20 km height (flattening, and the
-///          tilt of the vertical); normal_gravity.hpp has the ellipsoid's
+///          tilt of the vertical); normal_gravity.hpp has the gradient of the ellipsoid
 template <class S>
 [[nodiscard]] Matrix3<S> spherical_gravity_gradient(const S& height) {
   const S parameter = S(3986004418LL) * S(100000);  // GM of WGS84, m^3/s^2
@@ -158,10 +159,10 @@ template <class S>
   return gradient;
 }
 
-/// The guide frame where the effective gravity is known as a number, as from a gravimeter.
+/// The guide frame at a site whose effective gravity is known as a number, as from a gravimeter.
 ///
-/// The site's latitude is then the angle of the effective vertical against the equatorial plane,
-/// which is what astronomical observation gives.
+/// The site's latitude is then the angle of the effective vertical against the equatorial plane, as
+/// astronomical observation gives it.
 ///
 /// Frame  : effective_gravity = (gravity, 0, 0); gravity_gradient of the spherical earth
 /// Throws : InvalidInput as check() does, and for a gravity that is not above 0

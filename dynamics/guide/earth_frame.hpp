@@ -6,11 +6,11 @@
 namespace kreisel {
 
 /// The frame fixed to the rotating earth at a site: x down along the effective vertical, z
-/// horizontal with the site's azimuth, y = z x x, as EarthGuide has it.
+/// horizontal with the site's azimuth, y = z x x, as in EarthGuide.
 ///
-/// I is the frame at the earth's centre that does not turn, z to the north pole, x through the
-/// site's meridian at t = 0. Gravitation is a load (EarthGravitation); the centrifugal part comes
-/// from this motion, so it must not be put in again with the effective gravity.
+/// I is the non-rotating frame at the earth's centre, z to the north pole, x through the site's
+/// meridian at t = 0. Gravitation is a load (EarthGravitation). The motion of this frame already
+/// contains the centrifugal part, so do not add effective gravity as well.
 ///
 /// Source : paper 002 section 5, the guide on the earth
 /// Throws : InvalidInput as normal_gravity() does

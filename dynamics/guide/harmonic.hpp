@@ -35,7 +35,7 @@ struct HarmonicSeries {
     return sum;
   }
 
-  /// Value and rate in turn; sine and cosine of an angle cost little more than one of them.
+  /// The value and the rate. Sine and cosine of an angle cost little more than one of them.
   [[nodiscard]] std::pair<Vector3<S>, Vector3<S>> with_rate(const S& t) const {
     using std::cos;
     using std::sin;
@@ -70,7 +70,7 @@ struct HarmonicSeries {
     return result;
   }
 
-  /// The same in another scalar.
+  /// The same series in another scalar.
   template <class T>
   [[nodiscard]] HarmonicSeries<T> cast() const {
     HarmonicSeries<T> result{constant.template cast<T>(), {}};
@@ -81,24 +81,24 @@ struct HarmonicSeries {
   }
 };
 
-/// What rolls, pitches and heaves harmonically: angular velocity u(t) and inertial acceleration
-/// a(t) of the origin are given on the frame's OWN axes, as gyros and accelerometers strapped to it
-/// read them.
+/// A frame in harmonic motion (roll, pitch, heave): angular velocity u(t) and inertial acceleration
+/// a(t) of the origin are given on the frame's OWN axes, as strapdown gyros and accelerometers
+/// measure them.
 ///
-/// u, ou and a come from the series at once. Attitude and place have no closed form when u turns
-/// about more than one axis; they are Taylor series in pieces of 1/(2 Omega), Omega = |u|/2 + the
-/// greatest frequency, computed when the frame is made, over [begin, end].
+/// u, ou and a are sums of the series. Attitude and position have no closed form if u has more than
+/// one axis. They are Taylor series in pieces of 1/(2 Omega), Omega = |u|/2 + the greatest
+/// frequency, computed over [begin, end] by the constructor.
 ///
 /// Units  : rad/s, m/s^2, second
-/// Error  : against long double integration over 62 s attitude <= 40u, place <= 20u of the way;
-///          against a closed form <= 90u after 2000 s        (tests/dynamics/guide/kinds.cpp)
+/// Error  : attitude <= 40u, position <= 20u of the path, against long double integration over 62
+///          s; <= 90u after 2000 s against a closed form     (tests/dynamics/guide/kinds.cpp)
 /// Cost   : 1.1 kB for each piece
 /// Throws : InvalidInput: a number that is not finite, end before begin; a time outside [begin,
 ///          end]
 template <class G = Guide, class I = Inertial, class S = double>
 class HarmonicFrame {
  public:
-  /// `X` and `origin_velocity` (on I's axes) are those at the time `begin`.
+  /// `X` and `origin_velocity` (on I's axes) are the values at the time `begin`.
   HarmonicFrame(HarmonicSeries<S> angular_velocity, HarmonicSeries<S> origin_acceleration,
                 const S& begin, const S& end, const Displacement<I, G, S>& X = {},
                 const Vector3<S>& origin_velocity = Vector3<S>::Zero())
@@ -109,7 +109,8 @@ class HarmonicFrame {
     check(a_, "origin acceleration");
     if (!(begin <= end && begin - begin == end - end)) {
       std::ostringstream text;
-      text << "harmonic frame: begin = " << begin << " s, end = " << end << " s make no interval";
+      text << "harmonic frame: begin = " << begin << " s, end = " << end
+           << " s: begin must not be after end";
       throw InvalidInput(text.str());
     }
     integrate(begin, end, X.value, origin_velocity);
@@ -126,7 +127,7 @@ class HarmonicFrame {
     return motion;
   }
 
-  /// What rests in the inertial frame turns on these axes:  og = -u x g.
+  /// A vector at rest in the inertial frame turns on these axes:  og = -u x g.
   [[nodiscard]] GuideSeries series(
       double t, double h, int order,
       const detail::Components<double>& g) const requires std::is_same_v<S, double> {
@@ -155,7 +156,7 @@ class HarmonicFrame {
  private:
   static constexpr int degree = 18;
 
-  // The chain of pieces is carried in more digits than it is read in.
+  // The chain of pieces is computed with more digits than it is evaluated with.
   using Wide =
       std::conditional_t<std::is_same_v<S, double> || std::is_same_v<S, float>, long double, S>;
 

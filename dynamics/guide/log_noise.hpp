@@ -14,14 +14,15 @@
 
 namespace kreisel {
 
-/// The errors of a log's samples, by component: quaternion x, y, z, w, then position x, y, z; of a
-/// log of rates angular velocity, 0, acceleration.
+/// The errors of a log's samples, by component: quaternion x, y, z, w, then position x, y, z. For a
+/// log of rates: angular velocity, 0, acceleration.
 struct LogNoise {
   using Components = PiecewisePose<double>::Components;
   Components white = Components::Zero();  ///< standard deviation, independent from sample to sample
   Components step = Components::Zero();   ///< unit of the last written decimal, 0 if there is none
 
-  /// Whether the estimate is of noise; else the samples are too coarse to tell it from the motion.
+  /// True where the estimate is of noise; else the samples are too coarse to separate noise from
+  /// motion.
   Eigen::Array<bool, 7, 1> resolved = Eigen::Array<bool, 7, 1>::Constant(true);
 };
 
@@ -29,7 +30,7 @@ namespace detail {
 
 using LogComponents = LogNoise::Components;
 
-/// A log by components, as it was written and as it is followed.
+/// A log by components: its written values and the values that a spline follows.
 struct LogSamples {
   std::vector<double> times;
   std::vector<LogComponents> written;
@@ -52,7 +53,7 @@ struct LogSamples {
   return result;
 }
 
-/// Rates in the place of quaternions' vectors, accelerations in that of positions.
+/// Angular velocities in place of the vectors of quaternions, accelerations in place of positions.
 [[nodiscard]] inline LogSamples samples_of(const RatesLog& log) {
   LogSamples result;
   result.times = log.times;
@@ -81,8 +82,8 @@ struct LogSamples {
   return log;
 }
 
-/// The greatest power of ten, from 1e-1 to 1e-12, of which all values are multiples; 0 if there is
-/// none, or nothing changes.
+/// The greatest power of ten, from 1e-1 to 1e-12, of which all values are multiples. It is 0 if
+/// there is none or if the values do not change.
 [[nodiscard]] inline double decimal_step(const std::vector<LogComponents>& values, int first,
                                          int count) {
   const bool rests = std::all_of(values.begin(), values.end(), [&](const LogComponents& value) {
@@ -103,7 +104,7 @@ struct LogSamples {
   return 0;
 }
 
-/// Weights of the divided difference over times i to i + order, of square sum 1.
+/// Weights of the divided difference over times i to i + order; the sum of their squares is 1.
 [[nodiscard]] inline std::vector<double> difference_weights(const std::vector<double>& times,
                                                             std::size_t i, std::size_t order) {
   const double span = times[i + order] - times[i];
@@ -119,8 +120,8 @@ struct LogSamples {
   return weight;
 }
 
-/// The root mean square of the differences of that order, gaps left out; nothing where the log has
-/// less than ten of them.
+/// The root mean square of the differences of this order, without gaps. Nothing if the log has less
+/// than ten of them.
 [[nodiscard]] inline std::optional<LogComponents> difference_size(
     const std::vector<double>& times, const std::vector<LogComponents>& values, std::size_t order,
     double step) {
@@ -146,12 +147,11 @@ struct LogSamples {
 
 }  // namespace detail
 
-/// The errors of a log's samples, MotionLog or RatesLog, from the log itself.
+/// The errors of a log's samples, MotionLog or RatesLog, estimated from the log itself.
 ///
-/// High-order differences of a smooth motion are small, those of noise are not: the noise is the
-/// least of what the orders 4 to 24 leave, each scaled for independent errors. Where the least two
-/// orders still fall, the samples are too coarse for it and the noise is an upper bound. Errors that
-/// are as smooth as the motion cannot be seen.
+/// High-order differences of a smooth motion are small; those of noise are not. The noise is
+/// therefore the least value left by the orders 4 to 24, each scaled for independent errors. If no
+/// two successive orders agree, the samples are too coarse, and the noise is an upper bound. Errors as smooth as the motion cannot be detected.
 ///
 /// Error  : some 20 % for independent errors and 100 samples
 ///          (tests/dynamics/guide/log_noise.cpp)
@@ -174,7 +174,7 @@ template <class Log>
     const auto size = detail::difference_size(times, values, order, step);
     if (!size) break;
     for (int c = 0; c < 7; ++c) {
-      // Two orders that find the same have found noise.
+      // Two orders with the same result have found noise.
       noise.resolved[c] = noise.resolved[c] || (*size)[c] > 0.7 * before[c];
       noise.white[c] = std::min(noise.white[c], (*size)[c]);
     }
@@ -201,14 +201,14 @@ namespace detail {
 
 }  // namespace detail
 
-/// The spline that follows a noisy log best: knots so far apart that the expected error
+/// The spline that follows a noisy log best. Its knots are so far apart that the expected error
 ///
 ///   sum of squared residuals + 2 sigma^2 (control points)
 ///
-/// is least (C. L. Mallows); its residuals are then as great as the noise. Where interpolation is
-/// best, or the noise is that of rounded doubles, every sample is a knot. Where the last decimal
-/// stays for many samples, its steps are no noise for a sum of squares: knots are then at least four
-/// steps apart.
+/// is least (C. L. Mallows); the residuals are then as great as the noise. Every sample is a knot
+/// where interpolation is best, or where the noise is the rounding of doubles. If the last decimal
+/// stays constant over many samples, its steps are no noise for a sum of squares. Knots are then at
+/// least four steps apart.
 ///
 /// Units  : sigma as LogNoise
 template <class Log>
@@ -248,8 +248,8 @@ template <class Log>
   return best;
 }
 
-/// The standard deviations by which a log is smoothed if nobody gives them: what its differences
-/// and its last decimals say; 0 for what the samples are too coarse to tell.
+/// The standard deviations for smoothing a log when the user gives none, from its differences and
+/// its last decimals. 0 for components whose samples are too coarse.
 [[nodiscard]] inline LogNoise::Components smoothing_sigma(const LogNoise& noise) {
   const double uniform = 1 / std::sqrt(12.0);
   LogNoise::Components sigma = noise.white;
@@ -260,7 +260,7 @@ template <class Log>
   return sigma;
 }
 
-/// The samples that a spline of the log has at its times.
+/// The samples of the spline at the times of the log.
 template <class Log>
 [[nodiscard]] Log smoothed(const Log& log, const LogSpline& how) {
   const detail::LogSamples samples = detail::samples_of(log);
@@ -277,17 +277,17 @@ template <class Log>
   return detail::with_values(log, values);
 }
 
-/// The log as it might as well have been written: smoothed, its noise and its rounding drawn anew.
+/// Another log that could have been written as well: smoothed, with noise and rounding drawn anew.
 ///
-/// Rounding is drawn by where the decimals begin, so that of a slow motion it stays in steps as it
-/// is, and of one at rest it is an offset.
+/// Rounding is drawn as an offset of the decimal grid. The rounding error of a slow motion then
+/// stays in steps, and the rounding error of a motion at rest is a constant.
 template <class Log>
 [[nodiscard]] Log drawn_again(const Log& written, const LogNoise& noise, const LogSpline& smooth,
                               std::uint64_t seed) {
   const Log log = smoothed(written, smooth);
   auto values = detail::samples_of(log).values;
   std::mt19937_64 engine(seed);
-  // Sums of twelve draws: the same on every machine, which std::normal_distribution is not.
+  // Sums of twelve draws: equal on every machine, unlike std::normal_distribution.
   const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53 - 0.5; };
   const auto normal = [&uniform] {
     double sum = 0;
@@ -311,23 +311,25 @@ template <class Log>
   return detail::with_values(log, values);
 }
 
-/// How far a result that follows a log may be off for the log's own errors.
+/// The error of a result that comes from the log's own errors.
 ///
-/// The log is taken in other ways that are as good as the one used, and the result is computed again
-/// with each: from the smoothed samples with noise and rounding drawn anew, which differ as the
-/// samples do from the motion; and by a spline two degrees higher on the same knots, which differs
-/// by about what the degree leaves out, and by noise, whose part is known from the draws and taken
-/// off. Small errors are so carried by the linear equations along the motion, as differences of
-/// whole runs, great ones by the equations themselves; pose, velocity and acceleration err together
-/// as they do in truth.
+/// The result is computed again with other logs that are as plausible as the given one. Some are
+/// the smoothed samples with noise and rounding drawn anew; they differ as the samples differ from
+/// the motion. Another is a spline two degrees higher on the same knots. It differs by about the
+/// truncation error of the lower degree and by noise; the noise is known from the draws and
+/// subtracted.
+///
+/// Small errors are thus propagated by the linear equations along the motion, as differences of
+/// whole runs, and great errors by the nonlinear equations. Pose, velocity and acceleration have
+/// consistent errors, as in reality.
 ///
 ///   sqrt((2 degree)^2 + (2 root mean square of draws)^2)
 ///
-/// True errors are a third to once that as a rule. A single number that one random number decides is
-/// outside 0.1 to 1.2 times it once in five.
+/// True errors are as a rule a third of this estimate up to the whole of it. A single number that
+/// depends on one random number lies outside 0.1 to 1.2 times the estimate once in five.
 ///
-/// `result`   : that of the log and spline which are asked about
-/// `follow`   : the result of another log and spline
+/// `result`   : the result for the given log and spline
+/// `follow`   : computes the result for another log and spline
 /// `distance` : of two results, as numbers not below 0
 /// Cost       : thirteen times follow()
 /// Error      : see tests/dynamics/guide/log_noise.cpp

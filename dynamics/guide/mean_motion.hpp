@@ -5,12 +5,12 @@
 
 namespace kreisel {
 
-/// The steady motion that stands for a guide's between two times: its u and the inertial
-/// acceleration of its origin, on its own axes, are the means of 256 moments; place, attitude and
-/// velocity are those of the middle.
+/// The steady motion that approximates a guide's motion between two times. u and the inertial
+/// acceleration of the origin, on the guide's own axes, are means over 256 times. Position,
+/// attitude and velocity are those at the middle.
 ///
 /// Units  : second
-/// Error  : that of leaving out how the motion varies; prune() says what it does to a scene
+/// Error  : the variation of the motion is left out; prune() reports the effect on a scene
 template <class M>
 [[nodiscard]] RotatingFrame<> mean_motion(const M& guide, double begin, double end) {
   constexpr int moments = 256;
@@ -25,7 +25,7 @@ template <class M>
   const auto from_inertial = [](const FrameMotion<Guide, Inertial>& motion) -> Vector3<double> {
     return motion.X.value.rotation * motion.V.value.moment;
   };
-  // From the middle back to t = 0, from where a RotatingFrame counts.
+  // From the middle back to t = 0, where a RotatingFrame starts.
   const FrameMotion<Guide, Inertial> now = guide(middle);
   const RotatingFrame<> from_middle{u, a, now.X, from_inertial(now)};
   const FrameMotion<Guide, Inertial> at_zero = from_middle(-middle);

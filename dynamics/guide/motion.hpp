@@ -10,12 +10,12 @@
 
 namespace kreisel {
 
-/// How a frame G moves against a frame I at one moment: pose, velocity, acceleration.
+/// The motion of a frame G against a frame I at one time: pose, velocity, acceleration.
 ///
-/// Velocity and rate are written in G, reduced at G's ORIGIN, and the rate is seen from G: numbers
-/// and their plain time derivatives, nothing to transport (T = P). To reach the body, displace
-/// them: X_BG * V and X_BG * dV. What must not be done is to differentiate the velocity of the
-/// guide-fixed point that coincides with a moving point of the body; that would be a PlainRate.
+/// Velocity and rate are written in G, reduced at G's ORIGIN, and the rate is seen from G. They are
+/// numbers and their plain time derivatives, without a transport term (T = P). Displace them for
+/// use in the body: X_BG * V and X_BG * dV. Do not differentiate the velocity of the guide-fixed
+/// point that coincides with a moving point of the body; the result would be a PlainRate.
 ///
 /// Source : paper 002 section 2, F and oF
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2
@@ -35,7 +35,7 @@ struct FrameMotion {
   }
 };
 
-/// How a frame turns against another at one moment: u and its rate ou on the frame's own axes.
+/// The rotation of a frame against another at one time: u and its rate ou on the frame's own axes.
 ///
 /// Units  : rad/s, rad/s^2
 template <class S = double>
@@ -44,17 +44,18 @@ struct FrameTurning {
   Vector3<S> du = Vector3<S>::Zero();
 };
 
-/// A kind of guide motion: called with a time it tells how its frame moves then.
+/// A guide motion (motion of a carrier frame): a callable that returns the motion of its frame at a
+/// given time.
 ///
-/// Whatever can be called so is one, a user's lambda too. The kinds here have a file each:
-/// resting, translating, rotating, steady, harmonic, posed, tabulated, chain.
+/// Every such callable is a guide motion, including a user's lambda. The kinds in this folder have
+/// a file each: resting, translating, rotating, steady, harmonic, posed, tabulated, chain.
 template <class M, class G = Guide, class I = Inertial, class S = double>
 concept GuideMotion = requires(const M& motion, const S& t) {
   { motion(t) } -> std::same_as<FrameMotion<G, I, S>>;
 };
 
-/// u and ou alone, which is all that matters to bodies with their centre of mass at a guide-fixed
-/// point. A guide that has them without its pose offers them as turning(t), the same numbers.
+/// u and ou alone, which are sufficient for bodies whose centre of mass is at a guide-fixed point.
+/// A guide that can compute them without its pose offers them as turning(t), with the same numbers.
 template <class M, class S>
 [[nodiscard]] auto turning(const M& motion, const S& t) {
   if constexpr (requires { motion.turning(t); }) {
@@ -66,9 +67,9 @@ template <class M, class S>
   }
 }
 
-/// What never changes about a frame in steady motion, on its own axes: u (ou = 0) and the inertial
-/// acceleration of its origin. A guide whose motion is steady offers it as steady(); what it does
-/// not have is StaticZero by type.
+/// The constants of a frame in steady motion, on its own axes: u (ou = 0) and the inertial
+/// acceleration of its origin. A guide whose motion is steady offers them as steady(); a zero
+/// constant is StaticZero by type.
 ///
 /// Units  : rad/s, m/s^2
 template <class U, class A>
@@ -84,7 +85,7 @@ concept SteadyGuide = requires(const M& motion) {
 
 namespace detail {
 
-/// Whether the type of a guide says, by a static member never_turns = true, that its u and ou are 0.
+/// True if a guide's type declares by a static member never_turns = true that its u and ou are 0.
 template <class M>
 inline constexpr bool never_turns = requires {
   requires M::never_turns;
@@ -92,8 +93,8 @@ inline constexpr bool never_turns = requires {
 
 }  // namespace detail
 
-/// The motion of C against A from those of C against B and of B against A. Exact: poses multiply,
-/// velocities add, and the rate of V_BA is handed to the observer C by its transport term.
+/// The motion of C against A, from the motions of C against B and of B against A. Exact: poses
+/// multiply, velocities add, and the rate of V_BA gets the transport term of the observer C.
 ///
 ///   V_CA = V_CB + V_BA,   (d/dt)_C V_CA = (d/dt)_C V_CB + (d/dt)_B V_BA - [V_CB V_BA]
 ///
@@ -108,7 +109,7 @@ template <class C, class B, class A, class S>
   return {outer.X * inner.X, inner.V + V_BA, inner.dV + seen_from<C>(dV_BA, inner.V, V_BA)};
 }
 
-/// A quaternion and a position as functions of time, by value and two derivatives.
+/// A quaternion and a position as functions of time: values and two derivatives.
 ///
 /// Frame  : attitude G to I, position of G's origin on I axes
 template <class S = double>
@@ -121,8 +122,8 @@ struct PoseDerivatives {
   Vector3<S> ddx = Vector3<S>::Zero();
 };
 
-/// The motion of a frame from its pose and the pose's derivatives. The quaternion need not have
-/// norm 1, nor a constant one:  u = 2 vec(q^-1 q'),  ou = 2 vec(q^-1 q'') - (ln |q|^2)' u.
+/// The motion of a frame from its pose and the pose's derivatives. The norm of the quaternion need
+/// not be 1 or constant:  u = 2 vec(q^-1 q'),  ou = 2 vec(q^-1 q'') - (ln |q|^2)' u.
 template <class G, class I, class S>
 [[nodiscard]] FrameMotion<G, I, S> frame_motion(const PoseDerivatives<S>& p) {
   const S norm2 = p.q.squaredNorm();

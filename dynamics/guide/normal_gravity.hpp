@@ -10,7 +10,7 @@
 
 namespace kreisel {
 
-/// Normal gravity at a site, gravitation and centrifugal part apart.
+/// Normal gravity at a site, with its gravitational and centrifugal parts.
 ///
 /// Frame  : vectors are (north, east, up) of the ellipsoid's normal at the site
 /// Units  : m/s^2, radian, degrees for the latitude
@@ -54,19 +54,18 @@ inline Matrix3<double> gravitation_gradient(const Vector3<double>& p, const Matr
 
 }  // namespace detail
 
-/// Gravity of the WGS84 ellipsoid at a site, and the guide frame hung up along it.
+/// Gravity of the WGS84 ellipsoid at a site, and the guide frame along the effective vertical.
 ///
-/// The gravitation is WGS84's in closed form; the centrifugal part follows the site's rotation
-/// rate, whatever it is. The effective vertical is tilted against the ellipsoid's normal at height
-/// (1 km: 8e-7 rad at 45 degrees), or where the rotation rate is not WGS84's; x, u and the gradient
-/// are taken along it.
+/// The gravitation is WGS84's in closed form. The centrifugal part follows from the site's rotation
+/// rate, which may differ from WGS84's. The effective vertical is tilted against the ellipsoid's
+/// normal at a height (1 km: 8e-7 rad at 45 degrees) and with another rotation rate. x, u and the
+/// gradient refer to the effective vertical.
 ///
 /// Source : H. Moritz, Geodetic Reference System 1980; GeographicLib::NormalGravity::V0
 /// Error  : against WGS84 1e-15 relative in gravitation; gradient <= 2e-12 of its norm (measured
-///          against 50 digits; trace 8e-13; tests/dynamics/guide/earth.cpp). The real earth departs
+///          against 50 digits; trace 8e-13; tests/dynamics/guide/earth.cpp). The real earth differs
 ///          from normal gravity by up to 3e-3 m/s^2 and 3e-4 rad
-/// Throws : InvalidInput as check() does, and where gravity does not point down: the site is in
-///          orbit
+/// Throws : InvalidInput as check() does, and if gravity does not point down: the site is in orbit
 [[nodiscard]] inline NormalGravity normal_gravity(const EarthSite<double>& site) {
   check(site);
   const auto [sin_latitude, cos_latitude] = sine_cosine_degrees(site.latitude);
@@ -90,14 +89,14 @@ inline Matrix3<double> gravitation_gradient(const Vector3<double>& p, const Matr
     std::ostringstream text;
     text.precision(10);
     text << "rotation_rate = " << u << " rad/s and height = " << site.height
-         << " m leave no gravity that points down";
+         << " m: gravity does not point down, the site is in orbit";
     throw InvalidInput(text.str());
   }
   result.magnitude = std::hypot(g.x(), g.z());
   result.tilt = std::atan2(g.x(), -g.z());
   result.latitude_of_vertical = site.latitude - result.tilt * (180 / std::acos(-1.0));
 
-  // Down, level north and the guide's z and y on (north, east, up).
+  // Down, level north, and the guide's z and y, as components (north, east, up).
   const double sin_tilt = g.x() / result.magnitude;
   const double cos_tilt = -g.z() / result.magnitude;
   const Vector3<double> down(sin_tilt, 0, -cos_tilt);

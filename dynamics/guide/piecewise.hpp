@@ -19,7 +19,7 @@ namespace kreisel {
 template <class S = double>
 class PiecewisePose {
  public:
-  /// Seven components: quaternion x, y, z, w (as Eigen keeps it), position x, y, z.
+  /// Seven components: quaternion x, y, z, w (Eigen's order), position x, y, z.
   using Components = Eigen::Matrix<S, 7, 1>;
 
   PiecewisePose(std::string name, int degree) : name_(std::move(name)), degree_(degree) {}
@@ -28,8 +28,8 @@ class PiecewisePose {
     return (Components() << q.coeffs(), x).finished();
   }
 
-  /// Adds the piece from `begin` to the next one's begin or to the end; coefficients of powers of
-  /// (t - begin), lowest first.
+  /// Adds the piece from `begin` to the begin of the next piece or to the end. Coefficients of
+  /// powers of (t - begin), lowest first.
   void append(const S& begin, const std::vector<Components>& coefficients) {
     begins_.push_back(begin);
     coefficients_.insert(coefficients_.end(), coefficients.begin(), coefficients.end());
@@ -41,13 +41,13 @@ class PiecewisePose {
   [[nodiscard]] const S& end() const { return end_; }
   [[nodiscard]] const std::vector<S>& breakpoints() const { return begins_; }
 
-  /// Of powers of (t - begin) of that piece, lowest first.
+  /// The coefficients of a piece, of powers of (t - begin) of the piece, lowest first.
   [[nodiscard]] std::span<const Components> coefficients(std::size_t piece) const {
     const auto terms = static_cast<std::size_t>(degree_) + 1;
     return {coefficients_.data() + piece * terms, terms};
   }
 
-  /// Throws : InvalidInput outside [begin, end]: nothing is extrapolated
+  /// Throws : InvalidInput outside [begin, end]: there is no extrapolation
   void require(const S& t) const {
     if (t >= begin() && t <= end_) return;
     std::ostringstream text;

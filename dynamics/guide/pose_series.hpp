@@ -10,9 +10,9 @@
 
 namespace kreisel::detail {
 
-/// Attitude, place and velocity at the end of the pieces that were integrated so far.
+/// Attitude, position and velocity at the end of the pieces that are integrated so far.
 ///
-/// Frame  : attitude G to I, place and velocity on I's axes
+/// Frame  : attitude G to I, position and velocity on I's axes
 template <class Wide>
 struct PoseChain {
   Eigen::Quaternion<Wide> q = Eigen::Quaternion<Wide>::Identity();
@@ -20,8 +20,8 @@ struct PoseChain {
   Vector3<Wide> v = Vector3<Wide>::Zero();
 };
 
-/// Coefficients of attitude and place from those of the angular velocity u and the acceleration a,
-/// both on the turning axes, and a uniform acceleration g on I's axes:
+/// Series coefficients of attitude and position, from those of the angular velocity u and the
+/// acceleration a, both on the rotating axes, and a uniform acceleration g on I's axes:
 ///
 ///   q' = q u / 2,   x'' = q a q^-1 + g
 template <class Wide>
@@ -51,7 +51,7 @@ pose_series(const std::vector<Vector3<Wide>>& u, const std::vector<Vector3<Wide>
   return {std::move(q), std::move(x)};
 }
 
-/// Appends a piece that begins at t and lasts for `step`, and moves the chain to its end.
+/// Appends a piece that begins at t and has the length `step`, and moves the chain to its end.
 template <class S, class Wide>
 void append_piece(PiecewisePose<S>& pose, PoseChain<Wide>& chain, const S& t, const Wide& step,
                   const std::vector<Vector3<Wide>>& u, const std::vector<Vector3<Wide>>& a,

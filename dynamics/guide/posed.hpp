@@ -10,11 +10,11 @@
 
 namespace kreisel {
 
-/// A frame whose pose is a function of time that the user writes; velocity and acceleration are its
+/// A frame whose pose is a function of time that the user writes. Velocity and acceleration are its
 /// exact derivatives (forward differentiation, no difference quotient).
 ///
-/// The function is called with a number type T of its own choosing by the library and returns a
-/// Pose<T>, rotation G to I and place of G's origin on I's axes:
+/// The library calls the function with a number type T and expects a Pose<T>, rotation G to I and
+/// position of G's origin on I's axes:
 ///
 ///   auto rolling = posed<Ship, Earth>([](const auto& t) {
 ///     using std::sin;
@@ -23,7 +23,7 @@ namespace kreisel {
 ///     return Pose<T>{YawPitchRoll<T>{T(0), T(0), roll}.rotation(), Vector3<T>(5 * t, T(0), T(0))};
 ///   });
 ///
-/// Error  : that of the user's formula; of u and ou 4u * sum of |terms| more
+/// Error  : the error of the user's formula; u and ou 4u * sum of |terms| more
 template <class Function, class G = Guide, class I = Inertial, class S = double>
 class PosedFrame {
   using First = Eigen::AutoDiffScalar<Eigen::Matrix<S, 1, 1>>;
@@ -32,7 +32,7 @@ class PosedFrame {
  public:
   explicit PosedFrame(Function pose) : pose_(std::move(pose)) {}
 
-  /// The function as it was given.
+  /// The user's function.
   [[nodiscard]] const Function& function() const { return pose_; }
 
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
@@ -49,7 +49,7 @@ class PosedFrame {
     const auto second = [](const Second& x) { return x.derivatives()[0].derivatives()[0]; };
     const Matrix3<S> R = pose.rotation.unaryExpr(value);
     const Matrix3<S> to_guide = R.transpose();
-    // R^t R' = skew(u) and R^t R'' = skew(ou) + skew(u)^2, of which the last is symmetric.
+    // R^t R' = skew(u) and R^t R'' = skew(ou) + skew(u)^2, where skew(u)^2 is symmetric.
     const Vector3<S> u = skew_part(to_guide * pose.rotation.unaryExpr(first));
     const Vector3<S> du = skew_part(to_guide * pose.rotation.unaryExpr(second));
     const Vector3<S> v = to_guide * pose.translation.unaryExpr(first);
@@ -69,7 +69,7 @@ class PosedFrame {
   Function pose_;
 };
 
-/// The frame G whose pose in I is the function given.
+/// The frame G whose pose in I is the given function.
 template <class G = Guide, class I = Inertial, class S = double, class Function>
 [[nodiscard]] PosedFrame<Function, G, I, S> posed(Function pose) {
   return PosedFrame<Function, G, I, S>(std::move(pose));

@@ -10,17 +10,17 @@
 
 namespace kreisel {
 
-/// A function of time as a number: its coefficients in powers of (time - t)/h. Formulas that are
-/// written for any number type give the coefficients of what they compute.
+/// A truncated power series as a number type: a function of time by its coefficients in powers of
+/// (time - t)/h. A formula written for any number type then gives the coefficients of its result.
 ///
-/// What is not analytic is not there: no comparisons, no abs, min, max.
+/// Only analytic functions exist for it: no comparisons, no abs, min, max.
 ///
 /// Source : the recurrences of each function: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 ///          Differential Equations I, I.8
-/// Error  : of series summed up to values about 1 <= 100u   (tests/dynamics/guide/analytic.cpp)
+/// Error  : of series summed to values about 1 <= 100u   (tests/dynamics/guide/analytic.cpp)
 class PowerSeries {
  public:
-  /// A guide's u takes one derivative more than it has coefficients.
+  /// One order more than a scene's series, because a guide's u needs one derivative more.
   static constexpr int most_order = most_series_order + 1;
 
   PowerSeries(double constant = 0) {  // NOLINT: numbers are constants
@@ -28,7 +28,7 @@ class PowerSeries {
     (*this)[0] = constant;
   }
 
-  /// Time itself, about t, up to an order.
+  /// The time itself as a series about t, up to an order.
   [[nodiscard]] static PowerSeries time(double t, double h, int order) {
     PowerSeries result(t);
     result.order_ = order;
@@ -36,7 +36,7 @@ class PowerSeries {
     return result;
   }
 
-  /// That of order k; those above order() are 0.
+  /// The coefficient of order k; coefficients above order() are 0.
   [[nodiscard]] double operator[](int k) const { return coefficient_[zeros + k]; }
   [[nodiscard]] int order() const { return order_; }
 
@@ -57,8 +57,8 @@ class PowerSeries {
     if (b.order_ == 0) return {b[0] * a.coefficient_, a.order_};
     PowerSeries c;
     c.order_ = std::max(a.order_, b.order_);
-    // Four coefficients at a time; what is read before the first of b is 0. By two sums each, for what
-    // is added to one waits for what was added before.
+    // Four coefficients at a time; memory before the first coefficient of b is read as 0. Two sums
+    // for each coefficient, because an addition waits for the one before in the same sum.
     for (int k = 0; k <= c.order_; k += 4) {
       Eigen::Array4d even = Eigen::Array4d::Zero();
       Eigen::Array4d odd = Eigen::Array4d::Zero();
@@ -152,7 +152,8 @@ class PowerSeries {
     for (int i = 1; i <= bends; ++i) slope[i] = i * a[i];
     for (int k = 1; k <= a.order_; ++k) {
       double s_odd = 0, s_even = 0, c_odd = 0, c_even = 0;
-      // The last terms may be one too many: there the slope is 0, or the coefficient before the first.
+      // The last term may be one too many: there the slope is 0, or the coefficient before the
+      // first.
       for (int i = 1; i <= std::min(k, bends); i += 2) {
         s_odd += slope[i] * c[k - i];
         c_odd -= slope[i] * s[k - i];

@@ -12,7 +12,7 @@
 
 namespace kreisel {
 
-/// What gyros and accelerometers of a frame have logged, on the frame's own axes.
+/// A log of the gyros and accelerometers of a frame, on the frame's own axes.
 ///
 /// Units  : s, rad/s, m/s^2
 struct RatesLog {
@@ -34,31 +34,32 @@ namespace detail {
 
 }  // namespace detail
 
-/// What a log of rates does not tell: how the frame G stands and moves in I at its first time, and
-/// the gravity that its accelerations lack.
+/// The initial conditions that a log of rates does not contain: attitude and velocity of the frame
+/// G in I at the log's first time, and the gravity that is missing in its accelerations.
 ///
 /// Frame  : attitude G to I, the rest on I's axes
 struct RatesStart {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
   Vector3<double> velocity = Vector3<double>::Zero();  ///< of G's origin, which begins at I's
 
-  /// Added to what is logged. Accelerometers give the specific force f, and the acceleration is
-  /// f + gravity; of kinematic accelerations it is 0.
+  /// Added to the logged accelerations. Accelerometers give the specific force f, and the
+  /// acceleration is f + gravity. For kinematic accelerations it is 0.
   Vector3<double> gravity = Vector3<double>::Zero();
 };
 
-/// A frame whose angular velocity and acceleration were logged.
+/// A frame whose angular velocity and acceleration were logged (strapdown integration).
 ///
 ///   q' = q u / 2,   x'' = q f q^-1 + gravity
 ///
-/// A spline runs through the samples of u and f or smooths them, as TabulatedFrame does with poses.
-/// It is a polynomial between its knots, and there the equations are solved by the power series of
-/// q and x. What is integrated is so the motion that belongs to the spline; and angular velocity
-/// and acceleration are the spline itself, so that noise is not differentiated but integrated:
-/// noise e of u makes an attitude error of some e sqrt(h t).
+/// A spline runs through the samples of u and f or smooths them, as in TabulatedFrame. The spline
+/// is a polynomial between its knots, and there the equations are solved by the power series of q
+/// and x. The attitude and position are thus the exact motion for the spline.
 ///
-/// Error  : <= 1e-12 rad after 1e4 rad (tests/dynamics/guide/rates.cpp) and what the spline
-///          errs by, O(h^6) of u
+/// Angular velocity and acceleration are the spline itself, so noise is not differentiated but
+/// integrated: noise e of u causes an attitude error of about e sqrt(h t).
+///
+/// Error  : <= 1e-12 rad after 1e4 rad (tests/dynamics/guide/rates.cpp), plus the error of the
+///          spline, O(h^6) of u
 /// Throws : InvalidInput: under four samples, lengths that differ, a number that is not finite,
 ///          times that do not increase, an attitude whose norm is not 1 within 1 %, a turn of more
 ///          than 1e7 rad
@@ -104,18 +105,18 @@ class RatesFrame {
       if (!known) refuse("sample ", i + 1, ": not a finite number");
       if (i > 0 && !(log.times[i] > log.times[i - 1])) {
         refuse("sample ", i + 1, ", t = ", log.times[i],
-               " s: comes no later than the sample before, t = ", log.times[i - 1], " s");
+               " s: must be later than the sample before, t = ", log.times[i - 1], " s");
       }
     }
     if (!start.velocity.allFinite() || !start.gravity.allFinite()) {
-      refuse("its start is not finite");
+      refuse("the start must be finite");
     }
     if (!(std::abs(start.attitude.norm() - 1) <= 0.01)) {
-      refuse("its first attitude has norm ", start.attitude.norm(), ", not 1");
+      refuse("the first attitude has norm ", start.attitude.norm(), ", not 1");
     }
   }
 
-  /// The spline of u in the first three components and of f in the last three.
+  /// The spline with u in the first three components and f in the last three.
   [[nodiscard]] static PiecewisePose<double> fitted(const RatesLog& log, const LogSpline& how) {
     std::vector<PiecewisePose<double>::Components> values;
     for (std::size_t i = 0; i < log.times.size(); ++i) {
@@ -143,7 +144,7 @@ class RatesFrame {
         turn += c.template head<3>().norm() * power;
         power *= length;
       }
-      // The series of a quarter of a radian has 1e-17 behind its twelfth power.
+      // The series of a quarter of a radian has a remainder of 1e-17 after its twelfth power.
       const double parts = std::ceil(std::max(4 * turn, 1.0));
       pieces += parts;
       if (!(pieces < 1e8)) throw InvalidInput("log of rates: turns by more than 1e7 rad");
@@ -157,7 +158,7 @@ class RatesFrame {
     pose_.end_at(rates.end());
   }
 
-  /// The polynomials of u and f about a time so long after the begin of their piece.
+  /// The polynomials of u and f about a time that lies `by` after the begin of their piece.
   [[nodiscard]] static std::pair<Taylor, Taylor> shifted(const PiecewisePose<double>& rates,
                                                          std::size_t piece, Wide by) {
     Taylor u(degree + 1, Vector3<Wide>::Zero());

@@ -4,8 +4,8 @@
 
 namespace kreisel {
 
-/// A frame that rests in another: u = v = 0. Exact; all kinds at rest give the same numbers as this
-/// one (tests/dynamics/rigid/fixed_point_body.cpp).
+/// A frame at rest in another: u = v = 0. Exact; all guide kinds at rest give the same numbers
+/// (tests/dynamics/rigid/fixed_point_body.cpp).
 template <class G = Guide, class I = Inertial, class S = double>
 struct RestingFrame {
   Displacement<I, G, S> X = {};  ///< where it rests
@@ -17,7 +17,7 @@ struct RestingFrame {
 
 namespace detail {
 
-/// Whether a guide is a RestingFrame.
+/// True if a guide is a RestingFrame.
 template <class M>
 inline constexpr bool is_resting = false;
 template <class G, class I, class S>

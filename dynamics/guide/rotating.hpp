@@ -7,8 +7,8 @@
 
 namespace kreisel {
 
-/// A frame with constant angular velocity, whose origin has an inertial acceleration constant on
-/// the frame's own axes: a turntable on a vehicle that brakes, a thrusting spinner.
+/// A frame with constant angular velocity whose origin has a constant inertial acceleration on the
+/// frame's own axes: a turntable on a vehicle that brakes, a thrusting spinner.
 ///
 ///   R(t) = R(0) exp(u t),   x(t) = x(0) + v(0) t + R(0) t^2 J(u t) a
 ///
@@ -30,7 +30,7 @@ struct RotatingFrame {
     const auto u = components(angular_velocity);
     const auto a = components(origin_acceleration);
     const auto w = t * u;
-    // Its translation: the integral of exp(u s) a.
+    // The translation of the exponential is the integral of exp(u s) a.
     const Pose<S> turn = exp(Motor<S>{detail::vector<S>(w), detail::vector<S>(t * a)});
     const auto v = rotated_back(
         detail::Rotation<S>::from(turn.rotation),

@@ -13,11 +13,12 @@
 
 namespace kreisel {
 
-/// Of Taylor series the greatest order that is asked for.
+/// The greatest order of Taylor series that is used.
 inline constexpr int most_series_order = 24;
 
-/// What a body at a guide's origin feels of its motion, on guide axes: coefficients in powers of
-/// (time - t)/h of the angular velocity u, and of gravity less the origin's inertial acceleration.
+/// The angular velocity and apparent gravity at a guide's origin, on guide axes: coefficients in
+/// powers of (time - t)/h of the angular velocity u, and of gravity less the origin's inertial
+/// acceleration.
 ///
 /// Units  : rad/s, m/s^2
 struct GuideSeries {
@@ -27,8 +28,9 @@ struct GuideSeries {
   Coefficients g = {};
 };
 
-/// A guide whose motion is analytic: it gives the coefficients up to `order` at t, for the uniform
-/// gravity g on inertial axes. None of u beyond `order` is asked for, and of g none from there on.
+/// A guide whose motion is analytic. It returns the coefficients up to `order` at t, for the
+/// uniform gravity g on inertial axes. Needed are the coefficients of u up to `order` and those of
+/// g below `order`.
 template <class M>
 concept AnalyticGuide = requires(const M& guide, double t, const detail::Components<double>& g) {
   { guide.series(t, t, 0, g) } -> std::same_as<GuideSeries>;
@@ -36,8 +38,8 @@ concept AnalyticGuide = requires(const M& guide, double t, const detail::Compone
 
 namespace detail {
 
-/// How far a series to order n carries, in units of its time: its last two terms are then 1e-17 of
-/// the first.
+/// The reach of a series of order n, in units of its time: the time at which its last two terms are
+/// 1e-17 of the first.
 [[nodiscard]] inline double reached(const GuideSeries::Coefficients& c, int n) {
   const auto size = [&c](int k) {
     const Components<double>& a = c[std::size_t(k)];
@@ -50,8 +52,8 @@ namespace detail {
   return reach;
 }
 
-/// The series up to `order` from another point on, `by` units of time later, in units of time that
-/// are `unit` of the old ones. By Horner's scheme.
+/// The series up to `order` about another point, `by` units of time later, in a unit of time that
+/// is `unit` times the old one. By Horner's scheme.
 [[nodiscard]] inline GuideSeries shifted(const GuideSeries& s, double by, double unit, int order) {
   using Six = Eigen::Array<double, 6, 1>;
   std::array<Six, most_series_order + 1> c;

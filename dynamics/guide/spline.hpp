@@ -12,19 +12,19 @@
 
 namespace kreisel::detail {
 
-/// The spline of odd degree p through given components at strictly increasing times, in p - 1
-/// continuous derivatives; its knots are the times but for (p - 1)/2 inner ones at either end (not
-/// a knot), so that no derivative has to be guessed there. Spacing may be uneven.
+/// The spline of odd degree p through given components at strictly increasing times, with p - 1
+/// continuous derivatives. Its knots are the times except (p - 1)/2 inner ones at either end
+/// (not-a-knot), so that no derivative has to be guessed there. Spacing may be uneven.
 ///
-/// With a knot at every m-th sample only it smooths: of all splines on these knots it is the one
-/// with the least sum of squared distances from the samples. Noise e of the samples then comes out
-/// as some e/sqrt(m) in the value and e/(sqrt(m) (m h)^k) in the k-th derivative.
+/// With a knot only at every m-th sample the spline smooths. Of all splines on these knots it has
+/// the least sum of squared distances from the samples. Noise e of the samples then causes about
+/// e/sqrt(m) in the value and e/(sqrt(m) (m h)^k) in the k-th derivative.
 ///
 /// Source : C. de Boor, A Practical Guide to Splines: the collocation matrix in B-splines is banded
-///          and totally positive, so elimination needs no pivots; least squares by Givens rotations
-///          row by row, which do not square its condition
+///          and totally positive, so elimination needs no pivots. Least squares by Givens rotations
+///          row by row, which do not square the condition number
 /// Cost   : O(n p^2)
-/// Error  : O(h^(p+1)) of the value, a power less for each derivative, h the spacing of the knots
+/// Error  : O(h^(p+1)) of the value, one power less for each derivative, h the spacing of the knots
 template <class S>
 class SplineInterpolation {
   using Components = typename PiecewisePose<S>::Components;
@@ -37,7 +37,7 @@ class SplineInterpolation {
         origin_(times.front()),
         first_value_(values.front()),
         points_(std::move(values)) {
-    // What is interpolated is the distance from the first value: what rests then rests exactly.
+    // The distance from the first value is interpolated, so a motion at rest stays exactly at rest.
     for (Components& point : points_) point -= first_value_;
     std::vector<S> x(n_);
     std::transform(times.begin(), times.end(), x.begin(),
@@ -50,7 +50,7 @@ class SplineInterpolation {
     }
   }
 
-  /// The same spline by powers of time in each piece.
+  /// The same spline as polynomials of time, piece by piece.
   [[nodiscard]] PiecewisePose<S> pieces(const std::string& name) const {
     PiecewisePose<S> result(name, static_cast<int>(p_));
     for (std::size_t k = p_; k < n_; ++k) {
@@ -70,11 +70,11 @@ class SplineInterpolation {
     return first_value_ + sum;
   }
 
-  /// The number of control points, which is that of the values that it can run through.
+  /// The number of control points, equal to the number of values that the spline can interpolate.
   [[nodiscard]] std::size_t controls() const { return n_; }
 
-  /// The first four components of this spline with the last three of another, which begins and ends
-  /// with it; both of one degree.
+  /// The first four components of this spline with the last three of another spline of the same
+  /// degree, begin and end.
   [[nodiscard]] PiecewisePose<S> pieces_with(const SplineInterpolation& other,
                                              const std::string& name) const {
     PiecewisePose<S> result(name, static_cast<int>(p_));
@@ -118,14 +118,14 @@ class SplineInterpolation {
     return value;
   }
 
-  /// The span k with knots[k] <= x < knots[k+1]; the last one holds its right end too.
+  /// The span k with knots[k] <= x < knots[k+1]; the last span includes its right end.
   [[nodiscard]] std::size_t span(const S& x) const {
     const auto first = knots_.begin() + static_cast<std::ptrdiff_t>(p_) + 1;
     const auto last = knots_.begin() + static_cast<std::ptrdiff_t>(n_);
     return static_cast<std::size_t>(std::upper_bound(first, last, x) - knots_.begin()) - 1;
   }
 
-  /// The knots, and in n_ the number of control points.
+  /// Sets the knots, and n_ to the number of control points.
   void place_knots(const std::vector<S>& x, std::size_t every) {
     const std::size_t n = x.size();
     const std::size_t pieces = (n - 1) / every;
@@ -138,7 +138,7 @@ class SplineInterpolation {
     n_ = knots_.size() - p_ - 1;
   }
 
-  /// Replaces the values in points_ by the control points whose spline is next to the values.
+  /// Replaces the values in points_ by the control points of the spline nearest to the values.
   void fit_control_points(const std::vector<S>& x) {
     using std::sqrt;
     const std::size_t width = p_ + 1;
@@ -204,8 +204,8 @@ class SplineInterpolation {
     }
   }
 
-  /// Value and derivatives over factorials at x in the span k: the control points of each
-  /// derivative are differences of those before, evaluated by de Boor's scheme.
+  /// Value and derivatives over factorials at x in the span k. The control points of each
+  /// derivative are differences of those of the derivative below, evaluated by de Boor's scheme.
   [[nodiscard]] std::vector<Components> taylor(std::size_t k, const S& x) const {
     std::vector<Components> control(points_.begin() + static_cast<std::ptrdiff_t>(k - p_),
                                     points_.begin() + static_cast<std::ptrdiff_t>(k) + 1);

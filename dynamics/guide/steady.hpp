@@ -4,14 +4,14 @@
 
 namespace kreisel {
 
-/// A frame in steady screw motion, its velocity motor constant: fixed on a turntable, on the earth,
-/// on a circular orbit.
+/// A frame in steady screw motion, with constant velocity motor (twist): fixed on a turntable, on
+/// the earth, on a circular orbit.
 ///
 ///   X(t) = exp(V t) X(0),   V = (u; v) written in I;  on G's axes V is constant too, so oF = 0.
 ///
-/// Source : the exponential map of SE(3); paper 002 section 5 has the earth so
+/// Source : the exponential map of SE(3); the earth in paper 002 section 5
 /// Units  : metre, rad/s, m/s, second
-/// Error  : <= 32u of |u| and lengths up to some turns     (tests/dynamics/guide/kinds.cpp)
+/// Error  : <= 32u of |u| and lengths up to a few turns     (tests/dynamics/guide/kinds.cpp)
 template <class G = Guide, class I = Inertial, class S = double>
 struct SteadyFrame {
   Displacement<I, G, S> X = {};  ///< at t = 0

@@ -12,7 +12,7 @@
 
 namespace kreisel {
 
-/// A motion as a log has it: times, attitudes (G to I) and places of G's origin on I's axes.
+/// A logged motion: times, attitudes (G to I) and positions of G's origin on I's axes.
 template <class S = double>
 struct MotionLog {
   std::vector<S> times;
@@ -20,20 +20,20 @@ struct MotionLog {
   std::vector<Vector3<S>> positions;  ///< empty: the origin rests
 };
 
-/// How a spline follows a log: its degree, and of how many samples one is a knot. 1 runs through the
-/// samples, more smooths their noise; see smoothing() in log_noise.hpp.
+/// The spline that follows a log: its degree, and the number of samples per knot. One sample per
+/// knot interpolates; more samples per knot smooth their noise. See smoothing() in log_noise.hpp.
 struct LogSpline {
   std::size_t degree = 5;  ///< odd; less where the log is too short for it
   std::size_t attitude_every = 1;
   std::size_t position_every = 1;
 
-  /// The degree for so many samples.
+  /// The degree for this number of samples.
   [[nodiscard]] std::size_t degree_for(std::size_t samples) const {
     return std::min(degree, samples < 6 ? 3 : (samples - 2) / 2 * 2 + 1);
   }
 };
 
-/// How far an interpolated motion may be off, the greatest over the table.
+/// The greatest error of an interpolated motion over the table.
 ///
 /// Units  : radian, rad/s, rad/s^2; metre, m/s, m/s^2
 template <class S = double>
@@ -48,22 +48,24 @@ struct InterpolationError {
 
 /// A frame whose motion was logged.
 ///
-/// A quintic spline (four continuous derivatives; cubic where there are less than six samples) runs
-/// through the samples, through the four components of the quaternion as through those of the
-/// position. The quaternion is then divided by its norm, which differs from 1 by the interpolation
-/// error only. So made, the motion does not depend on the choice of either frame's axes, and
-/// angular velocity and acceleration are exact derivatives of the attitude. Samples may be unevenly
-/// spaced; q and -q count as the same attitude.
+/// A quintic spline (four continuous derivatives; cubic for less than six samples) runs through the
+/// samples, both of the four components of the quaternion and of the position. The quaternion is
+/// then divided by its norm, which differs from 1 only by the interpolation error.
 ///
-/// By default the spline does not smooth: noise e of the samples comes out as about e/h in the velocity
-/// and e/h^2 in the acceleration, and the error estimate shows it. A LogSpline with fewer knots does.
+/// The motion does therefore not depend on the choice of either frame's axes, and angular velocity
+/// and acceleration are exact derivatives of the attitude. Samples may be unevenly spaced; q and -q
+/// count as the same attitude.
+///
+/// By default the spline does not smooth: noise e of the samples causes about e/h in the velocity
+/// and e/h^2 in the acceleration, and the error estimate contains both. A LogSpline with fewer
+/// knots smooths.
 ///
 /// Error  : O(h^6) attitude, O(h^5) angular velocity, O(h^4) angular acceleration, h the spacing;
 ///          interpolation_error() estimates them
 /// Throws : InvalidInput: under four samples, lengths that differ, a number that is not finite,
-///          times that do not increase, a quaternion whose norm is not 1 within 1 %, a turn of more
-///          than 90 degrees from one sample to the next (the motion between them is anybody's
-///          guess)
+///          times that do not increase, a quaternion whose norm is not 1 within 1 %, a rotation of
+///          more than 90 degrees from one sample to the next (the motion between them is then
+///          unknown)
 template <class G = Guide, class I = Inertial, class S = double>
 class TabulatedFrame {
  public:
@@ -74,7 +76,7 @@ class TabulatedFrame {
     return frame_motion<G, I>(pose_(t));
   }
 
-  /// The spline itself, whose quaternion is not quite of norm 1.
+  /// The spline itself; the norm of its quaternion is not exactly 1.
   [[nodiscard]] PoseDerivatives<S> derivatives(const S& t) const { return pose_(t); }
 
   [[nodiscard]] const S& begin() const { return pose_.begin(); }
@@ -83,18 +85,17 @@ class TabulatedFrame {
   /// The log with unit quaternions that do not change sign from one sample to the next.
   [[nodiscard]] const MotionLog<S>& samples() const { return log_; }
 
-  /// What the interpolation adds to the error of the samples, estimated from the samples
+  /// The error that interpolation adds to the error of the samples, estimated from the samples
   /// themselves.
   ///
-  /// The motion is interpolated again from every second and every fourth sample. The distance from
-  /// the first, divided by the factor by which it shrank from the second, times 1.6 to be on the
-  /// safe side, is the estimate: for smooth motion and fine sampling the factor is near 2^6, 2^5,
-  /// 2^4; for noise near 1. With under 24 samples the distance from the cubic spline stands in,
-  /// which is too careful.
+  /// The motion is interpolated again from every second and every fourth sample. The ratio of the
+  /// two distances from the spline is the factor of convergence: near 2^6, 2^5, 2^4 for smooth
+  /// motion and fine sampling, near 1 for noise. The estimate is the first distance divided by this
+  /// factor, times a safety factor of 1.6. For less than 24 samples it is the distance from the
+  /// cubic spline, which is too careful.
   ///
-  /// Error  : estimate / true error 1.5 to 2.8 where the log is fine enough for it to be under
-  ///          1e-8, 1 to 15 where it is coarse
-  ///          (tests/dynamics/guide/tabulated.cpp)
+  /// Error  : estimate / true error 1.5 to 2.8 where the log is fine enough for an estimate under
+  ///          1e-8, 1 to 15 where the log is coarse (tests/dynamics/guide/tabulated.cpp)
   [[nodiscard]] InterpolationError<S> interpolation_error() const {
     using std::max;
     const std::size_t n = log_.times.size();
@@ -202,15 +203,15 @@ class TabulatedFrame {
           log.times[i] - log.times[i] == S(0) && finite(q.coeffs()) && finite(log.positions[i]);
       if (!known) refuse(i, "not a finite number");
       if (i > 0 && !(log.times[i] > log.times[i - 1])) {
-        refuse(i, "comes no later than the sample before, t = ", log.times[i - 1], " s");
+        refuse(i, "must be later than the sample before, t = ", log.times[i - 1], " s");
       }
       const S norm = q.norm();
-      if (!(abs(norm - S(1)) <= S(0.01))) refuse(i, "its quaternion has norm ", norm, ", not 1");
+      if (!(abs(norm - S(1)) <= S(0.01))) refuse(i, "the quaternion has norm ", norm, ", not 1");
       q.coeffs() /= norm;
       if (i == 0) continue;
       const S cosine = q.dot(log.attitudes[i - 1]);
       if (abs(cosine) < S(0.70710678118654752)) {
-        refuse(i, "turned by more than 90 degrees since the sample before: too coarse a log");
+        refuse(i, "rotated by more than 90 degrees since the sample before: the log is too coarse");
       }
       if (cosine < S(0)) q.coeffs() = -q.coeffs();
     }

@@ -6,7 +6,7 @@
 
 namespace kreisel {
 
-/// Where a point is, and how it moves, at one moment.
+/// The position and motion of a point at one time.
 ///
 /// Units  : metre, m/s, m/s^2
 template <class S = double>
@@ -16,8 +16,8 @@ struct Translation {
   Vector3<S> acceleration = Vector3<S>::Zero();
 };
 
-/// A frame that moves without turning, its axes parallel to those of the other: a lift, a shaker, a
-/// sledge. Its type says so, and scenes on it compute no term with u or ou.
+/// A frame that moves without rotating, its axes parallel to those of the other frame: a lift, a
+/// shaker, a sledge. The type declares u = ou = 0, so scenes on it compute no term with u or ou.
 ///
 ///   const TranslatingFrame lift([](double t) {
 ///     return Translation<>{{0, 0, 1 - std::cos(t)}, {0, 0, std::sin(t)}, {0, 0, std::cos(t)}};
@@ -25,7 +25,7 @@ struct Translation {
 ///
 /// `Path` is a function of time that returns a Translation, on I's axes.
 ///
-/// Error  : none but that of the path, whose velocity and acceleration are taken as they are
+/// Error  : the error of the path, whose velocity and acceleration are taken as given
 template <class Path, class G = Guide, class I = Inertial, class S = double>
 class TranslatingFrame {
  public:

@@ -8,7 +8,7 @@
 
 namespace kreisel {
 
-/// The rate of the momentum T V that an observer O sees who watches the body move with V_rel:
+/// The rate of the momentum T V for an observer O against whom the body moves with V_rel:
 ///
 ///   (d/dt)_O (T V) = [V_rel (T V)] - T [V_rel V] + T (d/dt)_O V
 ///

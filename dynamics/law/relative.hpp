@@ -8,7 +8,8 @@
 
 namespace kreisel {
 
-/// The left side of the equation of motion, by cause. Their sum is the force motor P on the body.
+/// The left side of the equation of motion, by cause. The sum of the parts is the force motor
+/// (wrench) P on the body.
 ///
 /// Source : paper 002 section 2, Anteil der Relativbewegung, der Fuehrungsbewegung, Coriolisanteil
 /// Units  : (N; N m)
@@ -23,11 +24,11 @@ struct ForceParts {
 
 namespace detail {
 
-/// [A (T B)] up to terms that cancel against [B (T A)]: the sum of both, and [A (T A)], come out
-/// exact.
+/// [A (T B)] up to terms that cancel against [B (T A)]. The sum of both, and [A (T A)], are exact.
 ///
-/// Left out is v_A x m v_B, and u x (s x v) + v x (u x s) is written s x (u x v) (Jacobi). On the
-/// earth, v = 465 m/s, rounding in v x m v = 0 would be a torque of 1e-11 N m on a kilogram.
+/// The term v_A x m v_B is left out, and u x (s x v) + v x (u x s) is written s x (u x v) (Jacobi).
+/// On the earth, v = 465 m/s, the rounding error of v x m v = 0 would be a torque of 1e-11 N m for
+/// a kilogram.
 template <class S>
 [[nodiscard]] Motor<S> gyroscopic(const Motor<S>& A, const Inertia<S>& T, const Motor<S>& B) {
   const Vector3<S>& u = A.resultant;
@@ -39,10 +40,10 @@ template <class S>
 template <class Observer, class... Frames>
 inline constexpr bool is_one_of = (std::is_same_v<Observer, Frames> || ...);
 
-/// The factor k of T [F V'] in the form of the equation of motion with these observers.
+/// The factor k of T [F V'] in the form of the equation of motion for these observers.
 ///
-/// Form (2) has none. Another observer of V' or F changes the derivative by a multiple of [F V'],
-/// (3b) and (4b), and this makes up for it.
+/// Form (2) has no such term. Another observer of V' or F changes the derivative by a multiple of
+/// [F V'], (3b) and (4b), and the term with k compensates the change.
 template <class OfV, class OfF, class B, class I>
 inline constexpr int extra_coriolis = (std::is_same_v<OfF, B> ? 0 : 1) -
                                       (std::is_same_v<OfV, I> ? 1 : 0);
@@ -62,14 +63,15 @@ inline constexpr int extra_coriolis = (std::is_same_v<OfF, B> ? 0 : 1) -
 ///            guide        0         1  (8)     1
 ///            inertial    -1         0          0  (6)
 ///
-/// The total is the same in all nine; which part carries T [F V'] is the choice of the form. Only
-/// with dF seen from the guide is the guide part what a body at rest in the guide would feel.
+/// The total is the same in all nine forms. The form decides which part contains T [F V']. Only
+/// with dF seen from the guide is the guide part the force that a body at rest in the guide would
+/// feel.
 ///
-/// Source : paper 002 (2), (5), (6), (8); the four forms the paper does not print were proved
+/// Source : paper 002 (2), (5), (6), (8); the four forms that the paper does not print were proved
 /// Frame  : B body, G guide, I inertial, each any tag; everything written in E, usually the body
 /// Error  : <= 20u * sum of |terms|; against 25-digit references <= 1e-14 (tests/dynamics/law)
-/// Cost   : 2 (k = 0) or 3 products of tensor and motor, 4 of 4 cross products, k != 0: a motor
-///          product
+/// Cost   : 2 (k = 0) or 3 products of tensor and motor, 4 of 4 cross products; for k != 0 one
+///          motor product more
 template <class E, class S, class B, class G, class I, class E1, class E2, class OfV, class OfF,
           class DV, class DF>
 [[nodiscard]] auto equation_of_motion(const InertiaTensor<E, S>& T,
@@ -97,7 +99,8 @@ template <class E, class S, class B, class G, class I, class E1, class E2, class
   }
 }
 
-/// The other way round: the rate of V_rel, seen from Observer, that the force P brings about.
+/// The rate of V_rel, seen from Observer, under the force P: the equation of motion solved for the
+/// acceleration.
 ///
 /// Source : paper 002 (2), (5), (6), (8) solved for the derivative of V'
 /// Throws : ComputationFailed when the body's inertia is singular

@@ -5,17 +5,18 @@
 #include <motor/frame.hpp>
 #include <motor/rate.hpp>
 
-/// The law of motion in vectors, term by term as in paper 002 sections 3 and 4 (corrected). The
-/// motor forms of relative.hpp and momentum.hpp say the same with fewer operations: these are for
-/// reading, for teaching, and as the second way to the same number.
+/// The law of motion in vectors, term by term as in paper 002 sections 3 and 4 (corrected). These
+/// forms are for reading, for teaching, and as a second way to the same number. The motor forms of
+/// relative.hpp and momentum.hpp state the same law with fewer operations.
 ///
-/// Letters: u', v' the relative motor at the body's origin O'; u, v the guide motor at O', v that
-/// of the point of the guide frame that coincides with O'; r = r_s the centre of mass; T the tensor
-/// about O'. A mark before a letter is the observer: * body, o guide. All on body axes.
+/// Letters: u', v' the relative motor at the body's origin O'; u, v the guide motor at O', v the
+/// velocity of the point of the guide frame that coincides with O'; r = r_s the centre of mass; T
+/// the tensor about O'. A mark before a letter is the observer: * body, o guide. All on body axes.
 
 namespace kreisel {
 
-/// (18): both velocities differentiated in the body, where T (true moment) and P (plain) agree.
+/// (18): both velocities differentiated in the body, where T (true moment) and P (plain) are the
+/// same.
 ///
 ///   P = m{*v' + *u' x r + u' x v' + u' x (u' x r)} + m{*v + *u x r + u x v + u x (u x r)}
 ///     + m{u' x v + u x v' + u' x (u x r) + u x (u' x r)}
@@ -47,7 +48,7 @@ template <class B, class G, class I, class S>
   return {{part(du1, dv1, u1, v1)}, {part(du, dv, u, v)}, {coriolis}};
 }
 
-/// (19): the guide velocity differentiated in the guide, ov in the sense T (guide-fixed point).
+/// (19): the guide velocity differentiated in the guide, ov as true moment T (guide-fixed point).
 ///
 ///   P = m{*v' + *u' x r + u' x v' + u' x (u' x r)} + m{ov + ou x r + u x v + u x (u x r)}
 ///     + 2m{u x v' + u x (u' x r)}
@@ -67,7 +68,7 @@ template <class B, class G, class I, class S>
   const Vector3<S>& u1 = V_rel.value.resultant;
   const Vector3<S>& v1 = V_rel.value.moment;
   const Vector3<S>& u = F.value.resultant;
-  // The relative and guide parts read as in (18), only the observer of F has changed.
+  // The relative and guide parts are those of (18); only the observer of F has changed.
   ForceParts<B, S> parts =
       vector_form_18(T, V_rel, F, dV_rel, Rate<B, Velocity<G, I, B, S>>{dF.value});
   parts.coriolis.value = {S(2) * (m * u.cross(v1) + u.cross(u1.cross(mr))),
@@ -76,7 +77,7 @@ template <class B, class G, class I, class S>
   return parts;
 }
 
-/// (20): in momenta about the moving O', plainly differentiated in the guide.
+/// (20): momenta about the moving O', plainly differentiated in the guide.
 ///
 ///   P = oG + oG_f + u x (G + G_f)
 ///   M = oJ + oJ_f + u x (J + J_f) + (v + v') x (G + G_f)
@@ -99,8 +100,9 @@ template <class B, class G, class I, class S>
 
 /// (21), a particle:  P = m{ov' + ov_0 + u x v_0 + ou x r + u x (u x r) + 2 u x v'}.
 ///
-/// r, v' and ov' are the particle's place, velocity and acceleration in the guide; u, ou, v_0, ov_0
-/// the guide's angular velocity and the velocity of its origin, differentiated in the guide.
+/// r, v' and ov' are the particle's position, velocity and acceleration in the guide. u, ou, v_0,
+/// ov_0 are the guide's angular velocity and the velocity of its origin, with their derivatives in
+/// the guide.
 ///
 /// Source : paper 002 (21)
 /// Frame  : all on the axes of the guide
@@ -131,7 +133,7 @@ template <class G, class I, class S>
            mr.cross(dv + u.cross(v)) + T.value.tensor * du + u.cross(T.value.tensor * u)}};
 }
 
-/// Euler's equations, a body held at its origin or reduced at its centre of mass:
+/// Euler's equations of a body with a fixed origin, or reduced at its centre of mass:
 ///
 ///   M = T du + u x T u
 ///

@@ -10,7 +10,8 @@
 #include <motor/error.hpp>
 #include <motor/lanes.hpp>
 
-/// Scenes of double in numbers that calculate like it: dual numbers (Eigen's AutoDiffScalar), packs.
+/// The functions that run a scene of doubles on other numbers: dual numbers (Eigen's
+/// AutoDiffScalar) and packs.
 
 namespace kreisel::detail {
 
@@ -22,11 +23,11 @@ template <class S>
           {S(t.xx), S(t.yy), S(t.zz), S(t.xy), S(t.xz), S(t.yz)}};
 }
 
-/// The derivative of a function of time by differences of step h: central ones, or to one side at the
-/// end of the time for which the function is known. They err by up to h^4 / 5 of the fifth derivative
-/// and by rounding, u/h of the value.
+/// The derivative of a function of time by differences of step h. The differences are central, or
+/// one-sided at the end of the interval in which the function is defined. Their error is up to h^4
+/// / 5 of the fifth derivative, plus rounding, u/h of the value.
 ///
-/// Throws : as the function does, where it is known to neither side
+/// Throws : the function's exception, where it is defined on neither side
 template <class F>
 [[nodiscard]] auto slope_in_time(const F& f, double t) {
   using Value = std::decay_t<decltype(f(t))>;
@@ -49,9 +50,9 @@ template <class F>
   return ahead(-h);
 }
 
-/// How the guide moves at a dual time. Of a guide that takes doubles alone pose and velocity are
-/// exact to first order; it does not know the rates of ou and of the acceleration of its origin on
-/// its own axes, which are differences where the time has a derivative.
+/// The motion of a guide at a dual time. If the guide takes only doubles, pose and velocity are
+/// exact to first order. The rates of ou and of the acceleration of the origin, on the guide's own
+/// axes, are then differences if the time has a derivative.
 template <class S, class M>
 [[nodiscard]] FrameMotion<Guide, Inertial, S> guide_at(const M& guide, const S& t) {
   if constexpr (GuideMotion<M, Guide, Inertial, S>) {
@@ -87,7 +88,7 @@ template <class S, class M>
   }
 }
 
-/// What a linear map of doubles makes of a vector of other numbers.
+/// The linear map of doubles `map`, applied to a vector of other numbers.
 template <class Map, class S, int n>
 [[nodiscard]] Eigen::Matrix<S, n, 1> mapped(const Map& map, const Eigen::Matrix<S, n, 1>& x) {
   using Numbers = Eigen::Matrix<double, n, 1>;

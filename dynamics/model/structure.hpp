@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <type_traits>
 
@@ -15,32 +16,34 @@
 
 namespace kreisel {
 
-/// Quantities of a body and its guide of which components may vanish by structure.
+// Quantities of a body and its guide whose components may vanish by structure.
+
 /// Mass times centre of mass, on body axes from O'.
 struct FirstMoment {
   static constexpr const char* name = "FirstMoment";
 };
-/// About O' of a FixedPointBody, about its centre of mass of a FreeBody.
+/// Products of inertia: about O' of a FixedPointBody, about the centre of mass of a FreeBody.
 struct ProductsOfInertia {
   static constexpr const char* name = "ProductsOfInertia";
 };
-/// u of the guide, on guide axes.
+/// Angular velocity u of the guide, on guide axes.
 struct GuideRate {
   static constexpr const char* name = "GuideRate";
 };
-/// g' = g - a of what rests in the guide at O', on guide axes.
+/// g' = g - a of a point that rests in the guide at O', on guide axes.
 struct ApparentGravity {
   static constexpr const char* name = "ApparentGravity";
 };
 
-/// Of a FreeBody's place on a guide that turns: m u x (u x r). It does not vanish, and Without<> of it
-/// is not held against numbers: prune() says how little it does.
+/// The centrifugal force m u x (u x r) of a FreeBody at r on a rotating guide. It does not vanish,
+/// and Without<> of it is not checked against numbers: prune() reports its effect.
 struct CentrifugalForce {
   static constexpr const char* name = "CentrifugalForce";
 };
 
-/// What more prune() may leave out: how u and acceleration of a guide vary about their means; of a
-/// Cardan gyro A_1 - B_1 and the moments of inertia of both rings; all loads of the kind L.
+/// Quantities that only prune() may leave out: the variation of the guide's u and acceleration
+/// about their means; A_1 - B_1 and the moments of inertia of both rings of a Cardan gyro; all
+/// loads of the type L.
 struct GuideUnsteadiness {
   static constexpr const char* name = "GuideUnsteadiness";
 };
@@ -57,14 +60,15 @@ struct LoadOf {
 
 enum class Axis { x, y, z };
 
-/// Says in a scene's type that a quantity's components about these axes vanish (without axes: all
-/// of it). What they would have multiplied is then not in the program.
+/// Declares in a scene's type that a quantity's components about these axes vanish (without axes:
+/// the whole quantity). Terms multiplied by them are then not compiled.
 ///
 ///   FixedPointBody(T, point, guide, gravity, Without<FirstMoment, Axis::x, Axis::y>{},
 ///            Without<ProductsOfInertia>{})
 ///
-/// It stands among the loads, and is one that does nothing. The scene holds it against its numbers
-/// when it is built. GuideRate and ApparentGravity can be known only on a guide in steady motion.
+/// Without<> is passed among the loads, as a load without a force. The constructor of the scene
+/// checks it against the scene's numbers. GuideRate and ApparentGravity can be checked only on a
+/// guide in steady motion.
 template <class Quantity, Axis... axes>
 struct Without {
   static constexpr bool ignores_spin = true;
@@ -83,7 +87,7 @@ template <class Quantity, Axis... axes, Axis axis>
 inline constexpr bool says_without<Without<Quantity, axes...>, Quantity, axis> =
     sizeof...(axes) == 0 || ((axes == axis) || ...);
 
-/// Whether a component vanishes by what the scene's parts say.
+/// True if one of the scene's parts declares that a component vanishes.
 template <class Quantity, Axis axis, class... Parts>
 inline constexpr bool vanishes = (says_without<Parts, Quantity, axis> || ...);
 
@@ -92,7 +96,7 @@ using Kept = Components<std::conditional_t<vanishes<Quantity, Axis::x, Parts...>
                         std::conditional_t<vanishes<Quantity, Axis::y, Parts...>, StaticZero, N>,
                         std::conditional_t<vanishes<Quantity, Axis::z, Parts...>, StaticZero, N>>;
 
-/// A number, or nothing of it.
+/// The type of a number, or StaticZero.
 template <class T, class N>
 [[nodiscard]] T kept(const N& x) {
   if constexpr (is_static_zero<T>) {
@@ -102,7 +106,7 @@ template <class T, class N>
   }
 }
 
-/// A vector without the components that vanish.
+/// The vector without the components that vanish.
 template <class Quantity, class... Parts, class X, class Y, class Z>
 [[nodiscard]] auto without(const Components<X, Y, Z>& v) {
   using P = std::conditional_t<vanishes<Quantity, Axis::x, Parts...>, StaticZero, X>;
@@ -111,13 +115,15 @@ template <class Quantity, class... Parts, class X, class Y, class Z>
   return Components<P, Q, R>{kept<P>(v.x), kept<Q>(v.y), kept<R>(v.z)};
 }
 
-/// Throws : InvalidInput where a component that is said to vanish does not
+/// Throws : InvalidInput if a component that Without<> declares zero is not zero
 template <class Quantity, class... Parts>
 void check_vanishing(const Vector3<double>& v, const std::string& what) {
   const auto held = [&what](bool vanishing, double x, const char* axis) {
     if (vanishing && x != 0) {
-      throw InvalidInput(what + ": the component " + axis + " = " + std::to_string(x) +
-                         " is said to vanish");
+      std::ostringstream text;
+      text << what << ": Without<" << Quantity::name << "> was given, but the component " << axis
+           << " = " << x << " is not 0";
+      throw InvalidInput(text.str());
     }
   };
   held(vanishes<Quantity, Axis::x, Parts...>, v.x(), "x");
@@ -125,9 +131,9 @@ void check_vanishing(const Vector3<double>& v, const std::string& what) {
   held(vanishes<Quantity, Axis::z, Parts...>, v.z(), "z");
 }
 
-/// Why components of a quantity are not computed; empty if no part says so.
+/// The reason why components of a quantity are not computed; empty if no part declares them zero.
 template <class Quantity, class... Parts>
-[[nodiscard]] std::string said_of() {
+[[nodiscard]] std::string reason_for() {
   constexpr bool x = vanishes<Quantity, Axis::x, Parts...>;
   constexpr bool y = vanishes<Quantity, Axis::y, Parts...>;
   constexpr bool z = vanishes<Quantity, Axis::z, Parts...>;
@@ -140,7 +146,7 @@ template <class Quantity, class... Parts>
     if (z) text += " z";
     text += ", ";
   }
-  text += "said by Without<";
+  text += "declared by Without<";
   text += Quantity::name;
   text += '>';
   return text;
@@ -153,8 +159,8 @@ class PrincipalTensor {
   explicit PrincipalTensor(const Symmetric3<P>& T)
       : moments_{T.xx, T.yy, T.zz}, differences_{T.yy - T.zz, T.zz - T.xx, T.xx - T.yy} {}
 
-  /// -w x (Theta w). The differences come first: exact where two moments agree, so that a symmetric
-  /// body keeps its spin to the last bit.
+  /// -w x (Theta w). The differences of moments are formed first. They are exact where two moments
+  /// agree, so a symmetric body keeps its spin to the last bit.
   template <class N>
   [[nodiscard]] Components<N> gyroscopic_torque(const Components<N>& w) const {
     return {N(differences_.x * (w.y * w.z)), N(differences_.y * (w.z * w.x)),
@@ -163,7 +169,8 @@ class PrincipalTensor {
 
   [[nodiscard]] Symmetric3<P> tensor() const { return {moments_.x, moments_.y, moments_.z}; }
 
-  /// Theta^-1 M. By division: a rounded inverse would err always to the same side.
+  /// Theta^-1 M. By division, because a rounded inverse would always have its error to the same
+  /// side.
   template <class N>
   [[nodiscard]] Components<N> solve(const Components<N>& M) const {
     return {N(M.x / moments_.x), N(M.y / moments_.y), N(M.z / moments_.z)};
@@ -174,7 +181,7 @@ class PrincipalTensor {
   Components<P> differences_;
 };
 
-/// A tensor of inertia on any axes, with its factors  Theta = L D L^t.
+/// A tensor of inertia on arbitrary axes, with its factors  Theta = L D L^t.
 class GeneralTensor {
  public:
   explicit GeneralTensor(const Symmetric3<double>& T)
@@ -208,13 +215,14 @@ class GeneralTensor {
     return {a, b, c};
   }
 
-  /// Whether rounding of the tensor makes 1e4 times as much of the rates about some axis.
+  /// True if rounding of the tensor is amplified 1e4 times in the rates about some axis.
   [[nodiscard]] bool is_nearly_singular() const {
     const auto [least, greatest] = std::minmax({d_x_, d_y_, d_z_});
     return least < 1e-4 * greatest;
   }
 
-  /// The tensor with its entries moved by two last digits: one for them, one for their factors.
+  /// The tensor with its entries moved by two units in the last place: one for the entries, one for
+  /// their factors.
   [[nodiscard]] GeneralTensor perturbed_by_ulps() const {
     const Symmetric3<double>& T = tensor_;
     constexpr double up = 1 + 2 * std::numeric_limits<double>::epsilon();
@@ -233,13 +241,17 @@ inline constexpr bool principal = (std::is_same_v<Parts, Without<ProductsOfInert
 template <class... Parts>
 using TensorOf = std::conditional_t<principal<Parts...>, PrincipalTensor<>, GeneralTensor>;
 
-/// The tensor in the form that the parts ask for.
+/// The tensor in the form that the scene's parts ask for.
 ///
-/// Throws : InvalidInput where products of inertia are said to vanish and do not
+/// Throws : InvalidInput if Without<ProductsOfInertia> is given and a product of inertia is not 0
 template <class... Parts>
 [[nodiscard]] TensorOf<Parts...> tensor_of(const Symmetric3<double>& T, const std::string& what) {
   if (principal<Parts...> && !(T.xy == 0 && T.xz == 0 && T.yz == 0)) {
-    throw InvalidInput(what + ": a product of inertia is said to vanish and does not");
+    std::ostringstream text;
+    text << what
+         << ": Without<ProductsOfInertia> was given, but xy, xz, yz of the tensor = " << T.xy
+         << ", " << T.xz << ", " << T.yz << " kg m^2 are not 0";
+    throw InvalidInput(text.str());
   }
   return TensorOf<Parts...>(T);
 }

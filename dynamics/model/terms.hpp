@@ -9,7 +9,7 @@
 
 namespace kreisel {
 
-/// A term of a scene's equation of motion, and whether its field computes it.
+/// A term of a scene's equation of motion, and whether the scene's field computes it.
 struct Term {
   std::string part;  ///< relative, guide, Coriolis or load: the parts of equation_of_motion
   std::string name;  ///< its formula, in the letters of the scene's documentation
@@ -23,7 +23,7 @@ class Terms {
   void add(std::string part, std::string name, bool kept, std::string why) {
     list_.push_back({std::move(part), std::move(name), kept, std::move(why)});
   }
-  /// Kept, whatever the scene is.
+  /// Adds a term that is always kept.
   void add(std::string part, std::string name) { add(std::move(part), std::move(name), true, {}); }
 
   [[nodiscard]] auto begin() const { return list_.begin(); }
@@ -34,14 +34,14 @@ class Terms {
   std::vector<Term> list_;
 };
 
-/// What a scene's field computes and what its type, or what it found out when it was built, leaves
-/// out: said by the same constants and types that the field is compiled from.
+/// The terms that a scene's field computes and those that are left out, by type or by the numbers
+/// of the scene when it was built. The field is compiled from the same constants and types.
 ///
 ///   std::cout << terms(FixedPointBody(rod, {0, 0, 0}, RestingFrame<>{}, ViscousDrag<>{0.02}));
 ///
-/// A term that is kept may still be 0 in numbers: of those no type knows.
+/// A term that is kept may still be 0 in numbers that are not part of a type.
 ///
-/// Every scene has them; GyroPlatform of each of its linear equations.
+/// Every scene has terms; GyroPlatform has those of each of its linear equations.
 ///
 /// Source : the scenes' own equations, after paper 002 (5)
 template <class Scene>

@@ -451,7 +451,7 @@ class PendulumField {
     constexpr bool damped = !std::is_same_v<Damping, NoDamping>;
     const char* const at_rest = moves ? "" : "the guide rests, gravity straight down";
     const std::string of_products =
-        moves ? detail::said_of<ProductsOfInertia, Known...>() : std::string(at_rest);
+        moves ? detail::reason_for<ProductsOfInertia, Known...>() : std::string(at_rest);
     Terms list;
     list.add("relative", "Theta_C phi..");
     list.add("guide", "(Theta_B - Theta_A) of u x (u x r): in H, K", moves, at_rest);

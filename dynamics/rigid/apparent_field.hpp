@@ -403,7 +403,7 @@ struct ApparentTerms {
   static constexpr bool pulled = !decltype(Now::g)::static_zero;
 
   [[nodiscard]] static std::string of_turning() {
-    const std::string said = said_of<GuideRate, Loads...>();
+    const std::string said = reason_for<GuideRate, Loads...>();
     return turns || !said.empty() ? said : "the guide does not turn";
   }
 
@@ -413,7 +413,7 @@ struct ApparentTerms {
   }
 
   [[nodiscard]] static std::string of_gravity() {
-    const std::string said = said_of<ApparentGravity, Loads...>();
+    const std::string said = reason_for<ApparentGravity, Loads...>();
     return pulled || !said.empty() ? said : "no gravity, and the guide does not accelerate";
   }
 

@@ -164,12 +164,12 @@ class FixedPointBody {
     using Now = detail::ApparentTerms<ApparentNow, M, Loads...>;
     constexpr bool heavy = !FirstMomentKept::static_zero && Now::pulled;
     const std::string of_weight = FirstMomentKept::static_zero || Now::of_gravity().empty()
-                                      ? detail::said_of<FirstMoment, Loads...>()
+                                      ? detail::reason_for<FirstMoment, Loads...>()
                                       : Now::of_gravity();
     Terms list;
     list.add("relative", "u' x (Theta u')");
     list.add("relative", "products of inertia in Theta", !detail::principal<Loads...>,
-             detail::said_of<ProductsOfInertia, Loads...>());
+             detail::reason_for<ProductsOfInertia, Loads...>());
     list.add("guide", "u x (Theta u)", Now::turns, Now::of_turning());
     list.add("guide", "Theta ou", Now::turns_unsteadily, Now::of_unsteadiness());
     list.add("guide", "s x g'", heavy, of_weight);

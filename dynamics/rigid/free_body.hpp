@@ -145,12 +145,12 @@ class FreeBody {
   /// What acceleration() computes of its formula: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     using Now = detail::ApparentTerms<ApparentNow, M, Loads...>;
-    const std::string of_centre = detail::said_of<FirstMoment, Loads...>();
-    const std::string of_centrifugal = detail::said_of<CentrifugalForce, Loads...>();
+    const std::string of_centre = detail::reason_for<FirstMoment, Loads...>();
+    const std::string of_centrifugal = detail::reason_for<CentrifugalForce, Loads...>();
     Terms list;
     list.add("relative", "u' x (Theta_c u')");
     list.add("relative", "products of inertia in Theta_c", !detail::principal<Loads...>,
-             detail::said_of<ProductsOfInertia, Loads...>());
+             detail::reason_for<ProductsOfInertia, Loads...>());
     list.add("relative", "c apart from O'", !CentreKept::static_zero, of_centre);
     list.add("guide", "u x (Theta_c u)", Now::turns, Now::of_turning());
     list.add("guide", "Theta_c ou", Now::turns_unsteadily, Now::of_unsteadiness());

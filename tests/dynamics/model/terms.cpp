@@ -344,7 +344,7 @@ BOOST_AUTO_TEST_CASE(lack_a_centrifugal_force_that_is_left_out) {
   const auto y = whole.to_vector({Eigen::Quaterniond(1, 0, 0, 0), {3, 0, 1}, {}});
   const auto off = (whole.rates(0, y) - less.rates(0, y)).eval();
   BOOST_TEST(term(terms(whole), "m u x (u x r)").kept);
-  BOOST_TEST(term(terms(less), "m u x (u x r)").why == "said by Without<CentrifugalForce>");
+  BOOST_TEST(term(terms(less), "m u x (u x r)").why == "declared by Without<CentrifugalForce>");
   BOOST_TEST(off[10] == 12);  // |u|^2 outwards
   BOOST_TEST(off.norm() == 12);
 }
@@ -356,12 +356,12 @@ BOOST_AUTO_TEST_CASE(print_as_a_table) {
       ViscousDrag<>{0.02}, Without<ProductsOfInertia>{}, Without<FirstMoment, Axis::x, Axis::y>{}));
   const std::string expected = R"(
 relative  u' x (Theta u')                                   kept
-relative  products of inertia in Theta                      dropped: said by Without<ProductsOfInertia>
+relative  products of inertia in Theta                      dropped: declared by Without<ProductsOfInertia>
 guide     u x (Theta u)                                     dropped: the guide does not turn
 guide     Theta ou                                          dropped: the guide does not turn
-guide     s x g'                                            kept: without x y, said by Without<FirstMoment>
+guide     s x g'                                            kept: without x y, declared by Without<FirstMoment>
 Coriolis  u' x (Theta u) + u x (Theta u') + Theta (u x u')  dropped: the guide does not turn
-load      gravity on guide axes                             kept: without x y, said by Without<FirstMoment>
+load      gravity on guide axes                             kept: without x y, declared by Without<FirstMoment>
 load      viscous drag                                      kept
 )";
   BOOST_TEST("\n" + text.str() == expected);
