@@ -4,12 +4,12 @@
 
 namespace kreisel::exact {
 
-/// A number as an unevaluated sum hi + lo of two long doubles, 128 bits where those have 64: for
-/// the few differences on which a whole motion hangs, as L^2 - 2 E B near the separatrix.
+/// A number as an unevaluated sum hi + lo of two long doubles, 128 bits where those have 64. It
+/// serves the few differences that decide a whole motion, such as L^2 - 2 E B near the separatrix.
 ///
 /// Source : T. J. Dekker 1971, D. E. Knuth TAOCP 4.2.2: the rounding error of a sum and of a
 ///          product is itself a floating-point number
-/// Error  : some 2^-125 relative of each operation, of a sum relative to its terms
+/// Error  : about 2^-125 relative for each operation, for a sum relative to its terms
 struct DoubleDouble {
   long double hi = 0;
   long double lo = 0;
@@ -37,8 +37,8 @@ struct DoubleDouble {
   }
 
  private:
-  /// x by its leading and its last digits, whose products are exact. fma() of long double takes as
-  /// long as the rest of a top's start.
+  /// The leading and the last digits of x, whose products are exact. fma() of long double would
+  /// take as long as the rest of a top's constructor.
   struct Halves {
     long double high, low;
   };

@@ -9,17 +9,17 @@
 
 namespace kreisel::exact {
 
-/// Exact motions think in this, over 1e4 periods double would leave 1e-11 of a phase. Bounds stated
-/// here are those of 64 bits (x86); where long double is no more than double they are 2^11 times as
-/// large.
+/// The number type of exact motions: over 1e4 periods double would leave an error of 1e-11 of a
+/// phase. The bounds stated here are for 64 bits (x86). Where long double is no more than double
+/// they are 2^11 times as large.
 using Real = long double;
 
 namespace carlson {
 
 namespace detail {
 
-/// Where a series that leaves out the eighth power of a spread may take over. Compared by !(>=), so
-/// that a NaN ends the loop, too.
+/// The spread below which a series without its eighth power is accurate. It is compared by !(>=),
+/// so that NaN ends the loop too.
 [[nodiscard]] inline Real last_spread() {
   static const Real spread = std::pow(std::numeric_limits<Real>::epsilon() / 8, Real(1) / 8);
   return spread;
@@ -76,8 +76,8 @@ namespace detail {
 
 /// R_J(x, y, z, p) = 3/2 int_0^inf dt / ((t + p) sqrt((t + x)(t + y)(t + z))),  p > 0.
 ///
-/// Of Carlson's two recurrences the older one, all of whose terms are positive: it keeps its digits
-/// for p far below x, y and z.
+/// The older of Carlson's two recurrences, whose terms are all positive: it keeps its digits for p
+/// far below x, y and z.
 ///
 /// Source : B. C. Carlson, Computing elliptic integrals by duplication (1979)
 /// Error  : some units of long double, relative
@@ -118,14 +118,14 @@ namespace detail {
 
 }  // namespace carlson
 
-/// Jacobi's three functions of one argument.
+/// Jacobi's three functions sn, cn, dn of one argument.
 struct Jacobi {
   Real sn;
   Real cn;
   Real dn;
 };
 
-/// An argument u = 2 K n + rest, |rest| <= K, and what Jacobi's functions are there.
+/// An argument u = 2 K n + rest, |rest| <= K, with Jacobi's functions of both.
 struct Phase {
   Real u;
   Real half_periods;  ///< n, a whole number
@@ -135,12 +135,12 @@ struct Phase {
 
 /// Jacobi's elliptic functions of parameter m = k^2 and its complement m1 = 1 - m, 0 <= m <= 1.
 ///
-/// The caller forms m and m1 each without cancellation: near m = 1 everything hangs on m1, of which
-/// 1 - m keeps no digit. At m1 = 0 the functions are tanh and sech and K is infinite.
+/// The caller forms m and m1 each without cancellation: near m = 1 everything depends on m1, and 1
+/// - m has no correct digit of it. At m1 = 0 the functions are tanh and sech and K is infinite.
 ///
 /// Source : Gauss' transformation (descending Landen), in the cotangent after R. Bulirsch (1965),
 ///          so that cn and dn keep their digits where they are small
-/// Error  : that of an argument wrong by some units of long double of |u| + K
+/// Error  : the effect of an error of the argument of some units of long double of |u| + K
 class EllipticFunctions {
  public:
   EllipticFunctions() : EllipticFunctions(0, 1) {}
@@ -168,7 +168,7 @@ class EllipticFunctions {
   /// K(m), a quarter of the period of sn.
   [[nodiscard]] Real quarter() const { return quarter_; }
 
-  /// The argument in [-K, K] of given values, of which cn >= 0:  u = sn R_F(cn^2, dn^2, 1).
+  /// The argument in [-K, K] of given values with cn >= 0:  u = sn R_F(cn^2, dn^2, 1).
   [[nodiscard]] static Real argument(const Jacobi& j) {
     return j.sn == 0 ? 0 : j.sn * carlson::rf(j.cn * j.cn, j.dn * j.dn, 1);
   }
@@ -186,7 +186,7 @@ class EllipticFunctions {
   }
 
  private:
-  /// |u| <= K.
+  /// The functions for |u| <= K.
   [[nodiscard]] Jacobi within_quarter(Real u) const {
     if (m1_ == 0) return {std::tanh(u), 1 / std::cosh(u), 1 / std::cosh(u)};
     const Real sine = std::sin(mean_ * u);
@@ -213,16 +213,16 @@ class EllipticFunctions {
   Real quarter_ = std::numeric_limits<Real>::infinity();
 };
 
-/// J(u) = int_0^u sn^2 / (1 + nu sn^2) du: what is not plain u in an integral of the third kind,
-/// for int du / (1 + nu sn^2) = u - nu J.
+/// The integral of the third kind without its linear part: J(u) = int_0^u sn^2 / (1 + nu sn^2) du,
+/// where int du / (1 + nu sn^2) = u - nu J.
 ///
 ///   J = sn^3/3 R_J(cn^2, dn^2, 1, cn^2 + (1 + nu) sn^2)   up to u = K,
 ///
-/// whole half periods by the complete one; at m1 = 0, where T = tanh u, by
-/// J = (u - int_0^T dT / (1 + nu T^2)) / (1 + nu).
+/// For whole half periods the complete integral is used; at m1 = 0, where T = tanh u, J = (u -
+/// int_0^T dT / (1 + nu T^2)) / (1 + nu).
 class ThirdKind {
  public:
-  /// Takes 1 + nu > 0, because that may be small.
+  /// The argument is 1 + nu > 0, because it may be small.
   ThirdKind(const EllipticFunctions& functions, Real one_plus_nu)
       : p_(one_plus_nu),
         separatrix_(functions.m1() == 0),

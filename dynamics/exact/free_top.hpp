@@ -16,11 +16,11 @@
 
 namespace kreisel::exact {
 
-/// The rigid body free of torques,  Theta omega' + omega x Theta omega = 0,  closed for all bodies,
-/// rates and times.
+/// The free rigid body without torques,  Theta omega' + omega x Theta omega = 0,  in closed form
+/// for all bodies, rates and times.
 ///
-/// The principal axes 1, 2, 3 are numbered so that I2 is the middle moment and that the angular
-/// momentum L circles axis 3: the one of the largest moment if D = L^2 - 2 E I2 >= 0, else of the
+/// The principal axes 1, 2, 3 are numbered so that I2 is the middle moment and the angular momentum
+/// L circles axis 3. Axis 3 is the axis of the largest moment if D = L^2 - 2 E I2 >= 0, else of the
 /// smallest. Then
 ///
 ///   omega = (a1 cn, a2 sn, a3 dn)(u),   u = lambda t + u0,
@@ -29,30 +29,31 @@ namespace kreisel::exact {
 ///   lambda^2 = |I3 - I2| P1 / (I1 I2 I3),
 ///   m = |I2 - I1| P3 / (|I3 - I2| P1),  1 - m = |I3 - I1| |D| / (|I3 - I2| P1).
 ///
-/// Of Euler's angles with z along L, the precession is
+/// For Euler's angles with z along L, the precession is
 ///
 ///   psi = L/I1 t - (I3 - I1) L / (I1 I3 lambda) nu J(u),   nu = I3 (I2 - I1) / (I1 (I3 - I2)),
 ///
-/// with J that of ThirdKind, and the spin is read off L on body axes. Both together turn about e_z
-/// what the shortest turn from L on body axes to e_z leaves: as L3 > 0, no chart fails.
+/// where J is that of ThirdKind. The spin follows from L on body axes: the shortest rotation takes
+/// L on body axes to e_z, and precession and spin together are the remaining rotation about e_z.
+/// Since L3 > 0, the chart never fails.
 ///
 /// Source : Jacobi 1849; Whittaker, Analytical Dynamics, art. 69; Landau-Lifshitz, Mechanics, 37
-/// Frame  : body axes are principal axes; attitudes turn body components into inertial ones
+/// Frame  : body axes are principal axes; attitudes rotate body components into inertial ones
 /// Units  : kg m^2, rad/s, s
-/// Error  : attitude <= 2u rad, rate <= 2u relative: the result's rounding, the inputs being exact,
-///          near the separatrix (tried to 1e-15) and for symmetric bodies as elsewhere; besides
-///          8 * 2^-64 of the angle L t/I_min, so <= 5e-14 rad over 1e4 periods, 5e-13 rad after
-///          1e6 s at 2 rad/s                               (tests/dynamics/exact/free_top.cpp)
+/// Error  : attitude <= 2u rad, rate <= 2u relative: the rounding of the result, for exact inputs,
+///          near the separatrix (tested to 1e-15) and for symmetric bodies as elsewhere. In
+///          addition 8 * 2^-64 of the angle L t/I_min: <= 5e-14 rad over 1e4 periods, 5e-13 rad
+///          after 1e6 s at 2 rad/s      (tests/dynamics/exact/free_top.cpp)
 /// Cost   : at() 1.3 us, to construct 4.8 us (g++ 12 -O2, EPYC)
-/// Limits : near the separatrix the rounding of an input to double moves D by u L^2 and so each
-///          passage by the middle axis by u L^2 / (2 lambda |D|) seconds; no formula gets that back
+/// Limits : near the separatrix the rounding of an input to double changes D by u L^2, and each
+///          passage of the middle axis by u L^2 / (2 lambda |D|) seconds; no formula can undo this
 class FreeTop {
  public:
   /// Moments on the three body axes, in any order; an attitude of any norm.
   ///
-  /// Throws : InvalidInput for a moment that is not above 0 (nothing says how a needle turns about
-  ///          itself), moments beyond the triangle inequality by 1e-12, rates that are not finite,
-  ///          an attitude that is 0 or not finite
+  /// Throws : InvalidInput for a moment that is not above 0 (the rotation of a needle about itself
+  ///          is not determined), moments beyond the triangle inequality by 1e-12, rates that are
+  ///          not finite, an attitude that is 0 or not finite
   FreeTop(const Vector3<double>& moments, const Vector3<double>& omega0,
           const Eigen::Quaterniond& attitude0)
       : omega0_(omega0), attitude0_(detail::unit(attitude0)) {
@@ -76,8 +77,8 @@ class FreeTop {
     return {(attitude0_ * turn).cast<double>(), omega.cast<double>()};
   }
 
-  /// 4 K/lambda, after which omega is the same on body axes again: infinite on the separatrix, 0
-  /// for a steady rotation.
+  /// 4 K/lambda, after which omega repeats on body axes: infinite on the separatrix, 0 for a steady
+  /// rotation.
   [[nodiscard]] double period() const {
     return polhode_ ? static_cast<double>(polhode_->period()) : 0.0;
   }
@@ -89,7 +90,7 @@ class FreeTop {
   [[nodiscard]] double momentum() const { return static_cast<double>(momentum_); }
 
  private:
-  /// Whether  omega x Theta omega = 0,  asked without products that might underflow.
+  /// True if  omega x Theta omega = 0,  computed without products that might underflow.
   [[nodiscard]] static bool steady(const Vector3<double>& moments, const Vector3<double>& omega) {
     const auto still = [&](int i, int j) {
       return moments[i] == moments[j] || omega[i] == 0 || omega[j] == 0;
@@ -97,7 +98,7 @@ class FreeTop {
     return still(0, 1) && still(1, 2) && still(2, 0);
   }
 
-  /// The body axes in the order 1, 2, 3, turned so that omega1 and omega3 are not negative.
+  /// The body axes in the order 1, 2, 3, oriented so that omega1 and omega3 are not negative.
   class Axes {
    public:
     Axes(const Vector3<double>& moments, const Vector3<double>& omega0) {
@@ -119,7 +120,7 @@ class FreeTop {
       sign_[1] = parity * sign_[0] * sign_[2];
     }
 
-    /// |D|, exact to rounding however near the separatrix.
+    /// D|, exact to rounding at any distance from the separatrix.
     [[nodiscard]] Real distance() const { return distance_; }
 
     /// The sign of D.
@@ -195,12 +196,13 @@ class FreeTop {
     [[nodiscard]] Real period() const { return 4 * functions_.quarter() / lambda_; }
 
    private:
-    /// From the axes 1, 2, 3 to axes that do not turn and have their z along L.
+    /// From the axes 1, 2, 3 to non-rotating axes whose z is along L.
     [[nodiscard]] detail::RealQuaternion attitude(const Phase& phase, Real time) const {
       const auto [sn, cn, dn] = phase.at;
       const detail::RealVector n = direction_.cwiseProduct(detail::RealVector(cn, sn, dn));
       const Real precession = steady_precession_ * time - unsteady_precession_ * third_kind_(phase);
-      // tan of this azimuth is L2/L1; counted on through the half periods, not cut at +-pi.
+      // tan of this azimuth is L2/L1. It is continued through the half periods, without a cut at
+      // +-pi.
       const Real azimuth =
           std::atan2(std::abs(direction_[1]) * phase.rest.sn, direction_[0] * phase.rest.cn) +
           std::numbers::pi_v<Real> * phase.half_periods;

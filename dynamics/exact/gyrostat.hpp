@@ -21,19 +21,20 @@ namespace kreisel::exact {
 
 namespace detail {
 
-/// A turn since time 0 and the angular velocity, on axes of the body.
+/// A rotation since time 0 and the angular velocity, on axes of the body.
 struct TurnAndRate {
   RealQuaternion turn;
   RealVector omega;
 };
 
-/// Theta omega' + omega x (Theta omega + h e_z) = 0  of moments A, A, C: omega = L/A + s e_z.
+/// The solution of Theta omega' + omega x (Theta omega + h e_z) = 0  for moments A, A, C: omega =
+/// L/A + s e_z.
 class SymmetricRotation {
  public:
   SymmetricRotation(Real A, Real C, Real h, const RealVector& omega0)
       : omega0_(omega0), about_momentum_(omega0) {
-    // The transverse parts of L/A and of omega are the same; s by a difference of moments, because
-    // that of the rates would cancel.
+    // The transverse parts of L/A and of omega are equal. s comes from a difference of moments,
+    // because the difference of the rates would cancel.
     against_ = ((A - C) * omega0.z() - h) / A;
     about_momentum_.z() -= against_;
   }
@@ -58,26 +59,26 @@ class SymmetricRotation {
 
 }  // namespace detail
 
-/// The symmetric gyrostat free of torques: a body of moments A, A, C with a rotor on its axis of
-/// symmetry that is kept at constant speed against it,
+/// The symmetric gyrostat without torques: a body of moments A, A, C with a rotor on its axis of
+/// symmetry at constant relative speed,
 ///
 ///   Theta omega' + omega x (Theta omega + h e_z) = 0,   Theta including the rotor.
 ///
-/// omega = L/A + s e_z with s = omega3 - L3/A, L3 = C omega3 + h: the body turns steadily about L,
-/// and steadily about its axis against that; seen from the body omega circles the axis with -s. The
-/// rotor acts like a change of the axial moment, also one to 0 or below, which no body has.
+/// omega = L/A + s e_z with s = omega3 - L3/A, L3 = C omega3 + h. The body turns steadily about L,
+/// and relative to that steadily about its axis; in the body omega circles the axis with -s. The
+/// rotor acts like a change of the axial moment, even to 0 or below, which no body has.
 ///
 /// Source : Wangerin 1889, Volterra 1899; Wittenburg, Dynamics of Multibody Systems, sect. 4.6
-/// Frame  : body z is the axis of symmetry and of the rotor; attitudes turn body into inertial
+/// Frame  : body z is the axis of symmetry and of the rotor; attitudes rotate body to inertial
 /// Units  : kg m^2, N m s, rad/s, s
-/// Error  : attitude <= 2u rad, rate <= 2u relative, besides 4 * 2^-64 of the angle turned through
-///                                                         (tests/dynamics/exact/gyrostat.cpp)
+/// Error  : attitude <= 2u rad, rate <= 2u relative, and 4 * 2^-64 of the angle of rotation
+///          (tests/dynamics/exact/gyrostat.cpp)
 class SymmetricGyrostat {
  public:
-  /// rotor is h, the rotor's angular momentum against the body.
+  /// `rotor` is h, the rotor's angular momentum relative to the body.
   ///
-  /// Throws : InvalidInput for moments that no body has (see FreeTop), an attitude that is 0 and
-  ///          anything not finite
+  /// Throws : InvalidInput for moments that no body has (see FreeTop), an attitude that is 0, and
+  ///          numbers that are not finite
   SymmetricGyrostat(double A, double C, double rotor, const Vector3<double>& omega0,
                     const Eigen::Quaterniond& attitude0)
       : attitude0_(detail::unit(attitude0)), rotation_(A, C, rotor, omega0.cast<Real>()) {
@@ -93,8 +94,8 @@ class SymmetricGyrostat {
     return {(attitude0_ * turn).cast<double>(), omega.cast<double>()};
   }
 
-  /// 2 pi/|s|, after which omega is the same on body axes again: infinite where the rotor makes the
-  /// body one without a preferred axis.
+  /// 2 pi/|s|, after which omega repeats on body axes: infinite if the rotor makes the body act
+  /// like one without a preferred axis.
   [[nodiscard]] double period() const { return static_cast<double>(rotation_.period()); }
 
  private:
@@ -102,20 +103,20 @@ class SymmetricGyrostat {
   detail::SymmetricRotation rotation_;
 };
 
-/// The gyrostat free of torques whose rotor turns about a principal axis of any body, kept at
-/// constant speed against it:
+/// The gyrostat without torques, for any body, with its rotor on a principal axis at constant
+/// relative speed:
 ///
 ///   Theta omega' + omega x (Theta omega + h) = 0,   Theta including the rotor.
 ///
-/// With axis 3 the rotor's and A <= B, energy and L = |Theta omega + h| make omega1 and omega2
-/// functions of v = omega3(t) - omega3(0), everything else being taken at time 0:
+/// Axis 3 is the rotor's and A <= B. Energy and L = |Theta omega + h| make omega1 and omega2
+/// functions of v = omega3(t) - omega3(0), where everything else is taken at time 0:
 ///
 ///   A (B - A) omega1^2 = F1(v) = A (B - A) omega1^2 + 2 C ((C - B) omega3 + h) v + C (C - B) v^2,
 ///   B (B - A) omega2^2 = F2(v) = B (B - A) omega2^2 - 2 C ((C - A) omega3 + h) v - C (C - A) v^2,
 ///   A B C^2 v'^2 = F1(v) F2(v).
 ///
-/// v goes to and fro between two roots e0 and e1. A fractional-linear substitution fixes both, and
-/// its kappa makes an elliptic integral in Legendre's form of the rest, with u = lambda t + u0:
+/// v oscillates between two roots e0 and e1. A fractional-linear substitution fixes both, and its
+/// kappa reduces the rest to an elliptic integral in Legendre's form, with u = lambda t + u0:
 ///
 ///   v = (e0 p0 + e1 p1)/D,   D = p0 + p1,   omega1 D and omega2 D  products of sn, cn, dn,
 ///
@@ -126,30 +127,29 @@ class SymmetricGyrostat {
 ///     p0 = 1 + cn, p1 = kappa (1 - cn),   kappa^2 = S(e0)/S(e1),   g^2 = S(e0) S(e1),
 ///     A B C^2 lambda^2 = |f| g,   1 - m = (g + S(e0, e1))/(2 g).
 ///
-/// The shortest turn takes L on body axes to e_z. What is left is a precession with a single pole,
+/// The shortest rotation takes L on body axes to e_z. The rest is a precession with a single pole,
 ///
 ///   psi' = (omega . L + L omega3)/(L + L3) = (L + h)/C + (2 E - (L + h)^2/C)/(L + L3),
 ///
-/// by one integral of the third kind; axis 3 points to the side of which L3 goes the further.
+/// by one integral of the third kind. Axis 3 points to the side of the greater |L3|.
 ///
 /// Source : Zhukovsky 1885, Volterra 1899; Wittenburg, Dynamics of Multibody Systems, sect. 4.6
-/// Frame  : body axes are principal axes; attitudes turn body components into inertial ones
+/// Frame  : body axes are principal axes; attitudes rotate body components into inertial ones
 /// Units  : kg m^2, N m s, rad/s, s
-/// Error  : attitude <= 2u rad, rate <= 2u relative to the greatest: the result's rounding, the
-///          inputs being exact, near separatrices and steady rotations (tried to 1e-15) and for
-///          nearly symmetric bodies as elsewhere; besides 8 * 2^-64 of the angle
-///          (L + |h|) t/I_min, measured 7e-14 rad over 1e4 periods
-///                                                         (tests/dynamics/exact/gyrostat.cpp)
+/// Error  : attitude <= 2u rad, rate <= 2u relative to the greatest: the rounding of the result,
+///          for exact inputs, near separatrices and steady rotations (tested to 1e-15) and for
+///          nearly symmetric bodies as elsewhere. In addition 8 * 2^-64 of the angle (L + |h|)
+///          t/I_min, measured 7e-14 rad over 1e4 periods (tests/dynamics/exact/gyrostat.cpp)
 /// Cost   : at() 0.8 us, to construct 5 us (g++ 12 -O2, EPYC)
-/// Limits : as with FreeTop, near a separatrix an input's own rounding decides; on it the motion
-///          may return after the time in which 2^-120 grows to 1
+/// Limits : as with FreeTop, near a separatrix an input's own rounding decides; on the separatrix
+///          the motion may return after the time in which 2^-120 grows to 1
 class Gyrostat {
  public:
-  /// Moments on the three body axes, in any order; rotor is h, its angular momentum against the
-  /// body, on these axes; an attitude of any norm.
+  /// Moments on the three body axes, in any order. `rotor` is h, the rotor's angular momentum
+  /// relative to the body, on these axes. The attitude may have any norm.
   ///
   /// Throws : InvalidInput for a rotor not on one of the axes, moments that no body has (see
-  ///          FreeTop), an attitude that is 0 and anything not finite
+  ///          FreeTop), an attitude that is 0, and numbers that are not finite
   Gyrostat(const Vector3<double>& moments, const Vector3<double>& rotor,
            const Vector3<double>& omega0, const Eigen::Quaterniond& attitude0)
       : omega0_(omega0), attitude0_(detail::unit(attitude0)) {
@@ -195,7 +195,7 @@ class Gyrostat {
     return {(attitude0_ * turn).cast<double>(), omega0_};
   }
 
-  /// After this omega is the same on body axes again: infinite on a separatrix, 0 for a steady
+  /// The time after which omega repeats on body axes: infinite on a separatrix, 0 for a steady
   /// rotation.
   [[nodiscard]] double period() const {
     if (free_) return free_->period();
@@ -223,7 +223,7 @@ class Gyrostat {
 
     [[nodiscard]] detail::RealVector omega() const { return {w1.hi, w2.hi, w3.hi}; }
 
-    /// (C - B) omega3 + h, what turns omega2 into omega1, and (C - A) omega3 + h.
+    /// (C - B) omega3 + h: omega2's factor in -A omega1'; and (C - A) omega3 + h: omega1's in B omega2'.
     [[nodiscard]] DoubleDouble k1() const { return (C - B) * w3 + h; }
     [[nodiscard]] DoubleDouble k2() const { return (C - A) * w3 + h; }
   };
@@ -247,7 +247,7 @@ class Gyrostat {
       }
     }
 
-    /// Half a turn about axis 1.
+    /// Rotates the axes by half a turn about axis 1.
     void turn_over() {
       sign_[1] = -sign_[1];
       sign_[2] = -sign_[2];
@@ -303,14 +303,14 @@ class Gyrostat {
     }
   };
 
-  /// The factors whose zeros are next to v = 0, below and above.
+  /// The factors with the zeros nearest to v = 0, below and above.
   template <std::size_t n>
   [[nodiscard]] static std::array<std::size_t, 2> around(const std::array<Linear, n>& f) {
     std::array<std::size_t, 2> found{n, n};
     for (std::size_t i = 0; i < n; ++i) {
       if (f[i].slope.hi == 0) continue;
       auto& next = found[f[i].slope.hi < 0];
-      // Of slopes s > 0 the zero next to 0 is the greatest, of s < 0 the least.
+      // For slopes s > 0 the zero nearest to 0 is the greatest, for s < 0 the least.
       if (next == n || (f[i].zero() - f[next].zero()).hi * f[i].slope.hi > 0) next = i;
     }
     return found;
@@ -352,7 +352,7 @@ class Gyrostat {
       start_ = state(0).turn.conjugate();
     }
 
-    /// Whether L3 goes further to the negative side.
+    /// True if L3 reaches farther to the negative side.
     [[nodiscard]] bool beyond_equator() const { return equator_ < 0; }
 
     [[nodiscard]] detail::TurnAndRate at(Real time) const {
@@ -361,7 +361,7 @@ class Gyrostat {
     }
 
     [[nodiscard]] Real period() const {
-      // sn cn on one axis, dn on the other: they are the same after 2 K.
+      // sn cn on one axis, dn on the other: they repeat after 2 K.
       const bool half = std::ranges::any_of(factors_, [](const auto& f) {
         return f == std::array{sine, cosine};
       });
@@ -369,7 +369,7 @@ class Gyrostat {
     }
 
    private:
-    /// What a factor of F1 or F2 is in Jacobi's functions, besides 1/D.
+    /// The factors of F1 or F2 as Jacobi functions, without 1/D.
     enum Factor : std::size_t { sine, cosine, one, delta };
 
     void between_real(const Quadratic& f1, const Quadratic& f2, Real scale) {
@@ -383,7 +383,7 @@ class Gyrostat {
       e0_ = f[i0].zero();
       e1_ = f[i1].zero();
       if (f[j1](e0_) * f[j2](e1_) > f[j1](e1_) * f[j2](e0_)) std::swap(j1, j2);
-      // The same from the other end: that next to a separatrix must be e1.
+      // The same from the other end: the end next to a separatrix must be e1.
       if (f[j1](e0_) * f[j2](e0_) < f[j1](e1_) * f[j2](e1_)) {
         std::swap(i0, i1);
         std::swap(j1, j2);
@@ -480,7 +480,7 @@ class Gyrostat {
       return ((1 + kappa_) * phase.u + 2 * kappa_ * (g1_ - g0_) / M * Y) / M;
     }
 
-    /// On the axes 1, 2, 3; the attitude to axes that do not turn and have their z along L.
+    /// The state on the axes 1, 2, 3; the attitude refers to non-rotating axes whose z is along L.
     [[nodiscard]] detail::TurnAndRate state(Real time) const {
       const Phase phase = functions_.phase(lambda_ * time + u0_);
       const auto [sn, cn, dn] = phase.at;

@@ -15,47 +15,48 @@
 
 namespace kreisel::exact {
 
-/// The heavy symmetric top with a fixed point, its weight on the axis of symmetry.
+/// The heavy symmetric top with a fixed point and its weight on the axis of symmetry.
 ///
-/// With q = (w; x, y, z) the attitude, the Cayley-Klein parameters  alpha = w + i z  and
-/// beta = x + i y  turn the axis' tilt theta into  r = |beta|^2 = sin^2(theta/2)  and
-/// p = |alpha|^2 = cos^2(theta/2).  Energy and both angular momenta leave
+/// Let q = (w; x, y, z) be the attitude. The Cayley-Klein parameters  alpha = w + i z  and beta = x
+/// + i y  give the tilt theta of the axis by  r = |beta|^2 = sin^2(theta/2)  and p = |alpha|^2 =
+/// cos^2(theta/2).  By energy and both angular momenta
 ///
 ///   r'^2 = kappa (r - r3)(r - r1)(r2 - r),   kappa = 4 mgl/A,   r3 <= 0 <= r1 <= r2 <= 1,
 ///   r = r2 - (r2 - r1) sn^2 u,   u = lambda t + u0,   4 lambda^2 = kappa (r2 - r3),
 ///   m = (r2 - r1)/(r2 - r3),     1 - m = (r1 - r3)/(r2 - r3).
 ///
 /// The phases of alpha and beta are integrals of the third kind with poles at p = 0 and r = 0. An
-/// exchange of parameter splits off of each what jumps there; joined with |alpha| and |beta| it
-/// makes a factor that passes through 0 as a plain zero, so that the attitude is as good at the
-/// vertical as elsewhere. With p_k = 1 - r_k:
+/// exchange of parameter splits off the part of each that jumps there. Combined with |alpha| and
+/// |beta|, this part is a factor with a plain zero, so the attitude is as accurate at the vertical
+/// as elsewhere. With p_k = 1 - r_k:
 ///
 ///   alpha = (sqrt(p2) cn dn +- i sqrt(p1 p3/(r2 - r3)) sn) / sqrt(Q) exp(i psi),
 ///   Q = 1 + p2/(r2 - r3) sn^2,
 ///   beta  = sqrt(r2) (cn -+ i W sn dn) / sqrt(Q) exp(i psi),   W^2 = r1/(-r3) (r2 - r3)/r2,
 ///   Q = 1 + (r1 - r1 r2/r3)/(r2 - r3) sn^2,
 ///
-/// where both psi have no more poles in reach; for r1 > -r3, when the top stays away from the upper
+/// Both psi have no other poles within reach. For r1 > -r3, when the top stays away from the upper
 /// vertical, beta needs no exchange.
 ///
 /// Source : Lagrange 1788; Klein and Sommerfeld, Theorie des Kreisels, ch. IV and VI; Jacobi's
 ///          exchange of parameter as the relation between R_J of p and of q, DLMF 19.21.12
 /// Frame  : body z is the axis of symmetry, gravity acts along -z of the inertial frame
 /// Units  : kg m^2, N m, rad/s, s
-/// Error  : attitude <= 2u rad, rate <= 2u of the greatest: the result's rounding, with the inputs
-///          taken as exact, at cusps, through and within 1e-12 of the vertical, in small nutations
-///          and near the motion that ends upright; besides 8 * 2^-64 of the angle turned through in
-///          the time or in one nutation, so <= 2e-14 rad over 1e4 nutations
-///                                                     (tests/dynamics/exact/lagrange_top.cpp)
+/// Error  : attitude <= 2u rad, rate <= 2u of the greatest: the rounding of the result, for exact
+///          inputs, at cusps, through and within 1e-12 of the vertical, in small nutations and near
+///          the motion that ends upright. In addition 8 * 2^-64 of the angle of rotation in the
+///          time or in one nutation: <= 2e-14 rad over 1e4 nutations
+///          (tests/dynamics/exact/lagrange_top.cpp)
 /// Cost   : at() 0.9 us, to construct 5 us (g++ 12 -O2, EPYC)
 /// Limits : as with FreeTop, next to the motion that ends upright an input's own rounding decides
 class LagrangeTop {
  public:
-  /// Moments about the fixed point, A across and C about the axis of symmetry; the centre of mass
+  /// Moments about the fixed point, A across and C along the axis of symmetry. The centre of mass
   /// lies at +l on body z, weight_moment = m g l.
   ///
   /// Throws : InvalidInput for moments that no body has (see FreeTop), a weight moment below 0
-  ///          (turn the body axes over), an attitude that is 0 and anything not finite
+  ///          (reverse the body axes instead), an attitude that is 0, and numbers that are not
+  ///          finite
   LagrangeTop(double A, double C, double weight_moment, const Vector3<double>& omega0,
               const Eigen::Quaterniond& attitude0)
       : omega0_(omega0), attitude0_(detail::unit(attitude0)) {
@@ -83,15 +84,16 @@ class LagrangeTop {
     return {(attitude0_ * turn).cast<double>(), omega0_};
   }
 
-  /// 2 K/lambda, after which the tilt is the same again: infinite for a motion that ends upright.
-  /// For a top that spins about the vertical and for one without weight, which do not nutate, 0.
+  /// 2 K/lambda, after which the tilt repeats: infinite for a motion that ends upright. 0 for a top
+  /// that spins about the vertical and for one without weight, which do not nutate.
   [[nodiscard]] double period() const {
     return nutation_ ? static_cast<double>(nutation_->period()) : 0.0;
   }
 
-  /// 2 (|psi_alpha(0)| + sqrt(r2) |psi_beta(0)|), in rad, the psi counted from the greatest tilt:
-  /// taken off again at every time, for the motion begins within a nutation. Rounding makes 2^-60 of
-  /// it (tests/dynamics/exact/lagrange_top). Above 1e4 rad for tops that hardly nutate at all.
+  /// 2 (|psi_alpha(0)| + sqrt(r2) |psi_beta(0)|), in rad, with the psi counted from the greatest
+  /// tilt. It is subtracted at every time, because the motion begins within a nutation; the
+  /// rounding error is 2^-60 of it (tests/dynamics/exact/lagrange_top). It is above 1e4 rad for
+  /// tops that hardly nutate.
   [[nodiscard]] double starting_angle() const {
     return nutation_ ? static_cast<double>(nutation_->starting_angle()) : 0.0;
   }
@@ -109,15 +111,16 @@ class LagrangeTop {
     }
   };
 
-  /// N / sqrt(Q) exp(i psi) and its rate of change, from those of its parts.
+  /// N / sqrt(Q) exp(i psi) and its rate of change, from its parts and their rates.
   [[nodiscard]] static Parameter assembled(Complex N, Complex dN, Real Q, Real dQ, Real psi,
                                            Real d_psi) {
     const Complex factor = std::polar(1 / std::sqrt(Q), psi);
     return {factor * N, factor * (dN - N * (dQ / (2 * Q)) + Complex(0, d_psi) * N)};
   }
 
-  /// r1, r2, r3 of the tilt, p_k = 1 - r_k, and where r0 lies between them: every difference by its
-  /// own digits, because small ones decide near the vertical and in a nutation of small amplitude.
+  /// r1, r2, r3 of the tilt, p_k = 1 - r_k, and the position of r0 between them. Every difference
+  /// has its own digits, because small differences decide near the vertical and in a nutation of
+  /// small amplitude.
   struct TurningPoints {
     Real r1, r2, minus_r3;
     Real p1, p2, p3;
@@ -140,7 +143,7 @@ class LagrangeTop {
       const Real middle = curvature_at_r0 / (3 * kappa);
       const Real spread = std::sqrt(std::max<Real>(0, middle * middle + slope_at_r0 / (3 * kappa)));
       TurningPoints t{};
-      // The mean of the roots lies on the side of the two that are closer together.
+      // The mean of the roots lies on the side of the two closer roots.
       if (value(middle) < 0) {
         t.r0_r3 = -outer_root(middle - 2 * spread);
         const Real product = square_at_r0 / (kappa * t.r0_r3);
@@ -149,7 +152,7 @@ class LagrangeTop {
         t.r2 = r0 + t.r2_r0;
         t.r1 = r0 - t.r0_r1;
         t.minus_r3 = t.r0_r3 - r0;
-        // Their product is known best: it gives the smaller of the two.
+        // Their product is known best, so the smaller root follows from it.
         if (t.r1 < t.minus_r3) {
           t.r1 = at_0 / (kappa * t.r2 * t.minus_r3);
         } else {
@@ -180,12 +183,13 @@ class LagrangeTop {
       return square_at_r0 + x * (slope_at_r0 + x * (curvature_at_r0 - x * kappa));
     }
 
-    /// The outermost root r - r0 by Newton's method, which converges one-sidedly from beyond it.
+    /// The outermost root r - r0 by Newton's method, which converges from one side when started
+    /// beyond it.
     [[nodiscard]] Real outer_root(Real x) const {
       while (true) {
         const Real slope = slope_at_r0 + x * (2 * curvature_at_r0 - 3 * x * kappa);
         const Real next = x - value(x) / slope;
-        // Rounding alone turns it round.
+        // Only rounding can reverse the direction.
         if (!(std::abs(next) < std::abs(x))) return x;
         x = next;
       }
@@ -204,7 +208,7 @@ class LagrangeTop {
     }
   };
 
-  /// What may be a small difference of large numbers, and then decides: by its own digits.
+  /// Numbers that may be small differences of large ones, and then decide; each has its own digits.
   struct Exact {
     Real minus;  ///< (L3 - L_vertical)/2A
     Real plus;   ///< (L3 + L_vertical)/2A
@@ -240,7 +244,7 @@ class LagrangeTop {
       const Complex alpha(q.w(), q.z());
       const Complex beta(q.x(), q.y());
       const Complex across(omega.x(), omega.y());
-      // (gamma1 + i gamma2) of the vertical on body axes; with omega it says how the tilt changes.
+      // (gamma1 + i gamma2) of the vertical on body axes; with omega it gives the rate of the tilt.
       const Complex vertical = Complex(0, 2) * std::conj(alpha) * beta;
       const Complex moving = across * std::conj(vertical);
       const Exact exact(A, C, weight_moment, omega, attitude0);
@@ -300,7 +304,7 @@ class LagrangeTop {
       const Parameter beta = beta_turn_ * beta_shape(phase, time);
       const detail::RealQuaternion q(alpha.value.real(), beta.value.real(), beta.value.imag(),
                                      alpha.value.imag());
-      // Both say the same; each is divided by the larger parameter.
+      // Both formulas are equivalent; each is divided by the larger parameter.
       const Complex half_spin(0, spin_ / 2);
       const Complex across =
           std::norm(alpha.value) > std::norm(beta.value)
@@ -319,8 +323,8 @@ class LagrangeTop {
     }
 
    private:
-    /// The constant phase between a parameter as it is and its shape, from value and rate: one of
-    /// them may be 0.
+    /// The constant phase between a parameter and its shape, from value and rate: one of them may
+    /// be 0.
     [[nodiscard]] Complex turn(const Parameter& shape, const Parameter& is) const {
       const Complex c =
           is.value * std::conj(shape.value) + is.rate * std::conj(shape.rate) / (lambda_ * lambda_);
@@ -348,7 +352,8 @@ class LagrangeTop {
                        half_excess_ + lambda_ * alpha_slope_ * s * s / Q);
     }
 
-    /// Its zero, at the upper vertical, is split off where r1 <= -r3; else none is within reach.
+    /// The shape of beta. Its zero, at the upper vertical, is split off if r1 <= -r3; else no zero
+    /// is within reach.
     [[nodiscard]] Parameter beta_shape(const Phase& phase, Real time) const {
       const auto [s, c, d] = phase.at;
       const Real m = functions_.m();
@@ -379,9 +384,9 @@ class LagrangeTop {
     int minus_;         ///< the sign of L3 - L_vertical
     bool jumps_;        ///< r1 <= -r3
     Real ratio_;        ///< r1/(-r3)
-    Real alpha_slope_;  ///< by which the integral goes into the angle of alpha
-    Real beta_slope_;   ///< by which u goes into that of beta
-    Real beta_swing_;   ///< and the integral
+    Real alpha_slope_;  ///< factor of the integral in the angle of alpha
+    Real beta_slope_;   ///< factor of u in the angle of beta
+    Real beta_swing_;   ///< factor of the integral in the angle of beta
     ThirdKind of_alpha_{functions_, 1};
     ThirdKind of_beta_{functions_, 1};
     Complex alpha_turn_;

@@ -8,24 +8,25 @@
 
 namespace kreisel::exact {
 
-/// The plane pendulum  phi.. + k sin(phi) = 0  from any angle and rate: it swings, turns over, or
+/// The plane pendulum  phi.. + k sin(phi) = 0  from any angle and rate. It swings, turns over, or
 /// on the separatrix ends upright.
 ///
-/// With s = sin(phi/2), c = cos(phi/2), h = phi./(2 sqrt(k)) the energy is  e = s^2 + h^2  and what
-/// it lacks at the upper rest point  1 - e = (c - h)(c + h),  free of cancellation near there:
+/// With s = sin(phi/2), c = cos(phi/2), h = phi./(2 sqrt(k)) the energy is  e = s^2 + h^2. Its
+/// deficit at the upper rest point is  1 - e = (c - h)(c + h),  free of cancellation near that
+/// point:
 ///
 ///   e <= 1, it swings:     s = sqrt(e) sn u,  c = dn u,  h = sqrt(e) cn u,  m = e,
 ///                          u' = sqrt(k)
 ///   e > 1, it turns over:  s = sn u,          c = cn u,  h = sqrt(e) dn u,  m = 1/e,
 ///                          u' = sqrt(k e)
 ///
-/// and all mirrored for phi. < 0 at the start.
+/// All are mirrored for phi. < 0 at the start.
 ///
 /// Source : Whittaker, Analytical Dynamics, art. 44
 /// Units  : 1/s^2, rad, rad/s, s
-/// Error  : <= 1.5u of |angle| + 0.125 and of |rate| + 0.125 for k = 1, 40 s and any start, near
-///          the upper rest point and turning over it, too  (tests/dynamics/gsl/pendulum.cpp)
-/// Limits : std::numbers::pi is 1.2e-16 short of the top and falls from there
+/// Error  : <= 1.5u of |angle| + 0.125 and of |rate| + 0.125 for k = 1, 40 s and any start, also
+///          near the upper rest point and turning over it        (tests/dynamics/gsl/pendulum.cpp)
+/// Limits : std::numbers::pi is 1.2e-16 below the top, so a pendulum released there falls
 class PendulumMotion {
  public:
   struct State {
@@ -33,7 +34,7 @@ class PendulumMotion {
     double rate;
   };
 
-  /// Throws : InvalidInput unless k > 0 and all are finite
+  /// Throws : InvalidInput unless k > 0 and all numbers are finite
   PendulumMotion(double k, double phi0, double rate0) : root_k_(std::sqrt(Real(k))) {
     detail::require_positive("k", k);
     detail::require_finite("phi0", phi0);
@@ -69,7 +70,7 @@ class PendulumMotion {
             static_cast<double>(2 * root_k_ * direction_ * h)};
   }
 
-  /// Of a swing, or of one turn over the top; infinite on the separatrix.
+  /// The period of a swing, or of one turn over the top; infinite on the separatrix.
   [[nodiscard]] double period() const {
     const Real quarters = turns_over_ ? 2 : 4;
     return static_cast<double>(quarters * functions_.quarter() / speed());
@@ -84,7 +85,7 @@ class PendulumMotion {
   Real root_k_;
   Real root_e_;
   Real turns_;         ///< whole ones of phi0
-  int direction_ = 1;  ///< in which it starts; formulas know rate0 >= 0 only
+  int direction_ = 1;  ///< of the start; the formulas are for rate0 >= 0
   bool turns_over_ = false;
   EllipticFunctions functions_;
   Real u0_ = 0;

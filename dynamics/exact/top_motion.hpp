@@ -10,7 +10,7 @@
 
 namespace kreisel::exact {
 
-/// Where a top is and how it turns.
+/// The attitude and angular velocity of a top.
 struct TopMotion {
   Eigen::Quaterniond attitude;       ///< unit, turns body components into inertial ones
   Vector3<double> angular_velocity;  ///< on body axes, rad/s
@@ -38,9 +38,9 @@ inline void require_body(const Vector3<double>& moments) {
   }
 }
 
-/// A quaternion of any norm but 0, made a unit one.
+/// A quaternion of any norm except 0, normalized.
 ///
-/// Throws : InvalidInput for 0 and for what is not finite
+/// Throws : InvalidInput for 0 and for numbers that are not finite
 [[nodiscard]] inline RealQuaternion unit(const Eigen::Quaterniond& attitude0) {
   const RealQuaternion q = attitude0.cast<Real>();
   const Real norm = q.norm();
@@ -50,12 +50,12 @@ inline void require_body(const Vector3<double>& moments) {
   return RealQuaternion(q.coeffs() / norm);
 }
 
-/// The turn by an angle about e_z.
+/// The rotation by an angle about e_z.
 [[nodiscard]] inline RealQuaternion about_z(Real angle) {
   return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
 }
 
-/// The turn that a steady rotation makes in a time: exp(omega t).
+/// The rotation in a time at a constant rate: exp(omega t).
 [[nodiscard]] inline RealQuaternion steady_turn(const RealVector& omega, Real time) {
   const Real rate = std::hypot(omega.x(), omega.y(), omega.z());
   if (rate == 0) return RealQuaternion::Identity();

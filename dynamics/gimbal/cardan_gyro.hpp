@@ -35,7 +35,7 @@ namespace kreisel {
 
 namespace detail {
 
-/// u of a guide in steady motion, worked out once.
+/// The constant u of a guide in steady motion.
 template <class M>
 [[nodiscard]] auto steady_rate(const M& guide) {
   if constexpr (SteadyGuide<M>) {
@@ -52,12 +52,12 @@ inline constexpr bool is_driven = false;
 template <class Torque>
 inline constexpr bool is_driven<DrivenRotor<Torque>> = true;
 
-/// By more than a constant torque.
+/// True if the drive's torque is a function, not a constant.
 template <class Rotor>
 inline constexpr bool is_driven_otherwise =
     is_driven<Rotor> && !std::is_same_v<Rotor, DrivenRotor<double>>;
 
-/// Whether the drive's torque, if it is a function, is one of numbers S.
+/// True if the drive's torque, if it is a function, accepts numbers of type S.
 template <class Rotor, class S>
 inline constexpr bool drive_takes = true;
 template <class Rotor, class S>
@@ -73,8 +73,8 @@ struct Turning {
   Components<V> du = {};
 };
 
-/// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on; N is a
-/// number or, for a symmetric rotor that counts with the ring, StaticZero.
+/// The rotor's tensor on the axes of the inner ring: A cos^2 phi + B sin^2 phi and so on. N is a
+/// number, or StaticZero for a symmetric rotor, whose tensor is added to the ring's.
 template <class N>
 struct RotatedRotor {
   N P;  ///< about A_2
@@ -83,15 +83,16 @@ struct RotatedRotor {
   N W;  ///< P - Q without cancellation
 };
 
-/// Rates of the angles, and where they are given their rates too.
+/// The rates of the angles and, where they are given, their second derivatives.
 template <class S, class D>
 struct CardanMotion {
   S da, db, df;
   D dda = {}, ddb = {};
 };
 
-/// Rates of angular momentum of the three bodies, each on its ring's axes, the rotor's on the inner
-/// ring's; of phi'' nothing. N is StaticZero where the rotor counts with the inner ring.
+/// The rates of angular momentum of the three bodies without phi'', each on its ring's axes, the
+/// rotor's on those of the inner ring. N is StaticZero if the rotor's tensor is added to the inner
+/// ring's.
 template <class S, class K, class N>
 struct CardanRates {
   K outer_a, outer_b, outer_c;
@@ -104,38 +105,40 @@ struct CardanRates {
 }  // namespace detail
 
 /// The gyro in Cardan's suspension: a rotor in an inner ring in an outer ring, all with mass, on a
-/// guide that moves in any way. Exact, for all angles.
+/// guide in arbitrary motion. Exact, for all angles.
 ///
 ///   alpha about A (guide x), then beta about B, then phi about the spin axis C:
 ///   (p)_guide = R_x(alpha) R_y(beta) R_z(phi) (p)_rotor
 ///
-/// All centres of mass lie where the axes meet, so that of the guide's motion only u and ou matter,
-/// and gravity not at all. The angles count whole turns; alpha and beta count from the references
-/// of their bearings.
+/// All centres of mass lie where the axes meet. Of the guide's motion only u and ou therefore
+/// matter, and gravity has no effect. The angles count whole turns; alpha and beta count from the
+/// references of their bearings.
 ///
-/// phi'' is eliminated by the rotor's own equation, which leaves two equations for alpha'' and
-/// beta'' with the determinant
+/// phi'' is eliminated by the rotor's own equation. The two equations for alpha'' and beta'' that
+/// remain have the determinant
 ///
 ///   (A_3 + J sin^2 beta) (B_2 + Q) + cos^2 beta (A_2 (B_2 + Q) + B_2 P + A_1 B_1),
 ///
-/// J = C_2, or C_1 + C_2 if the rotor is regulated: a sum of what is not negative, so nothing
-/// cancels, however light the rings are. Nothing is divided by cos beta. Only if A_3 + J sin^2 beta
-/// = 0 are the equations singular at beta = 90 degrees.
+/// J = C_2, or C_1 + C_2 if the rotor is regulated. It is a sum of terms that are not negative, so
+/// nothing cancels, however light the rings are. There is no division by cos beta. Only if A_3 + J
+/// sin^2 beta = 0 are the equations singular at beta = 90 degrees.
 ///
 /// Source : paper 002 (35)-(40) corrected: the rates of the rings are not those of the rotor,
 ///          u'_C2 = u'_A3 sin beta, u'_A3 = (u'_A cos phi - u'_B sin phi)/cos beta,
 ///          phi' = u'_C - u'_C2; in (40) sin beta for sin^2 beta. These and the printed ones:
 ///          tests/dynamics/gimbal/cardan_gyro_laws.cpp
 /// Units  : rad/s, N m
-/// Error  : of the accelerations <= 1e-14 of the greatest, rings with 1e-8 of the mass at 1e-8
-///          from 90 degrees included (tests/dynamics/gimbal/cardan_gyro.cpp)
-/// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving: one more;
-///          of the rest what guide and rotor leave (ctest dynamics.study.pruning_cost)
-/// Throws : InvalidInput where no body has such moments, the rotor's C is 0, the equations are
-///          singular at every angle, or stiffness, damping or friction is below 0;
-///          ComputationFailed from rates() and all that needs accelerations where they are singular
+/// Error  : of the accelerations <= 1e-14 of the greatest, including rings with 1e-8 of the mass at
+///          1e-8 from 90 degrees (tests/dynamics/gimbal/cardan_gyro.cpp)
+/// Cost   : guide at rest: one sine and cosine, two if the rotor is unsymmetric; moving guide: one
+///          more; plus the terms of guide and rotor (ctest dynamics.study.pruning_cost)
+/// Throws : InvalidInput if no body has such moments, the rotor's C is 0, the equations are
+///          singular at every angle, or stiffness, damping or friction is below 0.
+///          ComputationFailed from rates() and everything that needs accelerations, where they are
+///          singular
 ///
-/// Parameter : what moments and bearings are: double; or a pack, for as many gyros side by side
+/// Parameter : number type of moments and bearings: double, or a pack for several gyros side by
+///             side
 template <class M, class Rotor = FreeRotor, class Parameter = double>
 class CardanGyro {
   static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
@@ -167,7 +170,7 @@ class CardanGyro {
     }
   }
 
-  /// Several gyros, one a lane of N; nothing if some are symmetric and some are not, or the friction
+  /// Several gyros, each in one lane of N. Nothing if only some are symmetric, or if the friction
   /// of their rotors differs.
   template <class N>
   requires(detail::is_resting<M> && !detail::is_driven<Rotor>)
@@ -186,12 +189,12 @@ class CardanGyro {
   [[nodiscard]] const BasicCardanBearings<Parameter>& bearings() const { return bearings_; }
   [[nodiscard]] const Rotor& rotor() const { return rotor_; }
 
-  /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, phi; their rates), for double and
-  /// what calculates like it: long double, dual numbers.
+  /// The vector field  y' = rates(t, y)  on  y = (alpha, beta, phi; their rates), for double, long
+  /// double and dual numbers.
   ///
-  /// With dual numbers the derivative with respect to t is exact if the guide takes them too (a
-  /// lambda of auto does). A guide of double gives the rate of u, which is ou, but none of ou: its
-  /// part is left out.
+  /// With dual numbers the derivative with respect to t is exact if the guide accepts them too (a
+  /// lambda of auto does). A guide of doubles gives the rate ou of u, but no rate of ou: that part
+  /// is left out.
   template <class S>
   requires detail::drive_takes<Rotor, S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates(const std::type_identity_t<S>& t,
@@ -204,8 +207,9 @@ class CardanGyro {
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps: where the guide rests, moves steadily or
-  /// analytically, and the drive, if any, gives one torque. Formulas: scene/cardan_series.hpp.
+  /// The Taylor series of the motion, for TaylorSteps. It exists if the guide rests or moves
+  /// steadily or analytically, and the torque of the drive, if any, is constant. Formulas:
+  /// gimbal/cardan_series.hpp.
   [[nodiscard]] auto series() const
       requires(std::is_same_v<Parameter, double> && !detail::is_driven_otherwise<Rotor> &&
                (detail::never_turns<M> || SteadyGuide<M> || AnalyticGuide<M>)) {
@@ -231,14 +235,14 @@ class CardanGyro {
     }
   }
 
-  /// Whether anything takes energy out of the motion, so that steps may stay short for it.
+  /// True if friction or damping can make the equations stiff.
   [[nodiscard]] bool may_be_stiff() const {
     return bearings_.outer.damping != 0 || bearings_.inner.damping != 0 || rotor_.friction != 0;
   }
 
-  /// The same gyro with its springs off by a last digit, if it has any: as much as the sums of
-  /// moments that stand against them may be rounded by, which grows with each radian of their
-  /// oscillation. For estimates of what rounding does.
+  /// The same gyro with its springs perturbed by a unit in the last place, if it has any. Such is
+  /// the rounding of the sums of moments that balance the springs, and it grows with each radian of
+  /// their oscillation. For estimates of the effect of rounding.
   [[nodiscard]] std::optional<CardanGyro> perturbed_by_ulps() const
       requires(std::is_same_v<Parameter, double>) {
     if (bearings_.outer.stiffness == 0 && bearings_.inner.stiffness == 0) return std::nullopt;
@@ -251,8 +255,8 @@ class CardanGyro {
 
   /// The moments in the bearings.
   ///
-  /// Error  : <= 1e-13 of the largest; those about the bearings' axes are exact, the sum of spring,
-  ///          friction and drive
+  /// Error  : <= 1e-13 of the largest; the moments about the bearings' axes are exact, as sums of
+  ///          spring, friction and drive
   [[nodiscard]] CardanReactions reactions(double t, const State& state) const {
     const Vector dy = rates(t, to_vector(state));
     const auto [sa, ca] = detail::sin_cos(bearings_.outer.reference, state.alpha);
@@ -302,7 +306,7 @@ class CardanGyro {
         L_1.z(),     {L_321.x(), ca * L_321.y() - sa * L_321.z(), sa * L_321.y() + ca * L_321.z()}};
   }
 
-  /// Those of the balance that stay, by name.
+  /// The conserved quantities of the balance, by name.
   ///
   ///   energy             guide at rest, free rotor, no friction
   ///   energy of rings    guide at rest, regulated symmetric rotor, no friction in the rings:
@@ -334,7 +338,7 @@ class CardanGyro {
       }
     }
     if constexpr (SteadyGuide<M> && !detail::is_resting<M>) {
-      // T_2 - T_0: what is quadratic in the rates less what does not depend on them.
+      // T_2 - T_0: the terms quadratic in the rates less the terms without rates.
       if (rings_free && (rotor_free || (regulated && symmetric_))) {
         State back = state, still = state;
         back.alpha_rate = -state.alpha_rate;
@@ -353,7 +357,7 @@ class CardanGyro {
     return kept;
   }
 
-  /// What rates() computes: see kreisel::terms. H = C_1 u_C1 is the momentum of the spin, i counts
+  /// The terms of rates(): see kreisel::terms. H = C_1 u_C1 is the momentum of the spin, i numbers
   /// the bodies.
   [[nodiscard]] Terms terms() const {
     using Apparent =
@@ -384,8 +388,8 @@ class CardanGyro {
     return list;
   }
 
-  /// This gyro with something left out, for prune(): on a guide in the mean steady motion between
-  /// two times; on one at rest, in whatever pose; with the mean of A_1 and B_1 for both; with rings
+  /// This gyro without something, for prune(): on a guide in the mean steady motion between two
+  /// times; on a guide at rest in any pose; with the mean of A_1 and B_1 for both; with rings
   /// without mass.
   [[nodiscard]] CardanGyro<RotatingFrame<>, Rotor> without(GuideUnsteadiness /*what*/, double begin,
                                                            double end) const
@@ -407,8 +411,8 @@ class CardanGyro {
     return {{moments_.rotor}, bearings_, guide_, rotor_};
   }
 
-  /// For integrators. One by one: a stiff bearing's angle is far smaller than the other, phi far
-  /// greater.
+  /// For integrators. Each component is a block of its own: the angle of a stiff bearing is far
+  /// smaller than the other, and phi far greater.
   static constexpr std::array<int, 6> blocks = {1, 1, 1, 1, 1, 1};
 
   [[nodiscard]] static Vector to_vector(const State& s) {
@@ -507,14 +511,14 @@ class CardanGyro {
     return bearing.stiffness == 0 && bearing.damping == 0;
   }
 
-  /// What spring and friction resist with; the torque is its negative.
+  /// The resistance of spring and friction; the torque is its negative.
   template <class S>
   [[nodiscard]] static S resistance(const BasicCardanBearing<Parameter>& bearing, const S& q,
                                     const S& dq) {
     return bearing.stiffness * q + bearing.damping * dq;
   }
 
-  /// On a rotor that is not regulated, about C: drive and friction.
+  /// The torque about C on a rotor that is not regulated: drive and friction.
   template <class S>
   [[nodiscard]] auto spin_torque([[maybe_unused]] const S& t, [[maybe_unused]] const S& df) const {
     if constexpr (std::is_same_v<Rotor, FrictionlessRotor>) {
@@ -528,7 +532,7 @@ class CardanGyro {
     }
   }
 
-  /// Whether the guide itself calculates with S.
+  /// True if the guide itself accepts numbers of type S.
   template <class S>
   static constexpr bool guide_takes = GuideMotion<M, Guide, Inertial, S>;
 
@@ -550,8 +554,8 @@ class CardanGyro {
     }
   }
 
-  /// What the equations feel of the guide: of a steady one that turns no rate, of one at rest
-  /// nothing.
+  /// The angular velocity and acceleration of the guide that enter the equations: no rate for a
+  /// steady guide, nothing for a guide at rest.
   template <class S>
   [[nodiscard]] auto apparent_turning(const S& t) const {
     if constexpr (detail::is_resting<M> || detail::never_turns<M>) {
@@ -582,8 +586,8 @@ class CardanGyro {
 
   /// The left sides of the equations of motion.
   ///
-  /// G, V, N, D are S or StaticZero: a guide that turns, one that does so unsteadily, a rotor that is
-  /// not counted with the inner ring, angular accelerations that are given.
+  /// G, V, N, D are S or StaticZero for: a guide that turns; a guide that turns unsteadily; a rotor
+  /// whose tensor is not added to the inner ring's; given angular accelerations.
   template <class S, class G, class V, class N, class D>
   [[nodiscard]] auto momentum_rates(const detail::Turning<G, V>& guide,
                                     const detail::SinCos<G>& alpha, const detail::SinCos<S>& beta,
@@ -600,8 +604,8 @@ class CardanGyro {
     const auto& [da, db, df, dda, ddb] = motion;
     const auto& J_3 = moments_.outer_ring;
 
-    // Absolute angular velocities of outer (3) and inner ring (2) on their own axes, and rates;
-    // fx and fz without what beta' does to dx2 and dz2.
+    // Absolute angular velocities of outer (3) and inner ring (2) on their own axes, and rates. fx
+    // and fz are without the contribution of beta' to dx2 and dz2.
     const S x3 = da + ux;
     const G y3 = uy * ca + uz * sa;
     const G z3 = uz * ca - uy * sa;
@@ -616,8 +620,8 @@ class CardanGyro {
     const K dy2 = dy3 + ddb;
     const S dz2 = fz + db * x2;
 
-    // A symmetric rotor, counted with the ring, is left with the momentum of its spin: all of it,
-    // or, with C in the ring, that against the ring.
+    // A symmetric rotor, added to the ring, leaves only the momentum of its spin: the whole
+    // momentum or, if C is added to the ring, the momentum against the ring.
     constexpr bool counted = detail::is_static_zero<N>;
     using Spin = std::conditional_t<counted, S, detail::StaticZero>;
     const S L_c = moments_.rotor.z() * S(counted && regulated ? df : S(z2 + df));
@@ -641,8 +645,8 @@ class CardanGyro {
     return k;
   }
 
-  /// N is S, or StaticZero if the rotor is symmetric; Reference is StaticZero where the bearings have none,
-  /// Torque where they have neither springs nor friction.
+  /// N is S, or StaticZero if the rotor is symmetric. Reference is StaticZero if the bearings have
+  /// no references, Torque if they have neither springs nor friction.
   template <class N, class Reference, class Torque, class S>
   [[nodiscard]] Eigen::Matrix<S, 6, 1> rates_of(const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
     constexpr bool round = detail::is_static_zero<N>;
@@ -667,7 +671,7 @@ class CardanGyro {
     const auto k = momentum_rates<S, G, V, N, detail::StaticZero>(guide, alpha, beta, rotor, inner,
                                                                   {y[3], y[4], y[5]});
 
-    // The rotor's torque about C stands in for C_1 (dz_2 + phi''), or phi'' = 0 does.
+    // The rotor's torque about C replaces C_1 (dz_2 + phi''), or phi'' = 0 does.
     const auto on_rotor = [&] {
       if constexpr (!regulated) {
         return spin_torque<S>(t, y[5]);
@@ -714,7 +718,7 @@ class CardanGyro {
     return detail::gathered<S>(y[3], y[4], y[5], dda, ddb, ddf);
   }
 
-  /// Out of line, so that the plain ones are not.
+  /// Out of line, so that the plain cases can be inlined.
   template <class S>
   [[nodiscard]] EIGEN_DONT_INLINE Eigen::Matrix<S, 6, 1> less_plain_rates(
       const S& t, const Eigen::Matrix<S, 6, 1>& y) const {
@@ -722,9 +726,9 @@ class CardanGyro {
     return rates_of<S, Parameter, Parameter>(t, y);
   }
 
-  /// How small the determinant (of a symmetric rotor: its factor M_aa) counts as 0. It has no error
-  /// but rounding's; what makes it meaningless is the rounding of beta, where cos^2 beta is all
-  /// that keeps it from 0. A NaN is not less: steps answer it by shorter ones.
+  /// The bound below which the determinant (for a symmetric rotor: its factor M_aa) counts as 0.
+  /// Its only error is rounding. It becomes meaningless through the rounding of beta, where cos^2
+  /// beta alone keeps it from 0. NaN is not below the bound; steps become shorter at NaN.
   [[nodiscard]] double singular() const {
     constexpr double eps = std::numeric_limits<double>::epsilon();
     const auto& [rotor, inner, outer] = moments_;
@@ -733,7 +737,7 @@ class CardanGyro {
     return 64 * eps * eps * about_a * (symmetric_ ? 1 : inner.y() + most);
   }
 
-  /// What turns with the inner ring about C.
+  /// The moment of inertia that turns with the inner ring about C.
   [[nodiscard]] Parameter carried() const {
     if constexpr (regulated) return moments_.inner_ring.z() + moments_.rotor.z();
     return moments_.inner_ring.z();
@@ -745,7 +749,7 @@ class CardanGyro {
   [[no_unique_address]] Rotor rotor_;
   bool symmetric_;
   bool plain_;  ///< symmetric, and no reference of a bearing but 0
-  bool loose_;  ///< and besides neither springs nor friction in the rings' bearings
+  bool loose_;  ///< and neither springs nor friction in the rings' bearings
   Parameter carried_ = carried();
   detail::RingMoments<Parameter> bare_ring_{moments_.inner_ring, Parameter(0), Parameter(0)};
   detail::RingMoments<Parameter> counted_ring_{moments_.inner_ring, moments_.rotor.x(),

@@ -7,8 +7,8 @@
 
 namespace kreisel {
 
-/// What a free Cardan gyro with a symmetric rotor does for small nutations: it nutates about the
-/// tilt beta_0 and drifts about the outer axis, because the rings have mass.
+/// The motion of a free Cardan gyro with a symmetric rotor for small nutations. It nutates about
+/// the tilt beta_0 and drifts about the outer axis, because the rings have mass.
 ///
 ///   H = C_1 (phi' + alpha' sin beta),   p = J(beta) alpha' + H sin beta
 ///   sin beta_0 = p/H,   n = H cos(beta_0)/sqrt((B_1 + B_2) J(beta_0))
@@ -28,10 +28,10 @@ struct GimbalDrift {
   double drift;               ///< the mean of alpha'; 0 for rings without mass
 };
 
-/// The drift law for a gyro that has the angle beta against the outer ring and these rates.
+/// The drift law for a gyro with the angle beta against the outer ring and these rates.
 ///
-/// Throws : InvalidInput if the rotor is not symmetric, cos beta <= 0, or |p| >= |H|: the gyro does
-///          not nutate about a tilt but turns over
+/// Throws : InvalidInput if the rotor is not symmetric, cos beta <= 0, or |p| >= |H|: the gyro then
+///          does not nutate about a tilt but turns over
 [[nodiscard]] inline GimbalDrift gimbal_drift(const CardanMoments& moments, double beta,
                                               double alpha_rate, double beta_rate,
                                               double phi_rate) {
@@ -101,12 +101,12 @@ struct CardanFrequencies {
   return {nutation, nutation > 0 ? product / nutation : 0};
 }
 
-/// The angles that the rings take to let the rotor's axis point along n, on guide axes:
+/// The ring angles at which the rotor's axis points along n, on guide axes:
 ///
 ///   n = (sin beta, -sin alpha cos beta, cos alpha cos beta)
 ///
-/// This is the kinematic gimbal error: alpha changes although the axis stays in space and the guide
-/// does not turn about the outer axis.
+/// The change of these angles is the kinematic gimbal error: alpha changes although the axis stays
+/// fixed in space and the guide does not turn about the outer axis.
 ///
 /// Source   : paper 002 (34), third column; the error: below (40)
 /// Requires : n not along the outer axis x, where alpha is not determined and 0 is given
@@ -125,13 +125,13 @@ struct GimbalAngles {
   }
 };
 
-/// How fast the angles run while the rotor's axis keeps its direction in space and the guide turns
-/// with u (on guide axes); the rotor's absolute speed about its axis is `spin`.
+/// The rates of the angles while the rotor's axis keeps its direction in space and the guide turns
+/// with u (on guide axes). `spin` is the rotor's absolute speed about its axis.
 ///
 ///   alpha' = z_3 tan beta - u_x,   beta' = -y_3,   phi' = spin - z_3/cos beta,
 ///   y_3 = u_y cos alpha + u_z sin alpha,   z_3 = u_z cos alpha - u_y sin alpha
 ///
-/// Holds exactly for rings without mass, on a guide that moves in any way: the gyro's free motion.
+/// Exact for rings without mass, on a guide in arbitrary motion: the free motion of the gyro.
 ///
 /// Requires : cos beta != 0
 /// Units    : rad/s

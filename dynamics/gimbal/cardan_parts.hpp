@@ -8,7 +8,7 @@
 #include <motor/lanes.hpp>
 #include <motor/static_zero.hpp>
 
-/// What a CardanGyro is made of, how it moves, and what is read out of it.
+/// The parts of a CardanGyro, its state, and its outputs.
 
 namespace kreisel {
 
@@ -28,10 +28,11 @@ struct BasicCardanMoments {
 };
 using CardanMoments = BasicCardanMoments<double>;
 
-/// What a bearing does about its axis:  torque = -stiffness q - damping q',  q from `reference`.
+/// The torque of a bearing about its axis:  torque = -stiffness q - damping q',  q from
+/// `reference`.
 ///
-/// The state counts the angle from `reference` too, so that a stiff bearing's torque keeps its
-/// digits: at 1e12 N m/rad the last digit of an angle of 0.3 is worth 5.5e-5 N m.
+/// The state counts the angle from `reference` too, so that the torque of a stiff bearing keeps its
+/// digits. At 1e12 N m/rad the last digit of an angle of 0.3 is worth 5.5e-5 N m.
 ///
 /// Units  : N m/rad, N m s/rad, radian
 template <class P>
@@ -49,7 +50,7 @@ struct BasicCardanBearings {
 };
 using CardanBearings = BasicCardanBearings<double>;
 
-/// How a Cardan gyro moves.
+/// The state of a Cardan gyro.
 struct CardanState {
   double alpha = 0;       ///< of the outer ring, from bearings().outer.reference
   double beta = 0;        ///< of the inner ring, from bearings().inner.reference
@@ -59,18 +60,18 @@ struct CardanState {
   double phi_rate = 0;    ///< against the inner ring
 };
 
-/// A rotor left to itself. Friction acts between it and the inner ring, in N m s/rad.
+/// A free rotor. Friction acts between rotor and inner ring, in N m s/rad.
 struct FreeRotor {
   double friction = 0;
 };
 
-/// A rotor left to itself in a bearing without friction: a FreeRotor of 0, known beforehand.
+/// A free rotor in a bearing without friction: a FreeRotor with 0, at compile time.
 struct FrictionlessRotor {
   static constexpr double friction = 0;
 };
 
 /// A rotor driven from the inner ring by a torque in N m: a number, or a function of the time and
-/// of phi', which for an exact Jacobian has to take dual numbers.
+/// of phi'. For an exact Jacobian the function must accept dual numbers.
 template <class Torque = double>
 struct DrivenRotor {
   Torque torque = {};
@@ -83,21 +84,21 @@ DrivenRotor(Torque, double) -> DrivenRotor<Torque>;
 
 /// A rotor whose speed against the inner ring a motor keeps constant.
 struct RegulatedRotor {
-  double friction = 0;  ///< what the motor works against besides
+  double friction = 0;  ///< also overcome by the motor
 };
 
-/// The moments in the bearings of a Cardan gyro, springs, friction and drive included. What acts
-/// back on the other body is the negative.
+/// The moments in the bearings of a Cardan gyro, including springs, friction and drive. The
+/// reaction on the other body is the negative.
 ///
-/// Source : paper 002 (35)-(40), whose names stand behind
+/// Source : paper 002 (35)-(40); the comments give its names
 /// Units  : N m, W
 struct CardanReactions {
   Vector3<double> rotor_on_inner_ring;       ///< M_A21, M_B21, M_C21 on the axes of the inner ring
   Vector3<double> inner_ring_on_outer_ring;  ///< M_A32, M_B32, M_C32 on the axes of the outer ring
   Vector3<double> guide_on_outer_ring;       ///< M_A3, M_BL, M_CL on the axes of the outer ring
 
-  double motor_torque;  ///< the motor's on the rotor, without friction
-  double motor_power;   ///< motor_torque phi', what the motor gives
+  double motor_torque;  ///< of the motor on the rotor, without friction
+  double motor_power;   ///< motor_torque phi', the output of the motor
 };
 
 /// Energies and momenta of a Cardan gyro.
@@ -120,8 +121,8 @@ struct SinCos {
   S cos = {};
 };
 
-/// Sine and cosine of reference + deviation, both relatively exact to 2u also where one of them
-/// is nearly 0: what rounding leaves of the sum is added to first order.
+/// Sine and cosine of reference + deviation, both relatively exact to 2u, also where one of them is
+/// nearly 0. The rounding error of the sum is added to first order.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline SinCos<S> sin_cos(StaticZero /*reference*/,
                                                            const S& deviation) {
@@ -140,7 +141,7 @@ template <class P, class S>
   return {S(s + rest * c), S(c - rest * s)};
 }
 
-/// Moments of inertia of a ring and, added to it, of what a symmetric rotor has without its spin.
+/// Moments of inertia of a ring, with those of a symmetric rotor without its spin.
 template <class P>
 struct RingMoments {
   P a, b, c;
@@ -158,7 +159,7 @@ struct RingMoments {
         bc_less_a(c + (J.y() - J.x())) {}
 };
 
-/// Out of line, with all that it says: rates() counts every instruction.
+/// Out of line, with the whole message: rates() counts every instruction.
 template <class P, class S>
 [[noreturn]] EIGEN_DONT_INLINE void stop_where_singular(const BasicCardanMoments<P>& moments,
                                                         bool regulated, const P& reference,

@@ -13,14 +13,14 @@ namespace kreisel::detail {
 
 /// Products of series  (l r)_k = sum_i l_i r_{k-i},  four in each group.
 ///
-/// What waits for nothing is summed up first, of all groups, when order k begins: the processor does
-/// it while it waits for the coefficients before. The newest ones come last, and those of order k from
-/// registers, for they are on their way to memory still.
+/// Terms that wait for nothing are summed first, for all groups, when order k begins. The processor
+/// does this while it waits for the coefficients of the order before. The newest coefficients come
+/// last, and those of order k from registers, because they are still on their way to memory.
 template <std::size_t groups>
 class ProductsOfSeries {
  public:
   [[gnu::always_inline]] void begin(int k) {
-    // Two sums, lest each term wait for the one before.
+    // Two sums, so that a term does not wait for the one before.
     Sums even = zeros();
     Sums odd = even;
     const auto last = static_cast<std::size_t>(k) - 1;
@@ -35,8 +35,8 @@ class ProductsOfSeries {
     for (std::size_t g = 0; g < groups; ++g) sums_[g] = even[g] + odd[g];
   }
 
-  /// Those of order k, with the factors' coefficients of that order, the right ones of which are
-  /// waited for longer.
+  /// The products of order k, with the factors' coefficients of that order. The right factors are
+  /// available later than the left.
   [[nodiscard, gnu::always_inline]] Vec4d of(std::size_t group, int k, const Vec4d& left,
                                              const Vec4d& right) {
     const auto at = static_cast<std::size_t>(k);
@@ -46,7 +46,7 @@ class ProductsOfSeries {
     return (sums_[group] + left * right_[0][group]) + left_[0][group] * right;
   }
 
-  /// Puts in what right factors were not known yet and given as 0.
+  /// Adds the terms of right factors that were not known yet and were given as 0.
   [[gnu::always_inline]] void complete(std::size_t group, int k, const Vec4d& right) {
     right_[std::size_t(k)][group] = right;
   }
@@ -71,41 +71,42 @@ class ProductsOfSeries {
   Sums sums_;
 };
 
-/// The numbers in the equations of a CardanGyro.
+/// The constants in the equations of a CardanGyro.
 struct CardanConstants {
   CardanMoments moments;
   CardanBearings bearings;
   RingMoments<double> ring;  ///< the inner one's with the rotor's mean (A_1 + B_1)/2, regulated C_1
   double n;                  ///< (A_1 - B_1)/2
-  double singular;           ///< how small a determinant counts as 0
+  double singular;           ///< bound below which a determinant counts as 0
   bool regulated;
   double torque = 0;    ///< of the drive, on a rotor that is not regulated
   double friction = 0;  ///< of such a rotor
 };
 
-/// The Taylor series of the motion of a CardanGyro, for TaylorSteps. All is products of series, so
-/// that each coefficient comes from those before it. x, y, z are angular velocities of the outer (3)
-/// and the inner ring (2) on their own axes:
+/// The Taylor series of the motion of a CardanGyro, for TaylorSteps. All terms are products of
+/// series, so each coefficient follows from those before it. x, y, z are angular velocities of the
+/// outer (3) and the inner ring (2) on their own axes:
 ///
 ///   x_3 = alpha' + u_x,   x_2 = x_3 cos beta - z_3 sin beta,   z_2 = x_3 sin beta + z_3 cos beta
 ///
-/// Their coefficients of order k + 1, those of the momenta and the torques of order k are linear in
-/// alpha'' and beta'' of order k, with the mass matrix of where the step begins.
+/// Their coefficients of order k + 1, and the momenta and torques of order k, are linear in alpha''
+/// and beta'' of order k. The mass matrix is the one at the begin of the step.
 ///
-/// With the mean of A_1 and B_1 in the ring, what is left of the rotor's tensor on the ring's axes is
-/// n (cos 2 phi, sin 2 phi; sin 2 phi, -cos 2 phi).
+/// The mean of A_1 and B_1 is added to the ring. The rest of the rotor's tensor on the ring's axes
+/// is n (cos 2 phi, sin 2 phi; sin 2 phi, -cos 2 phi).
 ///
-/// Turning : StaticZero where the guide does not turn; u where it does so steadily; or at(t, h, order),
-///           which gives the series of u
+/// Turning : StaticZero if the guide does not turn; u if it turns steadily; or at(t, h, order),
+///           which returns the series of u
 /// Source  : the equations are those of CardanGyro in another form; recurrences for products:
 ///           E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, I.8
-/// Throws  : ComputationFailed where the mass matrix is singular, as CardanGyro::rates
+/// Throws  : ComputationFailed if the mass matrix is singular, as CardanGyro::rates
 template <class Turning>
 class CardanSeries {
  public:
   static constexpr int most_order = most_series_order;
 
-  /// An order waits for the one before about as long as its sums take, so that high ones pay.
+  /// The relative cost of an order. An order waits for the one before about as long as its sums
+  /// take, so high orders pay.
   static constexpr double relative_order = 1.1;
 
   CardanSeries(const CardanConstants& gyro, const Turning& turning)
@@ -133,7 +134,7 @@ class CardanSeries {
   static constexpr bool turns = !is_static_zero<Turning>;
   static constexpr bool turns_unsteadily = requires(Turning & turning) { turning.at(0.0, 0.0, 0); };
 
-  /// Of the mass matrix of alpha'' and beta''; ab with its sign turned.
+  /// The inverse of the mass matrix of alpha'' and beta''; ab with opposite sign.
   struct Inverse {
     double aa, ab, bb;
   };
@@ -150,7 +151,8 @@ class CardanSeries {
     ProductsOfSeries<guide + (turns_unsteadily ? 3 : turns ? 2 : 0)> products;
     [[maybe_unused]] ProductsOfSeries<1> spin;
 
-    // The coefficients of order k; of those whose products reach one order further also the first.
+    // The coefficients of order k, and the first one of factors whose products reach one order
+    // further.
     double da = c(3, 0), db = c(4, 0), df = c(5, 0);
     const auto [first_sb, first_cb] = sin_cos(inner.reference, c(1, 0));
     double sb = first_sb, cb = first_cb;
@@ -182,7 +184,7 @@ class CardanSeries {
       const double w = h / (k + 1);
       const double per = 1 / w;
 
-      // Of order k + 1, without what alpha'' and beta'' of order k do.
+      // Coefficients of order k + 1, without the contribution of alpha'' and beta'' of order k.
       products.begin(k);
       const Vec4d angles = products.of(0, k, {cb, sb, cb, sb}, {db, db, 0, 0});
       const double next_sb = w * angles[0];
@@ -216,8 +218,8 @@ class CardanSeries {
         next_y2 = y3;
       }
 
-      // What turns inner ring and rotor, on the ring's axes: rates of their angular momentum, and
-      // w x of it.
+      // Torques that turn inner ring and rotor, on the ring's axes: rates of their angular
+      // momentum, and w x of it.
       const double L = C_1 * (g.regulated ? df : z2 + df);
       const Vec4d gyro = products.of(1, k, {y2, y2, x2, 0},
                                      {x2, (ring.c - ring.b) * z2 + L, ring.a_less_c * z2 - L, 0});
@@ -260,7 +262,7 @@ class CardanSeries {
         ddb += inverse.ab * left_a;
       }
 
-      // With these.
+      // Add the contribution of alpha'' and beta''.
       da = w * dda;
       db = w * ddb;
       const double more_x2 = first_cb * da;

@@ -14,8 +14,9 @@ namespace kreisel {
 ///   T_a alpha'' + d_a alpha' + H beta'  + c_a alpha = 0,    T_a = A_1 + A_2 + A_3
 ///   T_b beta''  + d_b beta'  - H alpha' + c_b beta  = 0,    T_b = A_1 + B_2,   H = C_1 phi'
 ///
-/// The exact linearisation about alpha = beta = 0 on a guide at rest, whether the rotor is free or
-/// regulated. Without rings it is the paper's (50), which on a gyro with rings errs in first order.
+/// The exact linearization about alpha = beta = 0 on a guide at rest, for a free or a regulated
+/// rotor. Without rings it is the paper's (50), whose error for a gyro with rings is of first
+/// order.
 ///
 /// Source : paper 002 (50) and the generalised equations below it
 /// Frame  : guide axes, reduced where the axes meet
@@ -23,8 +24,8 @@ namespace kreisel {
 /// Error  : of third order in the angles: 0.32 eps^3 (free) and 0.39 eps^3 (regulated) after 0.2 s
 ///          for starts of the size eps, growing with the time; departure() measures it
 ///          (tests/dynamics/gimbal/unsymmetric_rotor.cpp)
-/// Throws : InvalidInput for what CardanGyro refuses, an unsymmetric rotor, or references of the
-///          bearings other than 0
+/// Throws : InvalidInput for parameters that CardanGyro refuses, an unsymmetric rotor, or
+///          references of the bearings other than 0
 template <class Rotor = FreeRotor>
 class FoepplGyro : public GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>> {
   using Base = GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>>;
@@ -70,7 +71,7 @@ class FoepplGyro : public GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>> {
     return dy;
   }
 
-  /// What rates() computes: see kreisel::terms.
+  /// The terms of rates(): see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     Terms list = Base::linear_terms_at_rest();
     list.add("relative", "A_1 - B_1, which turns with phi", false, "the rotor is symmetric");

@@ -12,8 +12,8 @@
 
 namespace kreisel {
 
-/// What linear equations of a gyro in two rings have in common: small angles alpha and beta with
-/// their rates, a rotor at constant speed, and the gyro of the exact equations that they stand for.
+/// The common part of linear equations of a gyro in two rings: small angles alpha and beta with
+/// their rates, a rotor at constant speed, and the gyro of the exact equations.
 ///
 /// ExactGyro : a CardanGyro
 template <class ExactGyro>
@@ -29,13 +29,13 @@ class GimbalOscillation {
     double beta_rate = 0;
   };
 
-  /// The rotor's, against the inner ring.
+  /// The speed of the rotor against the inner ring.
   [[nodiscard]] double speed() const { return speed_; }
 
-  /// The same gyro by the exact equations.
+  /// The same gyro with the exact equations.
   [[nodiscard]] const Exact& exact() const { return exact_; }
 
-  /// The exact gyro's state at t = 0 that this one approximates, and back.
+  /// The exact gyro's state at t = 0 that corresponds to this state, and back.
   [[nodiscard]] typename Exact::State exact_state(const State& s) const {
     return {s.alpha, s.beta, 0, s.alpha_rate, s.beta_rate, speed_};
   }
@@ -54,7 +54,7 @@ class GimbalOscillation {
   [[nodiscard]] static State from_vector(const Vector& y) { return {y[0], y[1], y[2], y[3]}; }
 
  protected:
-  /// What is in all such equations and what in none: see kreisel::terms.
+  /// The terms that all such equations have and those that none has: see kreisel::terms.
   [[nodiscard]] static Terms linear_terms() {
     Terms list;
     list.add("relative", "moments of inertia times alpha'', beta''");
@@ -65,7 +65,7 @@ class GimbalOscillation {
     return list;
   }
 
-  /// The same of those on a guide at rest.
+  /// The terms of the equations on a guide at rest.
   [[nodiscard]] static Terms linear_terms_at_rest() {
     Terms list = linear_terms();
     list.add("relative", "moments of inertia of both rings");
@@ -75,7 +75,7 @@ class GimbalOscillation {
     return list;
   }
 
-  /// `equations` name themselves in errors.
+  /// `equations` is the name of the equations in error messages.
   GimbalOscillation(Exact exact, double speed, const std::string& equations)
       : exact_(std::move(exact)), speed_(speed) {
     if (!std::isfinite(speed)) throw InvalidInput(equations + ": the speed is not finite");

@@ -12,7 +12,7 @@
 
 namespace kreisel {
 
-/// Which linear equations of the frames of a GyroPlatform.
+/// The linear equations of the frames of a GyroPlatform.
 enum class PlatformEquations {
   printed,    ///< as the paper prints (27): the sign of L6 Omega2 in row 5 is wrong
   corrected,  ///< (27) with that sign
@@ -26,18 +26,19 @@ enum class PlatformEquations {
 ///   platform -> frame 9 (axis +3, alpha9) -> housing 10 (axis +1, beta10) -> rotor 11 (+2)
 ///
 /// Velocities are (Omega1, Omega2, Omega3, alpha4', beta5', beta7', alpha9', beta10'), angles the
-/// last five. Omega is the angular velocity of the platform on its own axes and no rate of
-/// coordinates, for which reason the paper's rows 1 to 3 lack a term.
+/// last five. Omega is the angular velocity of the platform on its own axes. It is no rate of
+/// coordinates, so the paper's rows 1 to 3 lack a term.
 ///
 /// Source : paper 000 sections 2 and 4, (20)-(27), corrected as docs/errata.md says
-/// Frame  : the platform's axes 1, 2, 3; all others' are parallel to them at zero angles
+/// Frame  : the platform's axes 1, 2, 3; the axes of the other frames are parallel to them at zero
+///          angles
 /// Units  : kg, m, kg m^2, N m s
 struct GyroPlatform {
   using Angles = Eigen::Matrix<double, 5, 1>;
   using Matrix8 = Eigen::Matrix<double, 8, 8>;
   using Rows = Eigen::Matrix<double, 3, 8>;
 
-  /// Of a frame or housing, whose centre of mass is on its axis.
+  /// A frame or housing whose centre of mass is on its axis.
   struct Part {
     double mass = 0;
     Vector3<double> moments = Vector3<double>::Zero();  ///< about the centre, about 1, 2, 3
@@ -68,14 +69,14 @@ struct GyroPlatform {
             housing_10.moments + across(rotor_11, 1)};
   }
 
-  /// J4, J5, J7, J9, J10: what turns about each of the five axes.
+  /// J4, J5, J7, J9, J10: the moments of inertia about the five axes.
   [[nodiscard]] Angles axis_moments() const {
     const auto [F, H, K, f, h] = moments();
     return {F[1] + H[1] + K[1], H[2], K[2], f[2] + h[2], h[0]};
   }
 
-  /// The same as bodies, for BodySystem; `base` joins the platform to the guide. The rotors'
-  /// relative rates, L/C if regulated, are for the state to say.
+  /// The same platform as bodies, for BodySystem. `base` joins the platform to the guide. The
+  /// rotors' relative rates, L/C if regulated, are part of the state.
   [[nodiscard]] std::vector<BodyDescription> bodies(const Joint& base, RotorMode mode) const {
     const auto body = [](const char* name, const char* parent, const Vector3<double>& axis,
                          const Vector3<double>& position, const Part& part) {
@@ -129,7 +130,8 @@ struct GyroPlatform {
     return {rotor_6.about, rotor_8.about, rotor_11.about};
   }
 
-  /// A to first order. Source : (23), there constant: what varies is of the size of what (24) keeps
+  /// A to first order. Source : (23), there constant: the variable part is as large as terms that
+  /// (24) keeps
   [[nodiscard]] Matrix8 carrier_inertia(const Angles& q) const {
     const auto [F, H, K, f, h] = moments();
     const Angles J = axis_moments();
@@ -170,9 +172,9 @@ struct GyroPlatform {
     return A;
   }
 
-  /// What (13) makes of B^t A_R B at zero angles; rows 1-3 further have W x (A* u).
+  /// The part of B^t A_R B in (13), at zero angles; rows 1-3 also have W x (A* u).
   ///
-  /// Source : (25), in rows 5, 7, 10 with the 1/2 that (13) has, and completed
+  /// Source : (25), in rows 5, 7, 10 with the factor 1/2 of (13), and completed
   [[nodiscard]] Matrix8 spin_inertia_rate(const Vector3<double>& W, const Angles& dq) const {
     const double C_6 = rotor_6.about, C_8 = rotor_8.about, C_11 = rotor_11.about;
     const double w24 = W[1] + dq[0], w39 = W[2] + dq[3];
@@ -188,8 +190,8 @@ struct GyroPlatform {
     return G;
   }
 
-  /// G_R to first order, skew. Source : (26), with the rows and columns 1-3 that belong to
-  /// velocities which are no rates of coordinates; as printed it has 0 there
+  /// G_R to first order, skew. Source : (26), with the rows and columns 1-3, whose velocities are
+  /// no rates of coordinates; as printed they are 0
   [[nodiscard]] Matrix8 gyroscopic(const Angles& q, bool as_printed = false) const {
     const double L_6 = L[0], L_8 = L[1], L_11 = L[2];
     Matrix8 G = Matrix8::Zero();
@@ -218,10 +220,10 @@ struct GyroPlatform {
     return G;
   }
 
-  /// The second derivatives of the angles by linear equations, while the platform moves with W(t),
-  /// W' as it is made to; Q are forces along the five angles.
+  /// The second derivatives of the angles by linear equations, for a prescribed motion W(t), W' of
+  /// the platform; Q are forces along the five angles.
   ///
-  /// Source : (27). It leaves out products J W W, which matter where the momenta's own terms
+  /// Source : (27). It leaves out products J W W, which matter where the terms of the momenta
   ///          cancel, as (L6 - L8) in row 4
   [[nodiscard]] Angles linear_accelerations(PlatformEquations equations, const Vector3<double>& W,
                                             const Vector3<double>& dW, const Angles& q,
@@ -245,7 +247,7 @@ struct GyroPlatform {
     return r.cwiseQuotient(J);
   }
 
-  /// What linear_accelerations() computes: see kreisel::terms.
+  /// The terms of linear_accelerations(): see kreisel::terms.
   [[nodiscard]] Terms terms(PlatformEquations equations = PlatformEquations::complete) const {
     const bool complete = equations == PlatformEquations::complete;
     const std::string of_order = complete ? "" : "(27) keeps what has a factor L";
@@ -272,7 +274,7 @@ struct GyroPlatform {
     return moments;
   }
 
-  /// Of all parts about O in the normal position, C6, C8, C11 left out.
+  /// The inertia of all parts about O in the normal position, without C6, C8, C11.
   [[nodiscard]] Matrix3<double> at_rest() const {
     const auto [F, H, K, f, h] = moments();
     Matrix3<double> sum = platform.value.tensor.matrix();
@@ -288,7 +290,7 @@ struct GyroPlatform {
     return sum;
   }
 
-  /// All that is linear in the angles and of the size J W^2 or J W', on the left side.
+  /// All terms linear in the angles and of the size J W^2 or J W', on the left side.
   [[nodiscard]] Angles products(const Vector3<double>& W, const Vector3<double>& dW,
                                 const Angles& q, const Angles& dq) const {
     const auto [F, H, K, f, h] = moments();

@@ -15,15 +15,15 @@
 
 namespace kreisel {
 
-/// What is kept of J_f, the momentum that a rotor has because the guide turns.
+/// The part of J_f that is kept: the momentum of the rotor due to the guide's rotation.
 enum class GuideMomentum {
   none,        ///< Schuler: J_f = 0
   constant,    ///< (47): the tensor of the rotor that is not inclined
   first_order  ///< and its part of first order in alpha, beta, and the drive's torque
 };
 
-/// A rotor on a guide that turns, its axis near the guide's z: small oscillations alpha, beta while
-/// it runs at constant speed Omega against its suspension, whose rings have no mass.
+/// A rotor on a guide that turns, its axis near the guide's z: small oscillations alpha, beta at
+/// constant speed Omega against its suspension, whose rings have no mass.
 ///
 ///   oJ + u x J + oJ_f + u x J_f = M     (its components x and y)
 ///
@@ -33,24 +33,23 @@ enum class GuideMomentum {
 ///   J_fy = R u_x + Q u_y + u_z g_b        g_b = (Q - C) alpha - R beta
 ///   J_fz = C u_z + u_x g_a + u_y g_b
 ///
-/// M is what springs and friction do, and of first order the drive's torque M_C, which lies along
-/// the inclined axis: -alpha M_C to M_y.
+/// M is the moment of springs and friction and, of first order, the drive's torque M_C, which lies
+/// along the inclined axis: -alpha M_C is added to M_y.
 ///
 ///   M_C = C ou_z + R (u_x^2 - u_y^2) + (Q - P) u_x u_y
 ///
 /// Source : paper 002 (44)-(48), with the terms of g that (47) lacks. Of J_z only H is in the
-///          field: its parts of second order come with u and do not change the error's order.
-///          They are in relative_momentum(), with the one that (46) lacks
+///          field: its terms of second order are multiplied by u and do not change the order of the
+///          error. relative_momentum() contains them, with the term that (46) lacks
 /// Frame  : guide axes, reduced where the axes meet
 /// Units  : rad, rad/s
 /// Error  : for angles and u of the size eps, of the order eps^k, k = 3 with first_order, also if
 ///          u_z is not small; 2 with constant, 1 if u_z is not small; 1 with none, but 2 for a
-///          symmetric rotor and constant u. With first_order the field errs by the order eps^2
-///          where the angles are of the size eps and u of any
-///          (tests/dynamics/gimbal/gyro_small_oscillations.cpp).
-///          departure() measures it
-/// Throws : InvalidInput for what CardanGyro refuses, references of the bearings other than 0, or a
-///          speed that is not finite
+///          symmetric rotor and constant u. With first_order the error of the field is of the order
+///          eps^2 for angles of the size eps and any u
+///          (tests/dynamics/gimbal/gyro_small_oscillations.cpp). departure() measures it
+/// Throws : InvalidInput for parameters that CardanGyro refuses, references of the bearings other
+///          than 0, or a speed that is not finite
 template <class M>
 class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRotor>> {
   static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
@@ -61,7 +60,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
   using typename Base::State;
   using typename Base::Vector;
 
-  /// mass x'' + damping x' + stiffness x = force,  x = (alpha, beta), at one moment.
+  /// mass x'' + damping x' + stiffness x = force,  x = (alpha, beta), at one time.
   struct Coefficients {
     Eigen::Matrix2d mass, damping, stiffness;
     Eigen::Vector2d force;
@@ -76,7 +75,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
         kept_(kept) {}
 
   [[nodiscard]] Coefficients coefficients(double t) const {
-    // In single numbers: expressions of matrices cost the compiler a quarter more.
+    // In single numbers, because matrix expressions take a quarter longer to compile.
     const auto [P, Q, R] = across_inclined(t);
     const auto [dP, dQ, dR] = across_rate(t);
     const auto [u, du] = turning(guide_, t);
@@ -98,7 +97,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
     c.force[1] -= dR * x + dQ * y + R * du.x() + Q * du.y() + z * (P * x + R * y) - C * z * x;
     if (kept_ == GuideMomentum::constant) return c;
     const double drive = C * dz + R * (x * x - y * y) + (Q - P) * x * y;
-    // g_a and g_b: J_f gains u_z g across and along z  along = u_x g_a + u_y g_b.
+    // g_a and g_b: J_f gains u_z g across z, and along z  along = u_x g_a + u_y g_b.
     const double along_a = x * R + y * (Q - C);
     const double along_b = x * (C - P) - y * R;
     c.damping(0, 0) += z * R;
@@ -129,7 +128,7 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
             (P * second - R * first) / determinant};
   }
 
-  /// What rates() computes: see kreisel::terms.
+  /// The terms of rates(): see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     const bool constant = kept_ != GuideMomentum::none;
     const bool first_order = kept_ == GuideMomentum::first_order;
@@ -150,8 +149,8 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
   ///   J_z = (R alpha - P beta) alpha' + (Q alpha - R beta) beta'
   ///         + C u'_C (1 - (alpha^2 + beta^2)/2)
   ///
-  /// Source : paper 002 (46); the term with alpha^2 + beta^2 is missing there, without which its
-  ///          third line is no better than C u'_C alone
+  /// Source : paper 002 (46); the term with alpha^2 + beta^2 is missing there. Without it the third
+  ///          line of (46) is no better than C u'_C alone
   /// Units  : N m s
   /// Error  : of third order across, of fourth along z; with u'_C = Omega + alpha' beta
   [[nodiscard]] Vector3<double> relative_momentum(double t, const State& s) const {

@@ -23,16 +23,17 @@ namespace kreisel {
 ///        Th + m_x + d cos(2 phi)   d sin(2 phi)               Th = (A + B)/2,  d = (A - B)/2
 ///   M =  d sin(2 phi)              Th + m_y - d cos(2 phi)    phi = Omega t
 ///
-/// and m_x = A_2 + A_3, m_y = B_2 of the rings, which the paper leaves out. The coefficients have
-/// the period pi/Omega, and in some ranges of Omega the rest is unstable: study/floquet.hpp.
+/// m_x = A_2 + A_3, m_y = B_2 of the rings, which the paper leaves out. The coefficients have the
+/// period pi/Omega, and in some ranges of Omega the equilibrium is unstable: study/floquet.hpp.
 ///
-/// Source : paper 002 (49) without the factors 1/2 in the square brackets, and springs. Printed, it
-///          errs in first order and finds other ranges unstable
+/// Source : paper 002 (49) without the factors 1/2 in the square brackets, and springs. The printed
+///          equation has an error of first order and other unstable ranges
 /// Frame  : guide axes, reduced where the axes meet
 /// Units  : rad, rad/s
 /// Error  : of third order in the angles (tests/dynamics/gimbal/unsymmetric_rotor.cpp), growing as
 ///          exp(t ln|l|/period) in an unstable range; departure() measures it
-/// Throws : InvalidInput for what CardanGyro refuses, and a speed that is 0 or not finite
+/// Throws : InvalidInput for parameters that CardanGyro refuses, and for a speed that is 0 or not
+///          finite
 template <class Rotor = RegulatedRotor>
 class UnsymmetricRotor : public GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>> {
   using Base = GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>>;
@@ -40,12 +41,13 @@ class UnsymmetricRotor : public GimbalOscillation<CardanGyro<RestingFrame<>, Rot
  public:
   using typename Base::Vector;
 
-  /// M x'' + damping x' + stiffness x = 0 at one moment; `damping` is dM/dt + C Omega S + D.
+  /// M x'' + damping x' + stiffness x = 0 at one time; `damping` is dM/dt + C Omega S + D.
   struct Coefficients {
     Eigen::Matrix2d mass, damping, stiffness;
   };
 
-  /// `speed` is Omega, the rotor's against the inner ring. References of the bearings must be 0.
+  /// `speed` is Omega, the speed of the rotor against the inner ring. References of the bearings
+  /// must be 0.
   UnsymmetricRotor(const CardanMoments& moments, const CardanBearings& bearings, double speed,
                    Rotor rotor = {})
       : Base(typename Base::Exact(moments, bearings, RestingFrame<>{}, rotor), speed,
@@ -53,7 +55,7 @@ class UnsymmetricRotor : public GimbalOscillation<CardanGyro<RestingFrame<>, Rot
     if (speed == 0) throw InvalidInput("unsymmetric rotor: the speed is 0");
   }
 
-  /// Of the coefficients, in seconds.
+  /// The period of the coefficients, in seconds.
   [[nodiscard]] double period() const { return std::numbers::pi / std::abs(this->speed()); }
 
   [[nodiscard]] Coefficients coefficients(double t) const {
@@ -86,7 +88,7 @@ class UnsymmetricRotor : public GimbalOscillation<CardanGyro<RestingFrame<>, Rot
   /// The vector field  y' = rates(t, y).
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return state_matrix(t) * y; }
 
-  /// What rates() computes: see kreisel::terms.
+  /// The terms of rates(): see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     Terms list = Base::linear_terms_at_rest();
     list.add("relative", "A_1 - B_1, which turns with phi");
@@ -97,14 +99,14 @@ template <class Rotor>
 UnsymmetricRotor(const CardanMoments&, const CardanBearings&, double, Rotor)
     -> UnsymmetricRotor<Rotor>;
 
-/// The closed form for a rotor without rings in two equal springs c: seen from the rotor its
-/// coefficients are constant,
+/// The unstable range of a rotor without rings in two equal springs c, in closed form. On axes of
+/// the rotor its coefficients are constant,
 ///
 ///   A B s^4 + (A k_2 + B k_1 + Omega^2 (A + B - C)^2) s^2 + k_1 k_2 = 0,
 ///   k_1 = c + Omega^2 (C - B),   k_2 = c + Omega^2 (C - A),
 ///
-/// and it is unstable where k_1 k_2 < 0: at any difference of A and B, as far as the intermediate
-/// axis spins.
+/// The rotor is unstable where k_1 k_2 < 0: for any difference of A and B, while the rotor
+/// spins about its intermediate axis.
 ///
 /// Units  : rad/s
 /// Source : paper 002 (49) with springs, in the rotor's axes

@@ -21,7 +21,7 @@ namespace kreisel {
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2
 template <class G, class I, class S = double>
 struct FrameMotion {
-  Displacement<I, G, S> X = {};           ///< attitude and place of G in I
+  Displacement<I, G, S> X = {};           ///< attitude and position of G in I
   Velocity<G, I, G, S> V = {};            ///< (u; v of G's origin)
   Rate<G, Velocity<G, I, G, S>> dV = {};  ///< (ou; ov), componentwise derivatives on G's axes
 

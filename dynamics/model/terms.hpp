@@ -14,7 +14,7 @@ struct Term {
   std::string part;  ///< relative, guide, Coriolis or load: the parts of equation_of_motion
   std::string name;  ///< its formula, in the letters of the scene's documentation
   bool kept = true;
-  std::string why = {};  ///< why it is dropped; of one that is kept which components are not
+  std::string why = {};  ///< why it is dropped; for a kept term, the components that are not
 };
 
 /// All terms of a scene's equation of motion. Printed it is a table, a term a line.

@@ -18,11 +18,11 @@
 
 namespace kreisel {
 
-/// A rigid body that turns about an axis fixed in the guide frame: the physical pendulum.
+/// A rigid body on an axis fixed in the guide frame: the physical pendulum.
 ///
 /// The axis A goes from the pivot through the centre of mass, C lies in the pendulum's axis, B
-/// completes the right-handed triad. The tensor is that about the pivot; its off-diagonals are
-/// -Phi: phi_a = int BC dm, phi_b = int CA dm, phi_c = int AB dm.
+/// completes the right-handed triad. The tensor is about the pivot. Its off-diagonals are -Phi:
+/// phi_a = int BC dm, phi_b = int CA dm, phi_c = int AB dm.
 ///
 /// Source : paper 002 section 5: m, a, Theta_A .. Theta_C, Phi_A .. Phi_C
 /// Units  : kg, m, kg m^2
@@ -33,14 +33,14 @@ struct PendulumBody {
   S theta_a = S(0), theta_b = S(0), theta_c = S(0);
   S phi_a = S(0), phi_b = S(0), phi_c = S(0);
 
-  /// A needle hung up at its end:  a = length/2,  Theta_B = Theta_C = m length^2/3.
+  /// A needle that hangs from its end:  a = length/2,  Theta_B = Theta_C = m length^2/3.
   [[nodiscard]] static PendulumBody thin_rod(const S& length, const S& mass = S(1)) {
     const S theta = mass * length * length / S(3);
     return {mass, length / S(2), S(0), theta, theta};
   }
 
-  /// The needle of reduced length Theta_C/(m a) = l, which is 3l/2 long. Any other body with the
-  /// same l, Theta_B = Theta_C and Theta_A = 0 moves like it.
+  /// The needle of reduced length Theta_C/(m a) = l, which is 3l/2 long. Every body with the same
+  /// l, Theta_B = Theta_C and Theta_A = 0 moves like it.
   [[nodiscard]] static PendulumBody from_reduced_length(const S& length, const S& mass = S(1)) {
     return thin_rod(S(1.5) * length, mass);
   }
@@ -52,11 +52,11 @@ struct PendulumBody {
   }
 };
 
-/// Refuses what no body can be.
+/// Refuses parameters that no body can have.
 ///
-/// Throws : InvalidInput: arm not a finite number above 0, Theta_C likewise, or as
-///          check(Inertia): mass > 0, the tensor about the centre of mass positive semidefinite and
-///          within the triangle inequality to 1e-12 (needles and discs are legal)
+/// Throws : InvalidInput: arm or Theta_C not a finite number above 0; or as check(Inertia): mass >
+///          0, the tensor about the centre of mass positive semidefinite and within the triangle
+///          inequality to 1e-12 (needles and discs are legal)
 template <class S>
 void check(const PendulumBody<S>& body) {
   detail::require_positive("mass", body.mass, "kg");
@@ -70,9 +70,9 @@ void check(const PendulumBody<S>& body) {
   check(inertia, Mass::positive, "pendulum body (theta, phi about the pivot)");
 }
 
-/// The gravity a body at rest in the guide feels at the pivot:  g' = g - (ov + u x v).
+/// The effective gravity at the pivot for a body at rest in the guide:  g' = g - (ov + u x v).
 ///
-/// Source : paper 002 section 5, "effektive Schwere"; ov = dv is the rate seen from the guide of
+/// Source : paper 002 section 5, "effektive Schwere"; ov = dv is the rate, seen from the guide, of
 ///          the velocity of the guide-fixed pivot
 /// Frame  : all on guide axes
 template <class S>
@@ -83,7 +83,7 @@ template <class S>
   return g - dv - u.cross(v);
 }
 
-/// How the guide frame moves at one moment, as far as the pendulum feels it.
+/// The motion of the guide frame at one time, as far as it affects the pendulum.
 ///
 /// Frame  : guide axes: x down when the pendulum hangs straight, z the pendulum's axis
 /// Units  : rad/s, rad/s^2, m/s^2, 1/s^2
@@ -106,8 +106,8 @@ struct PendulumGuide {
   }
 };
 
-/// A guide at rest, gravity straight down: the pendulum of the inertial frame, of which E alone is
-/// left.
+/// A guide at rest with gravity straight down: the pendulum of the inertial frame, whose only
+/// coefficient is E.
 ///
 /// Units  : m/s^2
 template <class S = double>
@@ -115,7 +115,7 @@ struct RestingPendulumGuide {
   S gravity = S(0);
 };
 
-/// The pendulum's guide that stands on the earth: uniform gravity, or on request with its gradient.
+/// Gravity on the earth: uniform, or with its gradient.
 enum class GravityGradient { left_out, taken_in };
 
 template <class S>
@@ -136,8 +136,8 @@ struct PendulumTerms {
   }
 };
 
-/// Where E, F, H and K of (23) come from. The weight is the simple pendulum's; the rest is small on
-/// the earth and kept apart from it, so that nothing cancels.
+/// The origins of E, F, H and K of (23). The weight is the simple pendulum's. The rest is small on
+/// the earth and is stored apart from the weight, so that nothing cancels.
 template <class S = double>
 struct PendulumParts {
   S weight = S(0);                    ///< m a |g'|
@@ -149,8 +149,8 @@ struct PendulumParts {
 
 namespace detail {
 
-/// The moments of inertia that matter and the products, over a common divisor; of a body without
-/// products P is StaticZero.
+/// The moments of inertia that matter and the products of inertia, over a common divisor. P is
+/// StaticZero for a body without products.
 template <class S, class P>
 struct PendulumShape {
   S moment;    ///< m a
@@ -158,7 +158,7 @@ struct PendulumShape {
   Components<P> phi;
 };
 
-/// PendulumTerms of which each is a number or StaticZero.
+/// PendulumTerms whose members are each a number or StaticZero.
 template <class E, class F, class H, class K>
 struct PlaneTerms {
   E e;
@@ -174,9 +174,9 @@ struct PlaneTerms {
   }
 };
 
-/// What a field of force  G r dm  does to the body, from the four numbers of G that matter.
+/// The moment of a force field  G r dm  on the body, from the four numbers of G that matter.
 ///
-/// With G = u^2 - u u^t it gives the centrifugal terms, with G the gravity gradient the tidal ones.
+/// G = u^2 - u u^t gives the centrifugal terms, the gravity gradient G the tidal terms.
 template <class S, class P, class A>
 [[nodiscard]] auto gradient_terms(const PendulumShape<S, P>& body, const A& yy_less_xx, const A& xy,
                                   const A& xz, const A& yz) {
@@ -202,13 +202,13 @@ template <class S, class P, class A>
       E(phi.x * du.x - phi.y * du.y), E(E(-E(phi.x * du.y)) - E(phi.y * du.x)), {}, {}};
 }
 
-/// Of a gravity gradient G.
+/// The moment of a gravity gradient G.
 template <class S, class P>
 [[nodiscard]] auto tidal_terms(const PendulumShape<S, P>& body, const Matrix3<S>& G) {
   return gradient_terms(body, S(G(1, 1) - G(0, 0)), S(G(0, 1)), S(G(0, 2)), S(G(1, 2)));
 }
 
-/// 0 for what is StaticZero.
+/// The value as a number: 0 for StaticZero.
 template <class S, class F>
 [[nodiscard]] PendulumTerms<S> terms(const PlaneTerms<F, F, S, S>& t) {
   return {S(S(0) + t.e), S(S(0) + t.f), t.h, t.k};
@@ -223,7 +223,8 @@ template <class S>
   return {body.mass * body.arm, body.theta_b - body.theta_a, {body.phi_a, body.phi_b, body.phi_c}};
 }
 
-/// e sin(phi) + f cos(phi) + h cos(2 phi) + k sin(2 phi), each of the four a number or StaticZero.
+/// e sin(phi) + f cos(phi) + h cos(2 phi) + k sin(2 phi), where each of the four is a number or
+/// StaticZero.
 template <class A, class E, class F, class H, class K>
 [[nodiscard]] A restoring_moment(const E& e, const F& f, const H& h, const K& twice_k,
                                  const A& phi) {
@@ -340,7 +341,8 @@ template <class S>
 template <class S = double>
 using PendulumState = Eigen::Matrix<S, 2, 1>;
 
-/// The energy a steady pendulum without damping keeps:  Theta_C phi.^2/2 + potential(phi).  [J]
+/// The conserved energy of a steady pendulum without damping:  Theta_C phi.^2/2 + potential(phi).
+/// [J]
 template <class S, class A>
 [[nodiscard]] A energy(const PendulumBody<S>& body, const PendulumCoefficients<S>& c,
                        const PendulumState<A>& state) {
@@ -390,7 +392,7 @@ template <class S, class P>
   return {S(over_theta.moment * guide.gravity), {}, {}, {}, {}};
 }
 
-/// The equation, if it is the same at all times.
+/// The equation, if it is constant in time.
 template <class Shape, class Motion>
 [[nodiscard]] auto steady_equation(const Shape& over_theta, const Motion& motion) {
   if constexpr (is_steady_pendulum_guide<Motion>) {
@@ -406,15 +408,15 @@ template <class Shape, class Motion>
 ///
 ///   Theta_C phi.. + f(phi.) + E sin phi + F cos phi + H cos 2phi + K sin 2phi = -Theta_C ou_z
 ///
-/// Motion is the guide's: a PendulumGuide, when it is steady, a RestingPendulumGuide, or a function
-/// of time that returns one of both. Damping is a function phi. -> f(phi.) in N m, with f(w) w >= 0
-/// for a brake. Of a body said to be Without<ProductsOfInertia> Phi_A .. Phi_C are left out.
+/// Motion is the guide's: a PendulumGuide for a steady guide, a RestingPendulumGuide, or a function
+/// of time that returns one of them. Damping is a function phi. -> f(phi.) in N m, with f(w) w >= 0
+/// for a brake. Phi_A .. Phi_C are left out for a body with Without<ProductsOfInertia>.
 ///
 /// Source : paper 002 (23)
 /// Error  : that of PendulumCoefficients::moment
 /// Cost   : one sine, one cosine and 14 flops when the guide is steady, some 30 to 50 flops more
 ///          when not
-/// Throws : InvalidInput where products of inertia are said to vanish and do not
+/// Throws : InvalidInput if Without<ProductsOfInertia> is given and a product of inertia is not 0
 template <class S, class Motion = PendulumGuide<S>, class Damping = NoDamping, class... Known>
 class PendulumField {
   static constexpr bool steady = detail::is_steady_pendulum_guide<Motion>;
@@ -437,14 +439,14 @@ class PendulumField {
     }
   }
 
-  /// For TaylorSteps.
+  /// The Taylor series of the motion, for TaylorSteps.
   [[nodiscard]] detail::PendulumSeries series() const
       requires(steady&& std::is_same_v<S, double>&& std::is_same_v<Damping, NoDamping>) {
     const auto& [e, f, h, twice_k, drive] = steady_;
     return {e, 0.0 + f, (0.0 + twice_k) / 2, 0.0 + h, 0.0 + drive};
   }
 
-  /// What the field computes of (23): see kreisel::terms.
+  /// The terms of (23) that the field computes: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     constexpr bool moves = !detail::is_static_zero<decltype(Equation::h)>;
     constexpr bool crooked = moves && !principal;
@@ -472,7 +474,9 @@ class PendulumField {
     const S b_less_a = (body.theta_b - body.theta_a) / body.theta_c;
     if constexpr (principal) {
       if (body.phi_a != S(0) || body.phi_b != S(0) || body.phi_c != S(0)) {
-        throw InvalidInput("pendulum: a product of inertia is said to vanish and does not");
+        throw InvalidInput(
+            "pendulum: Without<ProductsOfInertia> was given, but phi_a, phi_b and phi_c are not "
+            "all 0");
       }
       return {moment, b_less_a, {}};
     } else {
@@ -507,7 +511,7 @@ class PendulumField {
   decltype(detail::steady_equation(std::declval<Shape>(), std::declval<Motion>())) steady_;
 };
 
-/// The linearised equation  Theta_C phi.. + (E + 2K) phi = -(F + H), undamped, ou = 0.
+/// The linearized equation  Theta_C phi.. + (E + 2K) phi = -(F + H), undamped, ou = 0.
 ///
 /// Source : paper 002 section 5, below (23)
 template <class S = double>
@@ -518,7 +522,7 @@ struct LinearPendulum {
 
   [[nodiscard]] S acceleration(const S& phi) const { return -(stiffness * phi + bias) / theta_c; }
 
-  /// phi_0 = -(F + H)/(E + 2K); none when E + 2K = 0. Unstable, when E + 2K < 0.
+  /// phi_0 = -(F + H)/(E + 2K); none if E + 2K = 0. Unstable if E + 2K < 0.
   [[nodiscard]] std::optional<S> equilibrium() const {
     if (stiffness == S(0)) return {};
     return S(S(0) - bias / stiffness);
@@ -551,8 +555,8 @@ template <class S>
 ///         = -(Theta_B - Theta_A) u_x u_y/(m a g')
 ///
 /// Source : paper 002 (24). With alpha = 90 (axis east-west) the lower end swings north in the
-///          north
-/// Error  : O(u^4) and the terms with Phi: the answer of deviation() names the difference
+///          northern hemisphere
+/// Error  : O(u^4) and the terms with Phi; deviation() returns the difference
 template <class S>
 [[nodiscard]] S formula_24(const PendulumBody<S>& body, const PendulumGuide<S>& guide) {
   const Vector3<S>& u = guide.angular_velocity;
@@ -563,8 +567,8 @@ template <class S>
 ///
 ///   z = (Theta_B - Theta_A) u^2 (sin^2 theta - cos^2 theta sin^2 alpha)/(2 m a g')
 ///
-/// Source : paper 002 (25) corrected: theta is the latitude, for which the paper prints the
-///          colatitude's sin and cos; the root ends before the bracket
+/// Source : paper 002 (25) corrected: theta is the latitude, while the paper prints sin and cos of
+///          the colatitude; the root ends before the bracket
 /// Error  : as formula_24
 template <class S>
 [[nodiscard]] S formula_25(const PendulumBody<S>& body, const PendulumGuide<S>& guide) {

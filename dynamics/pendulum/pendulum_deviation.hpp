@@ -12,15 +12,15 @@
 
 namespace kreisel {
 
-/// A number and how far it may be from the truth.
+/// A number and a bound of its error.
 template <class S = double>
 struct Estimated {
   S value;
   S error;
 };
 
-/// A part of the equation of motion, kept or dropped, with the reason and its greatest moment in
-/// units of the weight's m a g'.
+/// A part of the equation of motion, kept or dropped, with the reason and its greatest moment
+/// relative to m a g' of the weight.
 template <class S = double>
 struct PendulumTerm {
   std::string name;
@@ -28,10 +28,10 @@ struct PendulumTerm {
   S size;
 };
 
-/// What the rotation of the guide does to a pendulum.
+/// The effect of the guide's rotation on a pendulum.
 ///
 /// Units  : rad, s; relative changes are T/T_00 - 1
-/// Error  : of an exact number, its rounding; of a formula, its difference to the exact number
+/// Error  : of an exact number, its rounding; of a formula, its difference from the exact number
 template <class S = double>
 struct PendulumAnswer {
   struct {
@@ -57,7 +57,7 @@ struct PendulumAnswer {
 
 namespace detail {
 
-/// All numbers of a PendulumAnswer, evaluated in one scalar.
+/// All numbers of a PendulumAnswer, computed in one scalar.
 template <class S>
 struct PendulumNumbers {
   S formula_24, formula_25, simple;
@@ -90,14 +90,14 @@ template <class S>
   return n;
 }
 
-/// Compares a number with a better one: |difference| and half a unit in the last place of the
+/// The error of a number from a better one: |difference| and half a unit in the last place of the
 /// number.
 template <class S, class Wide>
 [[nodiscard]] Estimated<S> against(const S& value, const Wide& better) {
   using std::abs;
   const Wide half_ulp = abs(Wide(value)) * Wide(std::numeric_limits<S>::epsilon()) / Wide(2);
   const Wide error = abs(Wide(value) - better) + half_ulp;
-  // Rounded up, so that the bound stays one; + 0 turns -0 into 0.
+  // Rounded up, so that the bound remains a bound; + 0 turns -0 into 0.
   return {value + S(0), S(error) * (S(1) + S(2) * std::numeric_limits<S>::epsilon())};
 }
 
@@ -119,7 +119,7 @@ void list_terms(const PendulumBody<S>& body, const PendulumGuide<S>& guide,
   const auto dropped = [&](std::string name, std::string reason) {
     answer.terms_dropped.push_back({std::move(name), std::move(reason), S(0)});
   };
-  // A number of (23): kept if it is not 0, else dropped with the reason.
+  // A number of (23): kept if it is not 0, else dropped, with the reason.
   const auto part = [&](const char* name, const S& moment, const char* origin,
                         const std::string& why_zero) {
     if (moment != S(0)) {
@@ -137,7 +137,7 @@ void list_terms(const PendulumBody<S>& body, const PendulumGuide<S>& guide,
     part("F: tilt", p.tilt.f, "effective gravity off the x axis", "g'_y = 0");
   }
 
-  // Why  (Theta_B - Theta_A) first + Phi_C second  is 0.
+  // The reason why  (Theta_B - Theta_A) first + Phi_C second  is 0.
   const auto why_zero_in_plane = [&](const S& first, const char* first_zero, const S& second,
                                      const char* second_zero) {
     const char* theta = body.theta_a == body.theta_b ? "Theta_A = Theta_B" : first_zero;
@@ -188,18 +188,18 @@ void list_terms(const PendulumBody<S>& body, const PendulumGuide<S>& guide,
 
 /// Equilibrium and period of a pendulum on a steadily moving guide, with error estimates.
 ///
-/// Everything is evaluated twice, in S and in long double, from the same inputs. The S number is
-/// returned; its error is |difference| + half a unit in its last place. Inputs given in long double
+/// Everything is computed twice, in S and in long double, from the same inputs. The result is the
+/// number in S; its error is |difference| + half a unit in its last place. Inputs in long double
 /// (decimals read by strtold) count as exact: the estimate then includes their rounding to S.
-/// Inputs given in S are taken as the numbers they are.
+/// Inputs in S count as exact too.
 ///
 /// Source : paper 002 section 5
 /// Error  : true error <= estimate in all reference cases; measured ratios in
 ///          tests/dynamics/pendulum/pendulum_deviation.cpp
 /// Cost   : 8 us without, 17 us with amplitude 0.1, 90 us with amplitude 3 (2.5 GHz Xeon)
-/// Throws : InvalidInput: a body check() refuses, a guide that accelerates its turn or has no
-///          gravity, a number that is not finite, |amplitude| > pi;
-///          ComputationFailed as equilibria() and period_at_amplitude()
+/// Throws : InvalidInput: a body that check() refuses, a guide with angular acceleration or without
+///          gravity, a number that is not finite, |amplitude| > pi; ComputationFailed as
+///          equilibria() and period_at_amplitude()
 template <class S = double, class T>
 [[nodiscard]] PendulumAnswer<S> deviation(
     const PendulumBody<T>& body, const PendulumGuide<T>& guide,

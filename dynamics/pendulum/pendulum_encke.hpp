@@ -10,22 +10,22 @@
 
 namespace kreisel {
 
-/// What a small disturbance makes of the swing of a plane pendulum, as the deviation d from the
-/// undisturbed swing a (Encke's way), which is carried along:
+/// The deviation d of a plane pendulum's swing from the undisturbed swing a under a small
+/// disturbance (Encke's method). Both are integrated together:
 ///
 ///   a'' = -k sin a,   d'' = -2 k cos(a + d/2) sin(d/2) + disturbance(t, a + d, a' + d')
 ///
-/// The earth's rotation moves a swing of 1 rad by 1e-9 rad in half a minute: the difference of two
-/// runs would have six digits of that, this has twelve. Each component is measured by its own
-/// size: ask for Accuracy::absolute_scale or SolveOptions::absolute_scale = 0.
+/// The earth's rotation moves a swing of 1 rad by 1e-9 rad in half a minute. The difference of two
+/// runs would have six digits of that; d has twelve. Each component is measured by its own size:
+/// set Accuracy::absolute_scale or SolveOptions::absolute_scale = 0.
 ///
-/// D      : callable (S t, S angle, S rate) -> S, an angular acceleration; name S as its result, for
-///          what dual numbers give to auto refers to what is gone by then
+/// D      : callable (S t, S angle, S rate) -> S, an angular acceleration. Name S as its result: an
+///          expression of dual numbers returned as auto refers to temporaries
 /// Source : J. F. Encke, Berliner Astronomisches Jahrbuch fuer 1857; the disturbance of the rotating
 ///          earth: paper 002 (23) with one angle
 /// Units  : 1/s^2 (k = m g l/Theta), radian, s
-/// Error  : of d over 30 s <= 1e-12 of it                (tests/dynamics/pendulum/pendulum_encke.cpp)
-/// Throws : InvalidInput where k is not a finite number above 0
+/// Error  : of d over 30 s <= 1e-12 relative    (tests/dynamics/pendulum/pendulum_encke.cpp)
+/// Throws : InvalidInput if k is not a finite number above 0
 template <class D>
 class EnckePendulum {
  public:

@@ -22,11 +22,11 @@ struct Equilibrium {
 
 namespace detail {
 
-/// The root of a function in a bracket, by Newton's method: bisected where that leaves the bracket, or
-/// takes no step half as long as the one before.
+/// The root of a function in a bracket, by Newton's method. Bisection replaces a Newton step that
+/// leaves the bracket or is longer than half the step before.
 ///
-/// look  : says of x whether the root lies below it, and where Newton's method goes from there
-/// least : steps may be this long besides what x is rounded by
+/// look  : for x, whether the root lies below x, and the point of the next Newton step
+/// least : accepted length of a step beyond the rounding of x
 template <class S, class Look>
 [[nodiscard]] S root_in_bracket(S low, S high, S x, const S& least, const Look& look) {
   using std::abs;
@@ -48,9 +48,9 @@ template <class S, class Look>
 /// Isolates and polishes the roots of  m(x) = E sin x + F cos x + H cos 2x + K sin 2x  on one turn.
 ///
 /// Recursive bisection of [start - 2 pi, start]. A piece of half-width r about x is dropped if
-/// Taylor's remainder bound proves |m| > 0 on it, and is monotone if it proves |m'| > 0: then the
-/// signs at the ends decide. What is undecided at r = sqrt(epsilon), or is 0 to rounding all over,
-/// is a cluster: a bifurcation point, examined by its ends and its extremum.
+/// Taylor's remainder bound proves |m| > 0 on it. It is monotone if the bound proves |m'| > 0; the
+/// signs at its ends then decide. A piece that is undecided at r = sqrt(epsilon), or is 0 to
+/// rounding everywhere, is a cluster: a bifurcation point, examined by its ends and its extremum.
 template <class S>
 class EquilibriumOptions {
  public:
@@ -70,7 +70,8 @@ class EquilibriumOptions {
 
   [[nodiscard]] std::vector<Equilibrium<S>> run() {
     using std::abs;
-    // Four roots at most: of five points one at least is none. Cut the circle where |m| is largest.
+    // At most four roots: of five points at least one is no root. Cut the circle where |m| is
+    // largest.
     S start(0);
     S largest(-1);
     for (int i = 0; i < 5; ++i) {
@@ -87,7 +88,7 @@ class EquilibriumOptions {
   }
 
  private:
-  /// Found in [low, high], where the moment is monotone, or undecided and then degenerate.
+  /// A root in [low, high], where the moment is monotone; or undecided, and then degenerate.
   struct Root {
     S x, low, high;
     bool degenerate;
@@ -111,8 +112,8 @@ class EquilibriumOptions {
             -single_rate - S(4) * twice_rate};
   }
 
-  /// The moment. Near 0 and pi F and H are brought together first: it is their difference that counts
-  /// there; elsewhere each term is as small as its cosine.
+  /// The moment. Near 0 and pi the difference of F and H decides, so F and H are combined first.
+  /// Elsewhere each term is as small as its cosine.
   [[nodiscard]] S moment(const S& x) const {
     using std::abs, std::cos, std::sin;
     const S s = sin(x);
@@ -175,7 +176,7 @@ class EquilibriumOptions {
     }
   }
 
-  /// Where the moment's slope vanishes between two near points.
+  /// The point between two near points at which the slope of the moment vanishes.
   [[nodiscard]] S extremum(const S& low, const S& high) const {
     S x = (low + high) / S(2);
     for (int i = 0; i < 50; ++i) {
@@ -188,8 +189,8 @@ class EquilibriumOptions {
     return x;
   }
 
-  /// Roots between which the moment is 0 to rounding are one. The signs beyond its ends tell its
-  /// kind.
+  /// The roots, with those joined between which the moment is 0 to rounding. The signs beyond the
+  /// ends of a group decide its kind.
   [[nodiscard]] std::vector<Equilibrium<S>> merged() const {
     using std::abs;
     std::vector<Equilibrium<S>> result;
@@ -215,7 +216,7 @@ class EquilibriumOptions {
     return result;
   }
 
-  /// The root in a bracket; one near 0 comes with full relative accuracy.
+  /// The root in a bracket, with full relative accuracy for a root near 0.
   [[nodiscard]] S solve(const S& low, const S& high) const {
     if (c_.f + c_.h == S(0) && low <= S(0) && S(0) <= high) return S(0);
     if (c_.f == c_.h && low <= -pi_ && -pi_ <= high) return -pi_;
@@ -240,8 +241,8 @@ class EquilibriumOptions {
 ///
 ///   E sin(phi) + F cos(phi) + H cos(2 phi) + K sin(2 phi) = 0   on (-pi, pi],  two to four.
 ///
-/// None is missed: every piece of the circle is excluded or found monotone by a bound, not by
-/// sampling. A merged pair is reported once, degenerate and unstable; three merged into one are
+/// The list is complete: every piece of the circle is excluded or proved monotone by a bound, not
+/// by sampling. A merged pair is reported once, degenerate and unstable. Three merged into one are
 /// degenerate and as stable as the moment's change of sign.
 ///
 /// Source : paper 002 (23) at rest
@@ -254,7 +255,7 @@ template <class S>
   return detail::EquilibriumOptions<S>(c).run();
 }
 
-/// The stable equilibrium nearest 0; of two equally near (to 16u), the positive one.
+/// The stable equilibrium nearest 0; of two equally near (to 16u) the positive one.
 ///
 /// Throws : ComputationFailed when none of them is stable (never for a list made by equilibria())
 template <class S>

@@ -14,27 +14,29 @@
 
 namespace kreisel {
 
-/// The motion of an undamped pendulum on a steady guide, from any angle and rate: it swings between
-/// two turning points, over one well or several, or it turns over.
+/// The motion of an undamped pendulum on a steady guide, from any angle and rate. The pendulum
+/// swings between two turning points, over one well or several, or it turns over.
 ///
 ///   Theta_C phi.^2/2 + U(phi) = const.,  dU/dphi = E sin phi + F cos phi + H cos 2phi + K sin 2phi
 ///
-/// is told by a phase theta: swinging, phi = (l + r)/2 - (r - l)/2 cos(theta) between the turning
-/// points l and r; turning over, phi = phi(0) +- theta. In both dt/dtheta is smooth and has the
-/// period 2 pi, so that few terms of its Fourier series count. Integrated it is
+/// The motion is a function of a phase theta. In a swing, phi = (l + r)/2 - (r - l)/2 cos(theta)
+/// between the turning points l and r; in turning over, phi = phi(0) +- theta. In both cases
+/// dt/dtheta is smooth and has the period 2 pi, so few terms of its Fourier series are needed. Its
+/// integral is
 ///
 ///   t = T theta/(2 pi) + sum_k (s_k sin(k theta) + c_k cos(k theta)),
 ///
-/// which Newton's method inverts. There are no steps: the state after 1e6 periods costs what that
-/// after one does.
+/// and Newton's method inverts it. There are no steps: the state after 1e6 periods costs as much as
+/// the state after one.
 ///
-/// S      : what it thinks in; exact::Real, lest a phase of 1e4 periods lose digits
+/// S      : number type of the computation; exact::Real keeps the digits of a phase of 1e4 periods
 /// Source : paper 002 (23), the first integral
 /// Units  : rad, rad/s, s
 /// Error  : of the phase  (4 |theta| + 32) epsilon condition()   (tests/dynamics/pendulum/physical_pendulum)
-/// Throws : InvalidInput where nothing pulls at all, or the start is not finite; ComputationFailed at
-///          rest at an equilibrium, or so near a barrier that 1024 terms are not enough: between 2e-6
-///          and 2e-7 of its height (case pendulum-barrier of the catalogue)
+/// Throws : InvalidInput if there is no moment at all, or the start is not finite;
+///          ComputationFailed at rest at an equilibrium, or so near a barrier that 1024 terms are
+///          not enough: between 2e-6 and 2e-7 of its height (case pendulum-barrier of the
+///          catalogue)
 template <class S>
 class SteadyPendulumMotion {
  public:
@@ -57,7 +59,7 @@ class SteadyPendulumMotion {
     if (left && right) {
       using std::atan2, std::sqrt;
       swing_ = detail::Swing<S>{moment_, *left, *right, theta_c_};
-      // From the rate, too: near a turning point the angle hardly knows the phase.
+      // The rate is used as well: near a turning point the angle depends little on the phase.
       const S width = *right - *left;
       const S to_left = std::clamp(S((start_ - *left) / width), S(0), S(1));
       const S pace = swing_->pace(S(sqrt(to_left)), S(sqrt(S(S(1) - to_left)))).time;
@@ -67,24 +69,24 @@ class SteadyPendulumMotion {
     begin_time_ = at_phase(begin_phase_).time;
   }
 
-  /// Of a swing there and back, or of one turn over the top.
+  /// The period of a swing there and back, or of one turn over the top.
   [[nodiscard]] S period() const { return S(2) * pi() * pace_; }
 
-  /// How much of its rounding the phase takes over: 1 far from barriers, and great near them.
+  /// The amplification of rounding errors in the phase: 1 far from barriers, and great near them.
   [[nodiscard]] S condition() const { return condition_; }
 
-  /// How many radians of phase that time takes.
+  /// The phase in radians after a time.
   [[nodiscard]] S phase(const S& time) const {
     using std::abs;
     return abs(S(time / pace_));
   }
 
-  /// Bound of what the phase is off at that time by rounding.
+  /// A bound of the rounding error of the phase at a time.
   [[nodiscard]] S phase_error(const S& time) const {
     return (S(4) * phase(time) + S(32)) * std::numeric_limits<S>::epsilon() * condition_;
   }
 
-  /// What angle and rate change by for each radian of phase, at most.
+  /// The greatest change of angle and rate per radian of phase.
   [[nodiscard]] S angle_per_phase() const {
     return swing_ ? S((swing_->right - swing_->left) / S(2)) : S(1);
   }
@@ -140,9 +142,10 @@ class SteadyPendulumMotion {
     }
   }
 
-  /// Left and right of the start, counted from the origin; neither if it turns over.
+  /// The turning points left and right of the start, counted from the origin; neither if it turns
+  /// over.
   ///
-  /// Throws : ComputationFailed where it rests, or ends on a barrier
+  /// Throws : ComputationFailed if it rests, or ends on a barrier
   [[nodiscard]] std::pair<std::optional<S>, std::optional<S>> turning_points(
       const std::vector<Equilibrium<S>>& all) const {
     using std::abs, std::ceil, std::floor;
@@ -182,7 +185,7 @@ class SteadyPendulumMotion {
     return {sqrt(S(theta_c_ / (S(2) * left))), (kinetic_ + abs(gained)) / left};
   }
 
-  /// Doubles the nodes until the last terms are rounding.
+  /// Doubles the nodes until the last terms are as small as rounding.
   void find_series() {
     using std::abs, std::cos, std::sin;
     const S epsilon = std::numeric_limits<S>::epsilon();
@@ -193,7 +196,7 @@ class SteadyPendulumMotion {
       std::vector<S> cosines(n);
       std::vector<S> sines(n);
       for (std::size_t j = 0; j < n; ++j) {
-        // From -pi to pi: further away a pendulum that turns over would lose digits of phi.
+        // From -pi to pi: farther away a pendulum that turns over would lose digits of phi.
         const S theta = pi() * (S(2) * S(double(j)) / S(double(n)) - (2 * j < n ? S(0) : S(2)));
         cosines[j] = cos(theta);
         sines[j] = sin(theta);
@@ -262,7 +265,8 @@ class SteadyPendulumMotion {
     return {pace_ * theta + sum.time, pace_ + sum.pace};
   }
 
-  /// t(theta) rises, and differs from its mean by less than a period.
+  /// The phase at a time, by Newton's method: t(theta) increases and differs from its mean by less
+  /// than a period.
   [[nodiscard]] S phase_at(const S& time) const {
     const S mean = time / pace_;
     const S turn = S(2) * pi();

@@ -12,14 +12,14 @@
 
 namespace kreisel {
 
-/// How much the stiffness at an equilibrium exceeds the simple pendulum's, relatively:
+/// The relative excess of the stiffness at an equilibrium over the simple pendulum's:
 ///
 ///   x = (delta_E cos p - 2 m a g' sin^2(p/2) - F sin p - 2 H sin 2p + 2 K cos 2p)/(m a g')
 ///
 /// with p = angle.
 ///
-/// Error  : <= 8u of the terms, measured 6u: x = 1e-20 comes with 14 digits where K = 0
-/// Throws : InvalidInput when m a g' is 0
+/// Error  : <= 8u of the terms, measured 6u: x = 1e-20 has 14 correct digits where K = 0
+/// Throws : InvalidInput if m a g' is 0
 template <class S>
 [[nodiscard]] S stiffness_excess(const PendulumCoefficients<S>& c, const S& angle) {
   using std::cos, std::sin;
@@ -39,7 +39,7 @@ template <class S>
 /// Relative change  T/T_00 - 1 = (1 + x)^(-1/2) - 1  of the period of small oscillations.
 ///
 /// Error  : that of stiffness_excess, and 2u
-/// Throws : ComputationFailed when the equilibrium is not stable in first order: 1 + x <= 0
+/// Throws : ComputationFailed if the equilibrium is not stable in first order: 1 + x <= 0
 template <class S>
 [[nodiscard]] S small_period_change(const PendulumCoefficients<S>& c, const S& angle) {
   using std::expm1, std::log1p;
@@ -53,7 +53,7 @@ template <class S>
 /// The period of small oscillations about an equilibrium:  2 pi sqrt(Theta_C/stiffness).
 ///
 /// Error  : <= 4u + 3u (|E cos| + |F sin| + 2|H sin 2phi| + 2|K cos 2phi|)/stiffness, relative
-/// Throws : ComputationFailed when the stiffness is not above 0
+/// Throws : ComputationFailed if the stiffness is not above 0
 template <class S>
 [[nodiscard]] S small_period(const PendulumBody<S>& body, const PendulumCoefficients<S>& c,
                              const S& angle) {
@@ -89,13 +89,14 @@ struct ShiftedMoment {
     const S cs = cos(angle);
     const S c2 = (cs - s) * (cs + s);
     const S s2 = S(2) * s * cs;
-    // F' twice over, E s + F c = -(H c2 + K s2): take the sum that rounds less.
+    // F' appears twice, and E s + F c = -(H c2 + K s2): use the sum with the smaller rounding
+    // error.
     const bool first = abs(c.e() * s) + abs(c.f * cs) < abs(c.h * c2) + abs(c.k * s2);
     return {c.e() * cs - c.f * s, c.k * c2 - c.h * s2,
             first ? S(c.e() * s + c.f * cs) : S(S(0) - c.h * c2 - c.k * s2)};
   }
 
-  /// As seen in a mirror, x -> -x.
+  /// The mirror image, x -> -x.
   [[nodiscard]] ShiftedMoment mirrored() const { return {e, k, S(0) - f}; }
 
   [[nodiscard]] S size() const {
@@ -105,7 +106,7 @@ struct ShiftedMoment {
 
   [[nodiscard]] S moment(const S& x) const { return slope(x, S(0)); }
 
-  /// How much slope(m, d) magnifies the rounding of m and d, relatively.
+  /// The relative amplification of the rounding of m and d in slope(m, d).
   [[nodiscard]] S condition(const S& m, const S& d, const S& slope) const {
     using std::abs;
     return ((abs(e) + S(2) * abs(k)) * abs(m) + S(2) * abs(f) * (m * m + d * d)) / abs(slope);
@@ -130,7 +131,7 @@ struct ShiftedMoment {
   }
 };
 
-/// A swing between two turning points, told by its phase  theta:
+/// A swing between two turning points as a function of its phase theta:
 ///   x = (left + right)/2 - (right - left)/2 cos(theta)
 template <class S>
 struct Swing {
@@ -143,8 +144,8 @@ struct Swing {
     S condition;  ///< how much of its rounding the moment's is
   };
 
-  /// Of the phase whose half has this sine and cosine. Smooth and even in theta: with Q = (U_right -
-  /// U)/((right - x)(x - left)) it is 1/sqrt(2 Q/Theta_C).
+  /// dt/dtheta at the phase whose half has this sine and cosine. It is smooth and even in theta:
+  /// with Q = (U_right - U)/((right - x)(x - left)) it is 1/sqrt(2 Q/Theta_C).
   [[nodiscard]] Pace pace(const S& sin_half, const S& cos_half) const {
     using std::sqrt;
     // Distances to the ends and the difference from the nearer end, each without cancellation.
@@ -170,17 +171,18 @@ template <class S>
   throw ComputationFailed(text.str());
 }
 
-/// Where a pendulum that goes from `start` towards smaller x, with so much kinetic energy, comes to
-/// rest; nothing if it turns over, which it does not without any.
+/// The turning point of a pendulum that moves from `start` towards smaller x with this kinetic
+/// energy. Nothing if it turns over, which needs kinetic energy.
 ///
 /// `stops` are the equilibria below `start`, descending, over at least one turn: U is monotone
-/// between.
+/// between them.
 template <class S>
 [[nodiscard]] std::optional<S> climb(const ShiftedMoment<S>& moment, const S& start,
                                      const S& kinetic, const std::vector<S>& stops, const S& sense,
                                      const S& phi_0) {
   using std::abs, std::sqrt;
-  // What is left of the kinetic energy at x, over the way to it: of tiny swings both would underflow.
+  // The remaining kinetic energy at x, divided by the distance: for tiny swings both would
+  // underflow.
   const auto left = [&](const S& x) {
     const S slope = moment.slope(S((start + x) / S(2)), S((start - x) / S(2)));
     return kinetic == S(0) ? slope : S(kinetic / (start - x) + slope);
@@ -205,8 +207,8 @@ template <class S>
     if (kinetic == S(0)) fail_at_separatrix(barrier);  // what is left there is rounding
     return {};
   }
-  // From where a spring of the stiffness at x = 0 would stop: from afar Newton's method takes a step
-  // for each factor 2 that the swing is small.
+  // Start from the turning point of a spring with the stiffness at x = 0. From far away Newton's
+  // method would take a step for each factor 2 by which the swing is small.
   const S stiffness = moment.e + S(2) * moment.k;
   const S spring =
       kinetic == S(0) ? S(-abs(start)) : S(-sqrt(S(start * start + S(2) * kinetic / stiffness)));
@@ -224,19 +226,19 @@ template <class S>
 ///
 ///   T = 2 int dx/sqrt(2 (U_r - U)/Theta_C)  between the turning points l and r. With x = c + R sin
 ///   s and Q = (U_r - U)/((r - x)(x - l)) the integrand 1/sqrt(2 Q/Theta_C) is smooth and periodic
-///   in s, and the trapezoidal rule, doubled until it stands, converges geometrically.
+///   in s. The trapezoidal rule, doubled until it converges, then converges geometrically.
 ///
 /// The other turning point need not lie in the same well: a pendulum released high passes lower
-/// barriers. Everything is counted from the equilibrium, so that an amplitude of 1e-12 loses
-/// nothing.
+/// barriers. Angles are counted from the equilibrium, so that an amplitude of 1e-12 keeps all
+/// digits.
 ///
 /// Source : paper 002 (23), the first integral
 /// Error  : quadrature_error and <= 8u away from barriers (measured 3u); released at a distance d
-///          from one, u/d more, which is what the amplitude's own rounding does
+///          from a barrier, u/d more, which is the effect of the amplitude's own rounding
 /// Cost   : 1.6 us (amplitude 0.1), 10 us (amplitude 3) in double, 2.5 GHz Xeon
 /// Throws : InvalidInput: |amplitude| > pi, or release at another equilibrium (infinite period);
-///          ComputationFailed: the energy is that of a barrier (infinite period), or 2^18 nodes
-///          were not enough, naming the error reached
+///          ComputationFailed: the energy equals that of a barrier (infinite period), or 2^18 nodes
+///          were not enough, with the error that was reached
 template <class S>
 [[nodiscard]] FiniteOscillation<S> period_at_amplitude(const PendulumBody<S>& body,
                                                        const PendulumCoefficients<S>& c,
@@ -252,7 +254,7 @@ template <class S>
     return {small_period(body, c, equilibrium.angle), S(0), S(0), S(0), 0};
   }
 
-  // Look at it so that it falls towards smaller x.
+  // Mirrored if necessary, so that the pendulum falls towards smaller x.
   const auto upright = detail::ShiftedMoment<S>::at(c, equilibrium.angle);
   const S sense = upright.moment(amplitude) >= S(0) ? S(1) : S(-1);
   const auto moment = sense > S(0) ? upright : upright.mirrored();
@@ -287,7 +289,7 @@ template <class S>
     return pace.time;
   };
 
-  // The rule's error is squared by each doubling, up to a factor: 1e4 allows for a slow start.
+  // Each doubling squares the error of the rule, up to a factor: 1e4 allows for a slow start.
   const S converged = exp(S(log(epsilon) * S(2) / S(3)));
   S sum = (integrand(S(-pi / S(2))) + integrand(S(pi / S(2)))) / S(2);
   S lost(0);

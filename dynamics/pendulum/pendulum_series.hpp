@@ -13,8 +13,8 @@ namespace kreisel::detail {
 ///
 ///   phi'' = -(e sin phi + f cos phi + k sin 2phi + h cos 2phi + drive)
 ///
-/// Each coefficient comes from those before it, for  x = (sin phi, cos phi, sin 2phi, cos 2phi)  turns
-/// by products of series:
+/// Each coefficient follows from those before it, because  x = (sin phi, cos phi, sin 2phi, cos
+/// 2phi) obeys an equation of products of series:
 ///
 ///   x' = phi' y,   y = (x_2, -x_1, 2 x_4, -2 x_3)
 ///
@@ -24,7 +24,7 @@ class PendulumSeries {
  public:
   static constexpr int most_order = most_series_order;
 
-  /// Moments and ou_z over Theta_C.
+  /// The constructor takes moments and ou_z over Theta_C.
   PendulumSeries(double e, double f, double k, double h, double drive)
       : moments_(e, f, k, h), drive_(drive) {}
 
@@ -46,7 +46,7 @@ class PendulumSeries {
       drive = 0;
       turned[at] = h * c(1, k);
       quarter_on[at] = Vec4d(x[1], -x[0], 2 * x[3], -2 * x[2]);
-      // Two sums, lest each term wait for the one before; and the newest coefficients last.
+      // Two sums, so that a term does not wait for the one before; the newest coefficients last.
       Vec4d even(0, 0, 0, 0);
       Vec4d odd(0, 0, 0, 0);
       std::size_t i = 1;

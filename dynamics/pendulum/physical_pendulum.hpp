@@ -23,13 +23,13 @@ namespace kreisel {
 
 namespace detail {
 
-/// How far a SteadyPendulumMotion is off at output times that are asked for in turn, by the measure of
-/// RunReport::error_estimate: in proportion to the greatest angle and rate so far, at outputs and on the
-/// way of the first period.
+/// The error of a SteadyPendulumMotion at output times, which must be given in order, by the
+/// measure of RunReport::error_estimate. It is relative to the greatest angle and rate so far, at
+/// outputs and during the first period.
 template <class S>
 class SteadyPendulumMotionError {
  public:
-  /// inputs : of each radian of phase, what the rounding of inputs makes it wrong by
+  /// inputs : error of the phase per radian, from the rounding of the inputs
   SteadyPendulumMotionError(const SteadyPendulumMotion<S>& motion, double begin, double inputs = 0)
       : motion_(motion), begin_(begin), inputs_(inputs) {}
 
@@ -52,7 +52,7 @@ class SteadyPendulumMotionError {
     rate_ = std::max(rate_, std::abs(double(point.rate)));
   }
 
-  /// Beyond the first period only angles of whole turns grow, which are greatest at the end.
+  /// After the first period only angles that count whole turns grow; they are greatest at the end.
   void note_way(const S& time) {
     using std::abs;
     constexpr int parts = 32;  // of a period, within which sizes change by 1 %
@@ -74,24 +74,24 @@ class SteadyPendulumMotionError {
 
 }  // namespace detail
 
-/// The physical pendulum on a moving guide, to be solved in time:
+/// The physical pendulum on a moving guide, as a scene for solve():
 ///
 ///   Theta_C phi.. + f(phi.) + E sin phi + F cos phi + H cos 2phi + K sin 2phi = -Theta_C ou_z
 ///
 ///   const PhysicalPendulum pendulum(PendulumBody<>::thin_rod(1), pendulum_guide(earth_guide(site)));
 ///   const auto run = solve(pendulum, {.angle = 0.1}, {.output_times = {3600}, .tolerance = 1e-12});
 ///
-/// Motion is a PendulumGuide or a RestingPendulumGuide where the guide moves steadily, or a function
-/// of time that returns one of both; Damping a function phi. -> f(phi.) [N m]; Known what is said of
-/// the body, as for PendulumField. On a steady guide and without damping its motion is known in
-/// closed form (SteadyPendulumMotion): a year of swings costs what one does.
+/// Motion is a PendulumGuide or a RestingPendulumGuide if the guide moves steadily, or a function
+/// of time that returns one of them. Damping is a function phi. -> f(phi.) [N m]; Known are the
+/// Without<> of the body, as for PendulumField. On a steady guide without damping the motion has a
+/// closed form (SteadyPendulumMotion): a year of swings costs as much as one.
 ///
 /// Source : paper 002 (23)
 /// Units  : rad, rad/s, s
-/// Error  : by closed form 2u of angle and rate, and what the phase makes of them, which is off by 4e-19
-///          of the radians it has gone through, more near a barrier
+/// Error  : closed form: 2u of angle and rate, and the effect of the phase error, which is 4e-19 of
+///          the phase's radians, more near a barrier
 ///          (tests/dynamics/pendulum/physical_pendulum.cpp)
-/// Throws : InvalidInput for what no body can be: see check(PendulumBody)
+/// Throws : InvalidInput for parameters that no body can have: see check(PendulumBody)
 template <class Motion = PendulumGuide<>, class Damping = NoDamping, class... Known>
 class PhysicalPendulum {
  public:
@@ -112,7 +112,7 @@ class PhysicalPendulum {
 
   [[nodiscard]] const PendulumBody<>& body() const { return body_; }
 
-  /// E, F, H and K of a steady guide, thought in S.
+  /// E, F, H and K of a steady guide, computed in S.
   template <class S>
   requires is_steady [[nodiscard]] PendulumCoefficients<S> coefficients() const {
     return kreisel::coefficients(body_.template cast<S>(), steady_guide().template cast<S>());
@@ -123,7 +123,7 @@ class PhysicalPendulum {
     return steady_guide().angular_acceleration.z();
   }
 
-  /// The vector field on  y = (phi, phi.), for double and on a steady guide for dual numbers.
+  /// The vector field on  y = (phi, phi.), for double and, on a steady guide, for dual numbers.
   template <class N>
   requires(std::is_same_v<N, double> || (is_steady && takes<N>))
       [[nodiscard]] Eigen::Matrix<N, 2, 1> rates(const std::type_identity_t<N>& t,
@@ -136,12 +136,12 @@ class PhysicalPendulum {
   }
   [[nodiscard]] Vector rates(double t, const Vector& y) const { return rates<double>(t, y); }
 
-  /// For TaylorSteps, on a steady guide and without damping.
+  /// The Taylor series of the motion, for TaylorSteps, on a steady guide without damping.
   [[nodiscard]] detail::PendulumSeries series() const requires(is_steady&& undamped) {
     return field_.series();
   }
 
-  /// Theta_C phi.^2/2 and the potential, where they are kept.
+  /// Theta_C phi.^2/2 and the potential, if they are conserved.
   [[nodiscard]] std::vector<std::pair<const char*, double>> conserved(const double& /*t*/,
                                                                       const State& state) const {
     if constexpr (is_steady && undamped) {
@@ -151,7 +151,7 @@ class PhysicalPendulum {
     return {};
   }
 
-  /// What rates() computes: see kreisel::terms.
+  /// The terms of rates(): see kreisel::terms.
   [[nodiscard]] Terms terms() const { return field_.terms(); }
 
   /// For integrators: components that share unit and size.
@@ -179,7 +179,8 @@ class PhysicalPendulum {
   PendulumField<double, Motion, Damping, Known...> field_;
 };
 
-/// The motion on a steady guide, undamped, but for what the series of SteadyPendulumMotion does not reach.
+/// The motion on a steady guide, undamped; nothing where the series of SteadyPendulumMotion does
+/// not converge.
 template <class Motion, class... Known>
 requires detail::is_steady_pendulum_guide<Motion>
 [[nodiscard]] std::optional<

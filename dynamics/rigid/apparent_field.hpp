@@ -15,13 +15,14 @@
 #include <dynamics/model/terms.hpp>
 #include <motor/static_zero.hpp>
 
-/// What a body in a guide feels of the guide's motion, on guide axes: by need and, where the motion
-/// is steady, worked out beforehand.
+/// The apparent motion of the guide in a body's equations, on guide axes: angular velocity, angular
+/// acceleration and apparent gravity. Only terms that are needed are computed; those of a steady
+/// motion are computed once.
 
 namespace kreisel::detail {
 
-/// u and ou of the guide, and g' = g - a: uniform gravity less the inertial acceleration of the
-/// guide-fixed point in question.
+/// u and ou of the guide, and g' = g - a: uniform gravity less the inertial acceleration of a
+/// guide-fixed point.
 template <class U, class Du, class G>
 struct Apparent {
   U u;
@@ -34,12 +35,12 @@ inline constexpr bool is_without = false;
 template <class Quantity, Axis... axes>
 inline constexpr bool is_without<Without<Quantity, axes...>> = true;
 
-/// Whether a load is a field of gravity that is uniform in the guide or in the inertial frame.
+/// True if a load is a field of gravity that is uniform in the guide or in the inertial frame.
 template <class L>
 inline constexpr bool is_field =
     std::is_same_v<L, UniformGravity<Guide>> || std::is_same_v<L, UniformGravity<Inertial>>;
 
-/// Whether a load has to be asked with a situation.
+/// True if a load is a function of a LoadContext.
 template <class L>
 inline constexpr bool is_force = !is_field<L> && !is_without<L>;
 
@@ -52,7 +53,7 @@ template <class L>
   }
 }
 
-/// Whether a body feels nothing but uniform gravity and a guide that moves steadily, or analytically.
+/// True if only uniform gravity acts on a body, and its guide moves steadily or analytically.
 template <class M, class... Loads>
 inline constexpr bool feels_analytically = (SteadyGuide<M> ||
                                             AnalyticGuide<M>)&&!(is_force<Loads> || ...);
@@ -60,7 +61,7 @@ inline constexpr bool feels_analytically = (SteadyGuide<M> ||
 template <class A, class... Loads>
 inline constexpr bool has_field = (std::is_same_v<Loads, UniformGravity<A>> || ...);
 
-/// The sum of the fields that are uniform on the axes of A.
+/// The sum of the gravity fields that are uniform on the axes of A.
 template <class A, class... Loads>
 [[nodiscard]] auto field_on(const Loads&... loads) {
   if constexpr (has_field<A, Loads...>) {
@@ -75,14 +76,14 @@ template <class A, class... Loads>
   }
 }
 
-/// The inertial acceleration of the guide-fixed point r, that of the guide's origin being a.
+/// The inertial acceleration of the guide-fixed point r, where a is that of the guide's origin.
 template <class U, class Du, class A, class R>
 [[nodiscard]] auto carried_acceleration(const U& u, const Du& du, const A& a, const R& r) {
   return a + cross(du, r) + cross(u, cross(u, r));
 }
 
-/// u/|u|, or 0, also where squares would leave the range. Eigen's takes the compiler longer than all
-/// else here.
+/// u/|u|, or 0, also where squares would overflow or underflow. Eigen's function takes longer to
+/// compile than the rest of this file.
 [[nodiscard]] inline Components<double> direction(const Components<double>& u) {
   const double size = std::hypot(u.x, u.y, u.z);
   return size > 0 ? u / size : Components<double>{};
@@ -96,7 +97,7 @@ struct TurningField {
   Components<double> aside;
   double rate;
 
-  /// `along` is what of g does not turn.
+  /// `along` is the component of g along u, which does not turn.
   TurningField(const Components<double>& g, const Components<double>& along,
                const Components<double>& u)
       : across(g - along), aside(cross(g, direction(u))), rate(std::hypot(u.x, u.y, u.z)) {}
@@ -122,7 +123,7 @@ struct TurningField {
   }
 };
 
-/// What is known beforehand of g' and of the field that turns in the guide.
+/// The constants of g' and of the field that turns in the guide.
 template <class U, class G, class Field>
 struct Known {
   U u;
@@ -130,7 +131,7 @@ struct Known {
   Field field;
 };
 
-/// The series of a field that turns.
+/// The series of a field that turns in the guide.
 template <class U, class G>
 struct TurningSeries {
   Known<U, G, TurningField> known;
@@ -158,7 +159,7 @@ inline constexpr bool restricts_guide_rate = (vanishes<GuideRate, Axis::x, Loads
                                               vanishes<GuideRate, Axis::y, Loads...> ||
                                               vanishes<GuideRate, Axis::z, Loads...>);
 
-/// Throws : InvalidInput where components are said to vanish that do not
+/// Throws : InvalidInput if components that Without<> declares zero are not zero
 template <bool gravity, class P, class M, class... Loads>
 [[nodiscard]] auto known_motion(const P& r, const M& guide, const std::string& what,
                                 const Loads&... loads) {
@@ -201,8 +202,8 @@ template <bool gravity, class P, class M, class... Loads>
 
 /// The Taylor series of u and g' of an analytic guide.
 ///
-/// A guide mostly moves slower than what it carries: a series of its motion serves several steps of
-/// the body, shifted to where each begins.
+/// A guide mostly moves more slowly than the bodies on it. One series of its motion therefore
+/// serves several steps of the body, shifted to the begin of each step.
 template <class M, class P, class InGuide, class InInertial>
 class ApparentSeries {
  public:
@@ -227,7 +228,7 @@ class ApparentSeries {
                               reached(series_.g, most_series_order - 1));
   }
 
-  /// The acceleration of r against the guide's origin.
+  /// Subtracts the acceleration of r relative to the guide's origin.
   void take_off_carried() {
     GuideSeries::Coefficients around;  // u x r
     for (std::size_t k = 0; k < around.size(); ++k) around[k] = cross(series_.u[k], r_);
@@ -249,17 +250,17 @@ class ApparentSeries {
   double reach_ = 0;  ///< s, of the series from where it begins
 };
 
-/// The motion of a guide M as a body with these loads feels it at the guide-fixed point r.
+/// The apparent motion of a guide M at the guide-fixed point r, for a body with these loads.
 ///
-/// P is ZeroVector where r is the guide's origin. Without `gravity` g' is StaticZero: it does not matter
-/// to what is held at its centre of mass.
+/// P is ZeroVector if r is the guide's origin. Without `gravity` g' is StaticZero: it has no effect
+/// on a body whose fixed point is its centre of mass.
 template <bool gravity, class P, class M, class... Loads>
 class ApparentField {
  public:
   ApparentField(const P& r, const M& guide, const std::string& what, const Loads&... loads)
       : r_(r), known_(known_motion<gravity>(r, guide, what, loads...)) {}
 
-  /// All that a body feels of a guide that moves steadily or analytically, for AttitudeSeries.
+  /// The whole apparent motion of a guide that moves steadily or analytically, for AttitudeSeries.
   [[nodiscard]] auto whole(const M& guide, const Loads&... loads) const {
     if constexpr (requires { known_.field.at(0.0); }) {
       return TurningSeries{known_};
@@ -288,7 +289,7 @@ class ApparentField {
     }
   }
 
-  /// The same from all of the guide's motion.
+  /// The apparent motion from the whole motion of the guide.
   template <class N>
   [[nodiscard]] auto in(const FrameMotion<Guide, Inertial, N>& now, const Loads&... loads) const {
     if constexpr (never_turns<M>) {
@@ -328,8 +329,8 @@ class ApparentField {
   KnownMotion known_;
 };
 
-/// What is felt at the origin of a guide that moves steadily or analytically, as AnalyticGuide gives
-/// it.
+/// The series of the apparent motion at the origin of a guide that moves steadily or analytically,
+/// as the concept AnalyticGuide requires it.
 template <class M>
 [[nodiscard]] GuideSeries series_of(const M& guide, double t, double h, int order,
                                     const Components<double>& g) {
@@ -351,7 +352,7 @@ template <class M>
   }
 }
 
-/// The loads that are no field and no statement, together.
+/// The sum of the loads that are neither a gravity field nor a Without<>.
 template <class N, class... Loads>
 [[nodiscard]] Force<Body, N> forces(const LoadContext<N>& s, const Loads&... loads) {
   Force<Body, N> sum;
@@ -362,7 +363,7 @@ template <class N, class... Loads>
   return sum;
 }
 
-/// The loads that are not of the kind L.
+/// The loads that are not of the type L.
 template <class L, class... Loads>
 [[nodiscard]] auto other_loads(const std::tuple<Loads...>& all) {
   const auto other = [](const auto& load) {
@@ -375,7 +376,7 @@ template <class L, class... Loads>
   return std::apply([&](const auto&... loads) { return std::tuple_cat(other(loads)...); }, all);
 }
 
-/// Whether a guide turns, as far as its type knows.
+/// True if a guide turns, as far as its type shows.
 template <class M>
 [[nodiscard]] constexpr bool turns() {
   if constexpr (SteadyGuide<M>) {
@@ -394,8 +395,8 @@ template <class L>
   }
 }
 
-/// Whether a body feels the guide's turning, its angular acceleration and g', as its Felt type says,
-/// and why not.
+/// The terms of the guide in a body's equations: turning, angular acceleration and g', by the type
+/// of the apparent motion, with reasons for those that are missing.
 template <class Now, class M, class... Loads>
 struct ApparentTerms {
   static constexpr bool turns = !decltype(Now::u)::static_zero;
@@ -417,7 +418,7 @@ struct ApparentTerms {
     return pulled || !said.empty() ? said : "no gravity, and the guide does not accelerate";
   }
 
-  /// The loads, of which uniform gravity matters if `gravity_matters`.
+  /// Adds the loads to the terms; uniform gravity counts only if `gravity_matters`.
   static void add_loads(Terms& terms, bool gravity_matters, const std::string& why) {
     [[maybe_unused]] const auto add = [&](const char* kind, bool force, bool field) {
       if (force) terms.add("load", kind);

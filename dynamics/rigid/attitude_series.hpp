@@ -10,24 +10,23 @@
 
 namespace kreisel::detail {
 
-/// The axes that the rates of a body stand on.
+/// The axes on which the angular velocity of a body is written.
 enum class RateAxes {
   body,
   resal  ///< of a body of revolution: they follow its axis z, but do not spin with it
 };
 
-/// The Taylor series of the motion of a held body on which nothing acts but gravity as felt in its
-/// guide, for TaylorSteps. All is products of series, so that each coefficient comes from those
-/// before it:
+/// The Taylor series of the motion of a fixed-point body under apparent gravity alone, for
+/// TaylorSteps. All terms are products of series, so each coefficient follows from those before it:
 ///
 ///   q' = q (0, u')/2,   Theta w' = -w x (Theta w + h) + s x R^t g',   u' = w - R^t u
 ///
-/// with R quadratic in q, whose norm does not change. On Resal's axes those turn by (u'_x, u'_y, 0),
-/// and  Theta w' = ((A n - C w_z) w_y, (C w_z - A n) w_x, 0) + s x R^t g',  n = (R^t u)_z.
+/// R is quadratic in q, whose norm does not change. Resal's axes turn by (u'_x, u'_y, 0), and there
+/// Theta w' = ((A n - C w_z) w_y, (C w_z - A n) w_x, 0) + s x R^t g',  n = (R^t u)_z.
 ///
-/// Apparent   : u and g' on guide axes; or at(t, h, order), which gives their series
-/// Source : recurrences for products: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
-///          Differential Equations I, I.8
+/// Apparent : u and g' on guide axes; or at(t, h, order), which returns their series
+/// Source   : recurrences for products: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+///            Differential Equations I, I.8
 template <class Tensor, class FirstMoment, class Apparent, RateAxes axes = RateAxes::body,
           class Momentum = ZeroVector>
 class AttitudeSeries {
@@ -49,12 +48,12 @@ class AttitudeSeries {
     Table s;
     const double norm2 = c.col(0).template head<4>().squaredNorm();
     s.put_attitude(0, {c(0, 0), c(1, 0), c(2, 0), c(3, 0)});
-    // At the beginning it is u' that is known, not w.
+    // The initial state contains u', not w.
     Vec4d w(c(4, 0), c(5, 0), c(6, 0), 0);
     for (int k = 0;; ++k) {
       Sums sums;
-      // What is known already comes first, and the newest coefficients last: they may still be on
-      // their way to memory.
+      // Products of known coefficients come first, and the newest coefficients last: those may
+      // still be on their way to memory.
       for (std::size_t i = 1, j = std::size_t(k) - 1; i < std::size_t(k); ++i, --j) {
         s.add_attitudes(i, j, sums);
         s.add_rates(i, j, sums);
@@ -110,7 +109,7 @@ class AttitudeSeries {
   static constexpr bool guide_turns = feels_a_turning();
   static constexpr bool pulled = !FirstMoment::static_zero && feels_gravity();
 
-  /// q' is taken as  (q (0, w) - (0, u) q)/2,  which does not have to wait for R.
+  /// q' is computed as  (q (0, w) - (0, u) q)/2,  which does not have to wait for R.
   static constexpr bool by_whole_rate = !on_resal_axes && !guide_changes;
 
   template <class T>
@@ -137,13 +136,13 @@ class AttitudeSeries {
     Vec4d gravity = {0, 0, 0, 0};   ///< R^t g'
   };
 
-  /// The coefficients so far, as the products take them. Of the functions that add up the compiler
-  /// would not put all in their places by itself, and what they add up is in no register then.
+  /// The coefficients so far, arranged as the products read them. The summing functions are always
+  /// inlined: otherwise the compiler calls some of them, and their sums are then not in registers.
   struct Table {
     Of<Vec4d> q, q_next;      ///< (x, y, z, w), (y, z, x, w)
     Of<Vec4d> q_i, q_j, q_k;  ///< the products with the quaternion units
     Of<Vec4d> w, w_next, w_after;
-    Of<Vec4d> u;  ///< u', or w where that is taken for it
+    Of<Vec4d> u;  ///< u', or w in its place
     Of<Mat3dByDiagonals> rotation_back;
     Of<Vec4d> aside;    ///< on Resal's axes: (-w_y, w_x)
     Of<double> excess;  ///< there: C w_z - A n
@@ -201,7 +200,7 @@ class AttitudeSeries {
     }
   };
 
-  /// The terms of a product that have the newest coefficients.
+  /// Adds the terms of a product that contain the newest coefficients.
   template <class Term>
   static void at_the_ends(int k, const Term& term) {
     term(0, std::size_t(k));

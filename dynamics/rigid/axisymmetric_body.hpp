@@ -18,23 +18,23 @@
 
 namespace kreisel {
 
-/// A body of revolution held at a point of its axis at a point of a moving guide: a top or a gyro on
-/// a ship, however fast it spins.
+/// A body of revolution that is fixed at a point of its axis to a point of a moving guide: a top or
+/// a gyro on a ship, at any spin rate.
 ///
-/// The same motion as FixedPointBody's, in axes that follow the body's axis but not its spin (Resal's).
-/// Nothing in them turns with the spin, only with the nutation, and the steps need resolve no more:
-/// the angle of spin is summed up beside them, for whoever wants to see the body's own axes.
+/// The motion is that of FixedPointBody, written on axes that follow the body's axis but not its
+/// spin (Resal's axes). On these axes nothing turns with the spin, only with the nutation, so steps
+/// need not resolve the spin. The angle of spin is integrated as well, for the body's own axes.
 ///
 ///   q' = q (0, (u'_x, u'_y, 0)/2),   du'/dt = *u' + (0, 0, u'_z) x u',   spin' = u'_z
 ///
-/// Loads must not know the spin's angle: weight, drag and springs on the axis do not.
+/// Loads must not depend on the spin angle: weight, drag and springs on the axis do not.
 ///
 /// Source : H. Resal, Traite de cinematique pure (1862); paper 002 (5) for *u'
 /// Frame  : z is the axis of the body; State on Resal's axes
 /// Units  : kg, metre, kg m^2, rad/s
 /// Error  : top of 3000 rad/s, 1 s: 29 000 evaluations where FixedPointBody takes 125 000, at 1e-12
 ///          (tests/dynamics/rigid/axisymmetric_body.cpp)
-/// Throws : InvalidInput where no body has these moments or one of them is 0
+/// Throws : InvalidInput if no body has these moments or one of them is 0
 template <class M, class... Loads>
 class AxisymmetricBody {
   using Held = FixedPointBody<M, Loads..., Without<ProductsOfInertia>,
@@ -50,15 +50,15 @@ class AxisymmetricBody {
     S spin = 0;                                        ///< rad, of the body against Resal's axes
   };
 
-  /// Its mass, where on the axis its centre of mass is, and its moments A across and C along the
-  /// axis, all from the fixed point; `point` is where in the guide that is.
+  /// Mass, position of the centre of mass on the axis, and the moments A across and C along the
+  /// axis, all from the fixed point. `point` is the position of the fixed point in the guide.
   AxisymmetricBody(S mass, S arm, S A, S C, const Vector3<S>& point, M guide, Loads... loads)
       : body_({{mass, Vector3<S>(0, 0, mass * arm), {A, A, C}}}, point, std::move(guide),
               std::move(loads)..., Without<ProductsOfInertia>{},
               Without<FirstMoment, Axis::x, Axis::y>{}) {}
 
   /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; u'; spin), for double and,
-  /// if the loads take them, dual numbers.
+  /// if the loads accept them, dual numbers.
   template <class N>
   requires(Load<Loads, N>&&...)
       [[nodiscard]] Eigen::Matrix<N, 8, 1> rates(const std::type_identity_t<N>& t,
@@ -73,19 +73,19 @@ class AxisymmetricBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps: where nothing but uniform gravity acts and the
-  /// guide moves steadily or analytically. Formulas: scene/attitude_series.hpp.
+  /// The Taylor series of the motion, for TaylorSteps. It exists if only uniform gravity acts and
+  /// the guide moves steadily or analytically. Formulas: rigid/attitude_series.hpp.
   [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
     const auto body = body_.template series_on<detail::RateAxes::resal>();
     return Series<std::remove_const_t<decltype(body)>>{body};
   }
 
-  /// What rates() computes: that of the body, on axes without its spin. See kreisel::terms.
+  /// The terms of FixedPointBody, on axes that do not spin. See kreisel::terms.
   [[nodiscard]] Terms terms() const {
     Terms list = body_.terms();
     list.add("relative", "u'_z e_z x u', for Resal's axes do not spin");
     list.add("relative", "angle of the spin", false,
-             "a body of revolution does not feel it; it is summed up beside");
+             "no effect on a body of revolution; integrated for output");
     return list;
   }
 
@@ -95,7 +95,7 @@ class AxisymmetricBody {
     return {state.attitude * turn, turn.conjugate() * state.angular_velocity};
   }
 
-  /// The body's read-out, its motors on the body's own axes.
+  /// The outputs of the body, motors (screws) on the body's own axes.
   [[nodiscard]] BodyOutputs<S> body_outputs(const S& t, const State& state) const {
     return body_.body_outputs(t, on_body_axes(state));
   }
@@ -115,7 +115,7 @@ class AxisymmetricBody {
   }
 
  private:
-  /// That of the body, and the spin's angle beside.
+  /// The series of the body, with the spin angle.
   template <class BodySeries>
   struct Series {
     BodySeries body;

@@ -5,7 +5,7 @@
 
 namespace kreisel {
 
-/// Everything about a body at one moment. Motors on body axes, about the body's origin O'.
+/// The outputs of a body at one time. Motors (screws) on body axes, about the body's origin O'.
 ///
 /// Units  : N, N m; kg m/s, kg m^2/s; J; W
 template <class S = double>
@@ -13,10 +13,10 @@ struct BodyOutputs {
   LoadContext<S> situation;
   Rate<Body, Velocity<Body, Guide, Body, S>> dV_rel;  ///< *V'
 
-  /// The left side of the law by cause: relative, guide and Coriolis part.
+  /// The left side of the equation of motion by cause: relative, guide and Coriolis part.
   ForceParts<Body, S> parts;
-  /// [V (T V)], V = V' + F: what of the left side is there without any acceleration (the negative
-  /// of the centrifugal force and of the gyroscopic moment, as an observer in the body names them).
+  /// [V (T V)], V = V' + F: the part of the left side that is free of accelerations. An observer in
+  /// the body calls its negative the centrifugal force and the gyroscopic moment.
   Force<Body, S> gyroscopic;
   Force<Body, S> applied;   ///< all loads
   Force<Body, S> reaction;  ///< what the guide exerts on the body at O' to hold it there; 0 if free
@@ -28,8 +28,8 @@ struct BodyOutputs {
   S relative_kinetic_energy;  ///< V'.(T V')/2
   S potential_energy;         ///< of the loads that have one
 
-  /// Power balance in the guide:  d/dt (relative kinetic energy) = applied_power - guide_power.
-  /// The Coriolis part and the reaction do no work there.
+  /// Power balance in the guide:  d/dt (relative kinetic energy) = applied_power - guide_power. The
+  /// Coriolis part and the reaction do no work in the guide.
   S applied_power;  ///< P . V'
   S guide_power;    ///< guide part . V'
 };

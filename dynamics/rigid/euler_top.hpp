@@ -24,7 +24,7 @@
 
 namespace kreisel {
 
-/// What stays while a top moves. Kovalevskaya's invariant, for w = (p, q, r), is
+/// The invariants of a top. Kovalevskaya's invariant, for w = (p, q, r), is
 ///
 ///   |(p + iq)^2 - (k_x + i k_y)(gamma_x + i gamma_y) / C|^2
 ///
@@ -38,28 +38,28 @@ struct TopInvariants {
   Vector3<S> momentum;  ///< Theta w + h on inertial axes: stays without weight
 };
 
-/// How an Euler top moves.
+/// The state of an Euler top.
 struct EulerTopState {
   Eigen::Quaternion<double> attitude =
       Eigen::Quaternion<double>::Identity();                   ///< body to inertial, any norm
   Vector3<double> angular_velocity = Vector3<double>::Zero();  ///< w, on body axes
 };
 
-/// A top held at a point of the inertial frame: Euler's free top, the heavy tops of Lagrange and of
-/// Kovalevskaya, and the gyrostat, which carries a rotor driven at constant speed against it.
+/// A top with a fixed point in the inertial frame: Euler's free top, the heavy tops of Lagrange and
+/// of Kovalevskaya, and the gyrostat, whose rotor is driven at constant relative speed.
 ///
 ///   Theta w' + w x (Theta w + h) = -k x gamma,   gamma = the vertical on body axes
 ///
-/// FixedPointBody has the same and more, on a guide that moves; this one knows that nothing does, and
-/// takes principal axes.
+/// FixedPointBody covers the same motions and more, on a moving guide. This class is for a guide at
+/// rest and principal axes.
 ///
 /// Source : L. Euler; Lagrange; S. Kovalevskaya, Acta Math. 12 (1889) 177, whose invariant is named
 ///          after her; paper 002 section 4 (the case V' = V); gyrostat: paper 000
 /// Frame  : body axes = principal axes through the fixed point; inertial z up
 /// Units  : kg m^2, N m, N m s, rad/s
-/// Throws : InvalidInput where no body has such moments of inertia, or one of them is 0
+/// Throws : InvalidInput if no body has such moments of inertia, or one of them is 0
 ///
-/// P      : what moments and momenta are: double; or a pack, for as many tops side by side
+/// P      : number type of moments and momenta: double, or a pack for several tops side by side
 template <class P>
 class BasicEulerTop {
  public:
@@ -68,8 +68,9 @@ class BasicEulerTop {
 
   using State = EulerTopState;
 
-  /// `weight_moment` is k = m g r_s, mass times gravity times centre of mass; `rotor_momentum` is
-  /// h, the rotor's inertia times its relative speed (its inertia belongs to `moments` as well).
+  /// `weight_moment` is k = m g r_s, mass times gravity times centre of mass. `rotor_momentum` is
+  /// h, the rotor's moment of inertia times its relative speed; `moments` contain the rotor's
+  /// inertia as well.
   explicit BasicEulerTop(const Vector3<S>& moments,
                          const Vector3<S>& weight_moment = Vector3<S>::Zero(),
                          const Vector3<S>& rotor_momentum = Vector3<S>::Zero())
@@ -91,7 +92,7 @@ class BasicEulerTop {
     }
   }
 
-  /// Several tops, one a lane of N.
+  /// Several tops, each in one lane of N.
   template <class N>
   [[nodiscard]] static std::optional<BasicEulerTop<N>> side_by_side(
       const std::array<const BasicEulerTop*, std::size_t(N::lanes)>& tops) {
@@ -102,8 +103,8 @@ class BasicEulerTop {
   [[nodiscard]] const Vector3<P>& weight_moment() const { return weight_moment_; }
   [[nodiscard]] const Vector3<P>& rotor_momentum() const { return rotor_momentum_; }
 
-  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; w), for double and what
-  /// calculates like it: dual numbers.
+  /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; w), for double and dual
+  /// numbers.
   template <class N>
   [[nodiscard]] Eigen::Matrix<N, 7, 1> rates(const std::type_identity_t<N>& /*t*/,
                                              const Eigen::Matrix<N, 7, 1>& y) const {
@@ -122,7 +123,7 @@ class BasicEulerTop {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps. Formulas: scene/attitude_series.hpp.
+  /// The Taylor series of the motion, for TaylorSteps. Formulas: rigid/attitude_series.hpp.
   [[nodiscard]] auto series() const requires std::is_same_v<P, double> {
     const detail::Components<S> k = detail::components(weight_moment_);
     const detail::Components<S> h = detail::components(rotor_momentum_);
@@ -130,7 +131,7 @@ class BasicEulerTop {
                                   detail::RateAxes::body, detail::Components<S>>(tensor_, k, {}, h);
   }
 
-  /// -k x gamma, what the weight does about the fixed point, on body axes.
+  /// -k x gamma, the moment of the weight about the fixed point, on body axes.
   ///
   /// Units  : N m
   template <class N>
@@ -157,7 +158,7 @@ class BasicEulerTop {
             detail::vector<S>(rotated(detail::Rotation<S>::from(q), L))};
   }
 
-  /// Those of the invariants that this top keeps, by name.
+  /// The invariants that this top keeps, by name.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& /*t*/,
                                                                  const State& state) const {
     const TopInvariants<S> all = invariants(state);
@@ -175,7 +176,7 @@ class BasicEulerTop {
     return kept;
   }
 
-  /// What rates() computes: see kreisel::terms.
+  /// The terms of rates(): see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     const bool rotor = load_ == Load::rotor || load_ == Load::both;
     const bool weight = load_ == Load::weight || load_ == Load::both;
@@ -192,7 +193,7 @@ class BasicEulerTop {
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 2> blocks = {4, 3};
 
-  /// For linear equations: where a quaternion begins, and what the components are.
+  /// For linear equations: the first component of each quaternion, and the kinds of components.
   [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
   static constexpr std::array names = {"q_x", "q_y", "q_z", "q_w", "w_x", "w_y", "w_z"};
 
@@ -205,7 +206,7 @@ class BasicEulerTop {
   }
 
  private:
-  /// A guide at rest with gravity, in units of its size.
+  /// A guide at rest with gravity of size 1 downwards.
   struct Downwards {
     detail::ZeroVector u = {};
     detail::Components<S> g = {0, 0, -1};

@@ -28,25 +28,26 @@
 
 namespace kreisel {
 
-/// How a held body moves.
+/// The state of a fixed-point body.
 struct FixedPointBodyState {
   Eigen::Quaternion<double> attitude = Eigen::Quaternion<double>::Identity();  ///< body to guide
   Vector3<double> angular_velocity = Vector3<double>::Zero();                  ///< u', on body axes
 };
 
-/// A rigid body held at one of its points, its origin O', at a point of a moving guide: a pendulum
-/// in a ball joint on a ship, a top on a turntable, an instrument on gimbals without mass.
+/// A rigid body whose origin O' is fixed to a point of a moving guide: a pendulum in a ball joint
+/// on a ship, a top on a turntable, an instrument on gimbals without mass.
 ///
-/// Its centre of mass may be anywhere and its inertia general. With the guide at rest this is
-/// Euler's top; without loads and centre of mass at O' the guide does not matter at all.
+/// Its centre of mass may be anywhere and its inertia general. With the guide at rest it is Euler's
+/// top. Without loads and with the centre of mass at O' the guide has no effect.
 ///
-/// The state is the attitude in the guide and the angular velocity u' against it. Nothing depends
-/// on the quaternion's norm, which drifts by the steps' error only and is never corrected:
-/// the attitude read from it is a rotation to rounding always, however long the run.
+/// The state is the attitude in the guide and the angular velocity u' against the guide. Nothing
+/// depends on the quaternion's norm, which drifts only by the error of the steps and is never
+/// corrected. The attitude computed from the quaternion is always a rotation to rounding, however
+/// long the run.
 ///
 /// Source : paper 002 (5), (18)-(19), with V' = (u'; 0) at O'
 /// Units  : metre, rad/s
-/// Throws : InvalidInput where the inertia is none or the tensor about O' is singular (a needle
+/// Throws : InvalidInput if the inertia is invalid or the tensor about O' is singular (a needle
 ///          along a line through O', all mass in O')
 template <class M, class... Loads>
 class FixedPointBody {
@@ -60,7 +61,7 @@ class FixedPointBody {
 
   using State = FixedPointBodyState;
 
-  /// `point` is where in the guide the body is held.
+  /// `point` is the position of the fixed point in the guide.
   FixedPointBody(const InertiaTensor<Body, S>& inertia, const Vector3<S>& point, M guide,
                  Loads... loads)
       : inertia_(inertia),
@@ -69,15 +70,15 @@ class FixedPointBody {
         loads_(std::move(loads)...),
         first_moment_(
             detail::without<FirstMoment, Loads...>(detail::components(inertia.value.first_moment))),
-        tensor_(detail::tensor_of<Loads...>(inertia.value.tensor, "held body")),
+        tensor_(detail::tensor_of<Loads...>(inertia.value.tensor, "fixed-point body")),
         apparent_(std::apply(
             [this](const Loads&... all) {
-              return Apparent(detail::components(point_), guide_, "held body", all...);
+              return Apparent(detail::components(point_), guide_, "fixed-point body", all...);
             },
             loads_)) {
-    check(inertia.value, Mass::positive, "held body");
+    check(inertia.value, Mass::positive, "fixed-point body");
     detail::check_vanishing<FirstMoment, Loads...>(inertia.value.first_moment,
-                                                   "held body, first moment");
+                                                   "fixed-point body, first moment");
     if (!(point - point).isZero(0)) throw InvalidInput("fixed-point body: the point is not finite");
     const auto moments = detail::principal_moments(inertia.value.tensor);
     if (!(moments[0] > std::numeric_limits<S>::epsilon() * moments[2])) {
@@ -99,7 +100,7 @@ class FixedPointBody {
   ///
   ///   Theta .w = M + s x R^t g' - w x (Theta w),   w = u' + R^t u,   *u' = .w - R^t ou + u' x R^t u
   ///
-  /// with g' what a body at rest in the guide feels at O' of uniform gravity, and M all other loads.
+  /// g' is the apparent uniform gravity at O', M the moment of all other loads.
   template <class N>
   [[nodiscard]] Vector3<N> acceleration(const LoadContext<N>& s) const {
     const auto turn = detail::Rotation<N>::from(s.X.value.rotation);
@@ -113,7 +114,8 @@ class FixedPointBody {
   }
 
   /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; u'), for double and, if
-  /// the loads take them, dual numbers (detail::guide_at says what a guide knows of them).
+  /// the loads accept them, dual numbers. detail::guide_at states the derivatives of the guide that
+  /// are used.
   template <class N>
   requires(Load<Loads, N>&&...)
       [[nodiscard]] Eigen::Matrix<N, 7, 1> rates(const std::type_identity_t<N>& t,
@@ -144,8 +146,8 @@ class FixedPointBody {
   }
   [[nodiscard]] Vector rates(S t, const Vector& y) const { return rates<S>(t, y); }
 
-  /// The Taylor series of the motion, for TaylorSteps: where nothing but uniform gravity acts and the
-  /// guide moves steadily or analytically. Formulas: scene/attitude_series.hpp.
+  /// The Taylor series of the motion, for TaylorSteps. It exists if only uniform gravity acts and
+  /// the guide moves steadily or analytically. Formulas: rigid/attitude_series.hpp.
   [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
     return series_on<detail::RateAxes::body>();
   }
@@ -159,7 +161,7 @@ class FixedPointBody {
         loads_);
   }
 
-  /// What acceleration() computes of its formula: see kreisel::terms.
+  /// The terms of acceleration() that are computed: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     using Now = detail::ApparentTerms<ApparentNow, M, Loads...>;
     constexpr bool heavy = !FirstMomentKept::static_zero && Now::pulled;
@@ -179,9 +181,9 @@ class FixedPointBody {
     return list;
   }
 
-  /// This body with something left out, for prune(): on a guide in the mean steady motion between
-  /// two times; on one at rest where it is at their middle, what it makes felt of its acceleration
-  /// being left as gravity; with zeros for the products of inertia; without loads of one kind.
+  /// This body without something, for prune(): on a guide in the mean steady motion between two
+  /// times; on a guide at rest in the pose at their middle, with its mean acceleration kept as
+  /// gravity; with zeros for the products of inertia; without loads of one type.
   [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
       requires(!SteadyGuide<M>) {
     const auto on_mean = remade(inertia_, mean_motion(guide_, begin, end), loads_);
@@ -217,9 +219,9 @@ class FixedPointBody {
     return remade(inertia_, guide_, detail::other_loads<L>(loads_));
   }
 
-  /// Invariants, by name: Jacobi's integral in a guide that moves steadily (the energy in one at
-  /// rest), if no load does work besides its potential; momenta in a guide at rest on which no load
-  /// but uniform gravity acts.
+  /// Invariants, by name. Jacobi's integral in a guide that moves steadily (the energy in a guide
+  /// at rest), if loads do work only by a potential. Momenta in a guide at rest on which uniform
+  /// gravity is the only load.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
                                                                  const State& state) const {
     return std::apply(
@@ -232,8 +234,8 @@ class FixedPointBody {
         loads_);
   }
 
-  /// The same body with its tensor off by last digits, where that makes more than last digits of
-  /// the motion: for estimates of what rounding does.
+  /// The same body with its tensor perturbed by units in the last place, if the motion amplifies
+  /// them. For estimates of the effect of rounding.
   [[nodiscard]] std::optional<FixedPointBody> perturbed_by_ulps() const {
     if constexpr (detail::principal<Loads...>) {
       return std::nullopt;
@@ -248,7 +250,7 @@ class FixedPointBody {
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 2> blocks = {4, 3};
 
-  /// For linear equations: where a quaternion begins, and what the components are.
+  /// For linear equations: the first component of each quaternion, and the kinds of components.
   [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
   static constexpr std::array names = {"q_x", "q_y", "q_z", "q_w", "u'_x", "u'_y", "u'_z"};
 
@@ -286,7 +288,7 @@ class FixedPointBody {
         loads);
   }
 
-  /// All but the guide's motion.
+  /// The acceleration for a given apparent motion of the guide.
   template <class N>
   [[nodiscard]] LoadContext<N> situation_in(const N& t, const Matrix3<N>& attitude,
                                             const Vector3<N>& u) const {
@@ -311,7 +313,7 @@ class FixedPointBody {
   static constexpr bool has_forces = (detail::is_force<Loads> || ...);
   static constexpr bool guide_is_read = (detail::reads_guide<Loads>() || ...);
 
-  /// Of the loads that are not uniform gravity.
+  /// The torque of the loads that are not uniform gravity.
   template <class N>
   [[nodiscard]] auto torque(const LoadContext<N>& s) const {
     if constexpr (has_forces) {

@@ -26,7 +26,7 @@
 
 namespace kreisel {
 
-/// How a free body moves.
+/// The state of a free body.
 struct FreeBodyState {
   Eigen::Quaternion<double> attitude = Eigen::Quaternion<double>::Identity();  ///< body to guide
   Vector3<double> position = Vector3<double>::Zero();  ///< of O' in the guide
@@ -35,12 +35,13 @@ struct FreeBodyState {
 
 /// A free rigid body watched from a moving guide: thrown, falling, floating, hung on springs.
 ///
-/// Its origin O' and its centre of mass may differ. The state is attitude, place and velocity motor
-/// V' against the guide; nothing depends on the quaternion's norm (see FixedPointBody).
+/// Its origin O' and its centre of mass may differ. The state is the attitude, the position and the
+/// velocity motor (twist) V' against the guide. Nothing depends on the quaternion's norm (see
+/// FixedPointBody).
 ///
 /// Source : paper 002 (5)
 /// Units  : metre, rad/s, m/s
-/// Throws : InvalidInput where the inertia is none, ComputationFailed where it is singular
+/// Throws : InvalidInput if the inertia is invalid, ComputationFailed if it is singular
 template <class M, class... Loads>
 class FreeBody {
   static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
@@ -76,13 +77,14 @@ class FreeBody {
     return s;
   }
 
-  /// *V', from what moves the centre of mass c and what turns the body about it, w = u' + R^t u:
+  /// *V', from the motion of the centre of mass c and the rotation of the body about it, w = u' +
+  /// R^t u:
   ///
   ///   Theta_c .w = M - c x P - w x (Theta_c w),      *u' = .w - R^t ou + u' x R^t u
   ///   *v' = P/m + R^t (g' - ou x r - u x (u x r)) - .w x c - w x (w x c) - (2 R^t u + u') x v'
   ///
-  /// with g' what a body at rest in the guide's origin feels of uniform gravity, r the place of O'
-  /// in the guide, P and M all other loads.
+  /// g' is the apparent uniform gravity at the guide's origin, r the position of O' in the guide, P
+  /// and M all other loads.
   template <class N>
   [[nodiscard]] Rate<Body, Velocity<Body, Guide, Body, N>> acceleration(
       const LoadContext<N>& s) const {
@@ -97,8 +99,8 @@ class FreeBody {
   }
 
   /// The vector field  y' = rates(t, y)  on  y = (quaternion x, y, z, w; position; u'; v'), for
-  /// double and, if the loads take them, dual numbers (detail::guide_at says what a guide knows of
-  /// them).
+  /// double and, if the loads accept them, dual numbers. detail::guide_at states the derivatives of
+  /// the guide that are used.
   template <class N>
   requires(Load<Loads, N>&&...)
       [[nodiscard]] Eigen::Matrix<N, 13, 1> rates(const std::type_identity_t<N>& t,
@@ -142,7 +144,7 @@ class FreeBody {
         loads_);
   }
 
-  /// What acceleration() computes of its formula: see kreisel::terms.
+  /// The terms of acceleration() that are computed: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     using Now = detail::ApparentTerms<ApparentNow, M, Loads...>;
     const std::string of_centre = detail::reason_for<FirstMoment, Loads...>();
@@ -165,10 +167,10 @@ class FreeBody {
     return list;
   }
 
-  /// This body with something left out, for prune(): on a guide in the mean steady motion between
-  /// two times; on one at rest where it is at their middle, its origin's acceleration being left
-  /// as gravity; with zeros for the products of inertia; without loads of one kind;
-  /// without the centrifugal force.
+  /// This body without something, for prune(): on a guide in the mean steady motion between two
+  /// times; on a guide at rest in the pose at their middle, with the acceleration of its origin
+  /// kept as gravity; with zeros for the products of inertia; without loads of one type; without
+  /// the centrifugal force.
   [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
       requires(!SteadyGuide<M>) {
     const auto on_mean = remade(inertia_, mean_motion(guide_, begin, end), loads_);
@@ -196,7 +198,7 @@ class FreeBody {
   }
   [[nodiscard]] auto without(ProductsOfInertia /*what*/, double /*begin*/, double /*end*/) const
       requires(!detail::principal<Loads...>) {
-    // Those that the centre of mass off O' makes stay, to the last bit.
+    // Products of inertia that come from the offset of the centre of mass stay, to the last bit.
     InertiaTensor<Body, S> straight = inertia_;
     const Symmetric3<S> offset = offset_of_centre(inertia_.value);
     Symmetric3<S>& T = straight.value.tensor;
@@ -212,9 +214,9 @@ class FreeBody {
     return remade(inertia_, guide_, detail::other_loads<L>(loads_));
   }
 
-  /// Invariants, by name: Jacobi's integral in a guide that moves steadily (the energy in one at
-  /// rest), if no load does work besides its potential; momenta in a guide at rest on which no load
-  /// but uniform gravity acts.
+  /// Invariants, by name. Jacobi's integral in a guide that moves steadily (the energy in a guide
+  /// at rest), if loads do work only by a potential. Momenta in a guide at rest on which uniform
+  /// gravity is the only load.
   [[nodiscard]] std::vector<std::pair<const char*, S>> conserved(const S& t,
                                                                  const State& state) const {
     return std::apply(
@@ -230,7 +232,7 @@ class FreeBody {
   /// For integrators: components that share unit and size.
   static constexpr std::array<int, 4> blocks = {4, 3, 3, 3};
 
-  /// For linear equations: where a quaternion begins, and what the components are.
+  /// For linear equations: the first component of each quaternion, and the kinds of components.
   [[nodiscard]] static constexpr std::array<int, 1> quaternions() { return {0}; }
   static constexpr std::array names = {"q_x",  "q_y",  "q_z",  "q_w",  "x",    "y",   "z",
                                        "u'_x", "u'_y", "u'_z", "v'_x", "v'_y", "v'_z"};
@@ -261,7 +263,7 @@ class FreeBody {
         loads);
   }
 
-  /// All but the guide's motion.
+  /// The acceleration for a given apparent motion of the guide.
   template <class N>
   [[nodiscard]] LoadContext<N> situation_in(const N& t, const Matrix3<N>& attitude,
                                             const Vector3<N>& position, const Motor<N>& V) const {
@@ -278,7 +280,7 @@ class FreeBody {
   static constexpr bool has_forces = (detail::is_force<Loads> || ...);
   static constexpr bool guide_is_read = (detail::reads_guide<Loads>() || ...);
 
-  /// Of the loads that are not uniform gravity.
+  /// The force of the loads that are not uniform gravity.
   template <class N>
   [[nodiscard]] auto force(const LoadContext<N>& s) const {
     if constexpr (has_forces) {
@@ -336,7 +338,7 @@ class FreeBody {
     return T.first_moment / T.mass;
   }
 
-  /// What the tensor about O' has from the centre of mass's being elsewhere.
+  /// The part of the tensor about O' that comes from the offset of the centre of mass.
   [[nodiscard]] static Symmetric3<S> offset_of_centre(const Inertia<S>& T) {
     const Vector3<S> c = T.first_moment / T.mass;
     return offset_product(c, Vector3<S>(T.first_moment / S(2)));

@@ -12,8 +12,8 @@
 
 namespace kreisel::detail {
 
-/// Whether a load on a guide of the kind M has a potential that the guide carries along and does
-/// nothing else.
+/// True if a load on a guide of the type M is conservative, with a potential that moves with the
+/// guide.
 template <class M, class L>
 [[nodiscard]] bool keeps_energy(const L& load) {
   if constexpr (is_without<L> || std::is_same_v<L, UniformGravity<Guide>>) {
@@ -27,11 +27,11 @@ template <class M, class L>
   }
 }
 
-/// Jacobi's integral of a body in a guide that moves steadily, its energy where the guide rests:
+/// Jacobi's integral of a body in a guide that moves steadily; the energy if the guide rests:
 ///
 ///   H = V'.(T V')/2 - u.(Theta u)/2 + m a.r_s + potential
 ///
-/// Theta and r_s about the guide's origin, whose inertial acceleration is a. Nothing, where the
+/// Theta and r_s are about the guide's origin, whose inertial acceleration is a. Nothing, if the
 /// guide moves otherwise or a load does other work.
 ///
 /// Units  : J
@@ -61,7 +61,7 @@ template <class M, class... Loads>
   }
 }
 
-/// Whether a load is a uniform gravity, or none.
+/// True if a load is uniform gravity, or no load.
 template <class L>
 inline constexpr bool is_uniform = is_without<L> || std::is_same_v<L, UniformGravity<Guide>> ||
                                    std::is_same_v<L, UniformGravity<Inertial>>;
@@ -76,11 +76,11 @@ template <class L>
   return Vector3<double>::Zero();
 }
 
-/// Adds the momenta that a body keeps on a guide at rest under uniform gravity alone, by name: its
-/// angular momentum about a fixed point of the guide, along gravity if there is one, and if it is
-/// free its linear momentum across gravity.
+/// Adds the momenta that a body keeps on a guide at rest under uniform gravity alone, by name.
+/// These are the angular momentum about a fixed point of the guide, along gravity if there is any,
+/// and for a free body the linear momentum across gravity.
 ///
-/// about : the fixed point of a held body, the guide's origin for a free one; on guide axes
+/// about : the fixed point of a fixed-point body, the guide's origin for a free one; on guide axes
 /// Frame : guide axes
 /// Units : kg m/s, kg m^2/s
 template <class M, class... Loads>

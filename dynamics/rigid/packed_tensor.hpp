@@ -6,7 +6,7 @@
 
 namespace kreisel::detail {
 
-/// What gyroscopic torques take of a tensor.
+/// The differences of a tensor's entries that appear in gyroscopic torques.
 class GyroscopicDifferences {
  public:
   explicit GyroscopicDifferences(const Symmetric3<double>& T)
@@ -24,7 +24,7 @@ class GyroscopicDifferences {
   Vec4d differences_, opposite_, beside_;
 };
 
-/// PrincipalTensor or GeneralTensor for vectors that are Vec4d, with w = 0.
+/// PrincipalTensor or GeneralTensor for vectors stored as Vec4d, with w = 0.
 template <class Tensor>
 class PackedTensor;
 
@@ -37,7 +37,7 @@ class PackedTensor<PrincipalTensor<>> {
     differences_ = {T.yy - T.zz, T.zz - T.xx, T.xx - T.yy, 0};
   }
 
-  /// As GyroscopicDifferences.
+  /// -w x (Theta w), as GyroscopicDifferences.
   [[nodiscard]] Vec4d gyroscopic_torque(const Vec4d& mixed, const Vec4d& /*squares*/) const {
     return differences_ * mixed;
   }

@@ -17,8 +17,8 @@
 
 namespace kreisel {
 
-/// The inertia tensor of a body turned by small angles (alpha, beta, gamma), on the axes it is
-/// turned from, to first order:  T + skew(angles) T + (skew(angles) T)^t.
+/// The inertia tensor of a body rotated by small angles (alpha, beta, gamma), on the original axes,
+/// to first order:  T + skew(angles) T + (skew(angles) T)^t.
 ///
 /// Source : paper 002 (41)-(43), the general matrix after (43); Phi = the negative off-diagonals
 /// Error  : |angles|^2 (greatest - least moment of inertia), to leading order
@@ -28,8 +28,8 @@ template <class S>
   return T + Symmetric3<S>::from(turning + turning.transpose());
 }
 
-/// The same for principal axes, moments (Theta_A, Theta_B, Theta_C): only products of inertia
-/// appear.
+/// The tensor of a rotated body for principal axes, moments (Theta_A, Theta_B, Theta_C): only
+/// products of inertia appear.
 ///
 /// Source : paper 002, the last matrix before section 8b
 template <class S>
@@ -39,8 +39,8 @@ template <class S>
   return {A, B, C, (A - B) * angles.z(), (C - A) * angles.y(), (B - C) * angles.x()};
 }
 
-/// A body on elastic mounts, in a guide that moves: the engine block on an aircraft. It swings
-/// little about the place where its frame and the guide coincide:
+/// A body on elastic mounts in a moving guide: the engine block on an aircraft. It has small
+/// oscillations about the pose in which its frame and the guide coincide:
 ///
 ///   M q'' + C q' + K q = f,   q = (displacement r; angles alpha, beta, gamma), on guide axes
 ///
@@ -55,17 +55,17 @@ template <class S>
 ///   K :    m W                  -W skew(s)
 ///          skew(s) W            skew(a) skew(s) + [ax(W E_i J - W J E_i)]
 ///
-/// and to C, K and f what the mounts add; [..] has the columns i = 1, 2, 3, E_i = skew(e_i) and
-/// ax(B) = (B_32 - B_23, B_13 - B_31, B_21 - B_12).
+/// The mounts add to C, K and f. [..] has the columns i = 1, 2, 3, E_i = skew(e_i) and ax(B) =
+/// (B_32 - B_23, B_13 - B_31, B_21 - B_12).
 ///
-/// Exact to first order in q, also where the guide turns fast: the static moments m r_s, of first
-/// order too, are in it, which paper 002 leaves out along with the tensor's first-order part.
+/// Exact to first order in q, also where the guide turns fast. The static moments m r_s, which are
+/// of first order too, are included; paper 002 omits them, and the tensor's first-order part.
 ///
 /// Source : paper 002 section 8a, (19) with the tensor of (41)-(43)
 /// Units  : metre, radian
 /// Error  : of second order in q; linear_error() measures it against the exact equations
-/// Cost   : coefficients that do not change, on a guide at rest or in steady motion without gravity, are
-///          worked out once
+/// Cost   : constant coefficients, on a guide at rest or in steady motion without gravity, are
+///          computed once
 template <class M>
 class SmallOscillations {
   static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
@@ -83,7 +83,7 @@ class SmallOscillations {
     Vector3<S> angular_velocity = Vector3<S>::Zero();
   };
 
-  /// The equations' coefficients at one moment.
+  /// The coefficients of the equations at one time.
   struct Coefficients {
     Matrix6 mass, damping, stiffness;
     Vector6 force;
@@ -116,7 +116,7 @@ class SmallOscillations {
     return steady_ ? rates_by(*steady_, y) : rates_by(coefficients_at(t), y);
   }
 
-  /// What the coefficients are made of: see kreisel::terms.
+  /// The terms of the coefficients: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     const std::string of_turning = turns ? "" : "the guide does not turn";
     const bool unsteadily = turns && !SteadyGuide<M>;
@@ -136,7 +136,7 @@ class SmallOscillations {
     return list;
   }
 
-  /// The same body by the exact equations.
+  /// The same body with the exact equations.
   [[nodiscard]] auto exact() const {
     const auto mounts = [all = mounts_](const LoadContext<S>& s) {
       Force<Body, S> sum;
@@ -214,8 +214,8 @@ class SmallOscillations {
     return {b(2, 1) - b(1, 2), b(0, 2) - b(2, 0), b(1, 0) - b(0, 1)};
   }
 
-  /// A mount's force F - k d - c d', d = r + angles x b, and its torque about the body's origin. F
-  /// turns the body further as the end b moves: a geometric stiffness.
+  /// Adds a mount's force F - k d - c d', d = r + angles x b, and its torque about the body's
+  /// origin. F turns the body further as the end b moves: a geometric stiffness.
   static void add(const ElasticMount<S>& mount, Coefficients& c) {
     const Vector3<S>& b = mount.body_end;
     const Matrix3<S> b_cross = skew(b);
@@ -234,7 +234,7 @@ class SmallOscillations {
   Vector3<S> gravity_;
   Matrix6 mass_;
   Eigen::LDLT<Matrix6> factor_;
-  std::optional<Coefficients> steady_;  ///< those that do not change
+  std::optional<Coefficients> steady_;  ///< constant coefficients
 };
 
 static_assert(Scene<SmallOscillations<RestingFrame<>>>);
