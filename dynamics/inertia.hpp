@@ -377,10 +377,10 @@ enum class Mass { positive, zero_allowed };
 
 /// Refuses an inertia that no distribution of mass can have.
 ///
-/// Refused are a mass below 0 and a tensor about the centre of mass that is not positive
-/// semidefinite or violates the triangle inequality of its principal moments. Needles, discs and
-/// points are legal limits. Violations up to 1e-12 of the given tensor (in float 8e-6) pass as
-/// rounding.
+/// It refuses a mass below 0 and a tensor about the centre of mass that is not positive
+/// semidefinite. It also refuses a tensor that violates the triangle inequality of its principal
+/// moments. Needles, discs and points are legal limits. Violations up to 1e-12 of the given tensor
+/// (in float 8e-6) pass as rounding.
 ///
 /// Throws : InvalidInput with the violated inequality and its numbers. If rounding to three digits
 ///          or more explains the violation, the message adds the nearest legal tensor

@@ -16,8 +16,7 @@ namespace kreisel {
 /// A displacement without frame tags: rotation R and translation x,  p -> R p + x. Robotics: a
 /// pose, an element of SE(3).
 ///
-/// Read as a change of coordinates, it takes components written in a frame B to components written
-/// in a frame A. R rotates B axes into A axes, x is the origin of B written in A. The rotation is a
+/// As a change of coordinates it takes components in a frame B to components in a frame A. R rotates B axes into A axes, and x is the origin of B written in A. The rotation is a
 /// matrix: applying it costs less than applying a quaternion (benchmarks/kernels.cpp).
 ///
 /// Units  : [translation] = metre

@@ -132,12 +132,16 @@ template <class S>
 /// A motor (screw): the field of moments  m(P) = m(O) + r x OP,  stored as its reduction (r; m) at
 /// a point O. Robotics: a spatial vector, that is a twist or a wrench.
 ///
-/// Velocity motors (angular velocity; velocity of O), force motors (force; torque about O) and
-/// momentum motors (momentum; angular momentum about O) share this type, because all of them obey
-/// the same reduction law and the same products. The resultant comes first for every kind.
+/// Three kinds share this type, because they obey the same reduction law and the same products:
+///
+/// - velocity motors (angular velocity; velocity of O): twists
+/// - force motors (force; torque about O): wrenches
+/// - momentum motors (momentum; angular momentum about O)
+///
+/// The resultant comes first for every kind.
 ///
 /// Source : paper 002 section 2, "Motor" {Resultante; Moment}; von Mises 1924
-/// Frame  : untagged, the caller knows axes and O; frame.hpp puts them into the type
+/// Frame  : untagged, axes and O are the caller's; frame.hpp puts them into the type
 /// Units  : [moment] = [resultant] * metre
 template <class S = double>
 struct Motor {

@@ -10,7 +10,7 @@ namespace kreisel {
 /// moment of the differentiated motor. The derivative is a motor.
 ///
 /// Definition: write Q in Observer (its axes, a point fixed in it) and differentiate the
-/// components. The result is a motor and may be written in any frame: its moment at a point does
+/// components. The result is a motor and may be written in any frame. Its moment at a point does
 /// not depend on the frame in which the moment is resolved. Rates nest: Rate<A, Rate<B, Q>> is a
 /// second derivative.
 ///
@@ -113,8 +113,9 @@ template <class New, class Old, class Q, class V>
   }
 }
 
-/// The plain derivatives P of a rate T:  D u unchanged,  D v = T's moment - w x u,  where w is the
-/// velocity, against the observer, of the origin of the frame in which Q is written.
+/// The plain derivatives P of a rate T:  D u unchanged,  D v = T's moment - w x u.
+///
+/// w is the velocity, against the observer, of the origin of the frame in which Q is written.
 ///
 /// Source : the rule of the moving reference point; paper 002 (13), (17a-f) mix P and T
 template <class Observer, class Q, class V>

@@ -9,15 +9,17 @@
 /// Packed vectors and matrices of doubles: every part of the library that is tuned for a processor
 /// or a compiler.
 ///
-/// A processor reads two or four doubles with one instruction. Doubles that were stored one by one a
-/// moment before cannot be read together without waiting until they have reached the cache. Eigen's
-/// fixed-size arrays are filled in this way, and g++ -O2 makes calls and loops of Eigen's sums and
-/// products of three numbers. These types are therefore filled in registers, and the kernels of
-/// motor/ and dynamics/inertia.hpp are written component by component and always inlined.
+/// A processor reads two or four doubles with one instruction. Doubles that were stored one by one
+/// a moment before cannot be read together without a wait until they have reached the cache.
+/// Eigen's fixed-size arrays are filled in this way. g++ -O2 moreover makes calls and loops of
+/// Eigen's sums and products of three numbers.
+///
+/// The types of this file are therefore filled in registers. The kernels of motor/ and
+/// dynamics/inertia.hpp are written component by component and always inlined.
 ///
 /// Cost     : measured in benchmarks/kernels.cpp, reported in benchmarks/report.md
 /// Fallback : arrays in place of the vector extension of g++ and clang++, for other compilers and
-///            with KREISEL_PORTABLE_SIMD; same results to the last bit (tests/motor/simd_portable.cpp)
+///            with KREISEL_PORTABLE_SIMD; the same results (tests/motor/simd_portable.cpp)
 
 #if !defined(__GNUC__) && !defined(KREISEL_PORTABLE_SIMD)
 #define KREISEL_PORTABLE_SIMD
@@ -73,7 +75,8 @@ using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
 template <class S>
 [[nodiscard, gnu::always_inline]] inline Eigen::Matrix<S, 3, 1> by_two(const S& x, const S& y,
                                                                        const S& z) {
-  // Of six numbers in a row g++ would pack four, and take longer for that than for their products.
+  // Six numbers in a row would be packed by four, and the packing would take longer than their
+  // products.
   if constexpr (std::is_same_v<S, double>) {
     const Double2 xy{x, y};
     Eigen::Matrix<S, 3, 1> result;
@@ -120,8 +123,8 @@ class Vec3d {
 
 /// A 3x3 matrix R, kept in registers by its columns while it multiplies several vectors.
 ///
-/// A compiler cannot see that storing a product leaves R unchanged. Without this class it would read
-/// R again for each number.
+/// A compiler cannot see that storing a product leaves R unchanged. Without this class R would be
+/// read again for each number.
 class Mat3dByColumns {
  public:
   /// R from nine numbers, column by column.

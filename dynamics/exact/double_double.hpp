@@ -4,8 +4,10 @@
 
 namespace kreisel::exact {
 
-/// A number as an unevaluated sum hi + lo of two long doubles, 128 bits where those have 64. It
-/// serves the few differences that decide a whole motion, such as L^2 - 2 E B near the separatrix.
+/// A number as an unevaluated sum hi + lo of two long doubles, 128 bits where those have 64.
+///
+/// It serves the few differences that decide a whole motion, such as L^2 - 2 E B near the
+/// separatrix.
 ///
 /// Source : T. J. Dekker 1971, D. E. Knuth TAOCP 4.2.2: the rounding error of a sum and of a
 ///          product is itself a floating-point number

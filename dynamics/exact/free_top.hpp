@@ -19,9 +19,9 @@ namespace kreisel::exact {
 /// The free rigid body without torques,  Theta omega' + omega x Theta omega = 0,  in closed form
 /// for all bodies, rates and times.
 ///
-/// The principal axes 1, 2, 3 are numbered so that I2 is the middle moment and the angular momentum
-/// L circles axis 3. Axis 3 is the axis of the largest moment if D = L^2 - 2 E I2 >= 0, else of the
-/// smallest. Then
+/// The principal axes 1, 2, 3 are numbered so that I2 is the middle moment. The angular momentum L
+/// circles axis 3: the axis of the largest moment if D = L^2 - 2 E I2 >= 0, else of the smallest.
+/// Then
 ///
 ///   omega = (a1 cn, a2 sn, a3 dn)(u),   u = lambda t + u0,
 ///   a1^2 = P3 / (I1 |I3 - I1|),         a2^2 = P3 / (I2 |I3 - I2|),   a3^2 = P1 / (I3 |I3 - I1|),

@@ -223,7 +223,8 @@ class Gyrostat {
 
     [[nodiscard]] detail::RealVector omega() const { return {w1.hi, w2.hi, w3.hi}; }
 
-    /// (C - B) omega3 + h: omega2's factor in -A omega1'; and (C - A) omega3 + h: omega1's in B omega2'.
+    /// (C - B) omega3 + h, the factor of omega2 in -A omega1', and (C - A) omega3 + h, the factor
+    /// of omega1 in B omega2'.
     [[nodiscard]] DoubleDouble k1() const { return (C - B) * w3 + h; }
     [[nodiscard]] DoubleDouble k2() const { return (C - A) * w3 + h; }
   };

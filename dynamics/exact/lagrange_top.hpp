@@ -25,10 +25,10 @@ namespace kreisel::exact {
 ///   r = r2 - (r2 - r1) sn^2 u,   u = lambda t + u0,   4 lambda^2 = kappa (r2 - r3),
 ///   m = (r2 - r1)/(r2 - r3),     1 - m = (r1 - r3)/(r2 - r3).
 ///
-/// The phases of alpha and beta are integrals of the third kind with poles at p = 0 and r = 0. An
-/// exchange of parameter splits off the part of each that jumps there. Combined with |alpha| and
-/// |beta|, this part is a factor with a plain zero, so the attitude is as accurate at the vertical
-/// as elsewhere. With p_k = 1 - r_k:
+/// The phases of alpha and beta are integrals of the third kind. Their poles are at p = 0 and r =
+/// 0. An exchange of parameter splits off the part of each that jumps there. Combined with |alpha|
+/// and |beta|, this part is a factor with a plain zero, so the attitude is as accurate at the
+/// vertical as elsewhere. With p_k = 1 - r_k:
 ///
 ///   alpha = (sqrt(p2) cn dn +- i sqrt(p1 p3/(r2 - r3)) sn) / sqrt(Q) exp(i psi),
 ///   Q = 1 + p2/(r2 - r3) sn^2,

@@ -110,9 +110,9 @@ struct CardanRates {
 ///   alpha about A (guide x), then beta about B, then phi about the spin axis C:
 ///   (p)_guide = R_x(alpha) R_y(beta) R_z(phi) (p)_rotor
 ///
-/// All centres of mass lie where the axes meet. Of the guide's motion only u and ou therefore
-/// matter, and gravity has no effect. The angles count whole turns; alpha and beta count from the
-/// references of their bearings.
+/// All centres of mass lie where the axes meet. The motion therefore depends only on u and ou of
+/// the guide, and gravity has no effect. The angles count whole turns; alpha and beta count from
+/// the references of their bearings.
 ///
 /// phi'' is eliminated by the rotor's own equation. The two equations for alpha'' and beta'' that
 /// remain have the determinant
@@ -388,9 +388,9 @@ class CardanGyro {
     return list;
   }
 
-  /// This gyro without something, for prune(): on a guide in the mean steady motion between two
-  /// times; on a guide at rest in any pose; with the mean of A_1 and B_1 for both; with rings
-  /// without mass.
+  /// This gyro with one simplification, for prune(). GuideUnsteadiness: the guide moves in its mean
+  /// steady motion between two times. GuideRate: the guide is at rest, in any pose. The others: the
+  /// mean of A_1 and B_1 for both, and rings without mass.
   [[nodiscard]] CardanGyro<RotatingFrame<>, Rotor> without(GuideUnsteadiness /*what*/, double begin,
                                                            double end) const
       requires(!SteadyGuide<M> && !detail::never_turns<M>) {
@@ -586,8 +586,8 @@ class CardanGyro {
 
   /// The left sides of the equations of motion.
   ///
-  /// G, V, N, D are S or StaticZero for: a guide that turns; a guide that turns unsteadily; a rotor
-  /// whose tensor is not added to the inner ring's; given angular accelerations.
+  /// Each of G, V, N, D is S or StaticZero. They stand for a guide that turns, a guide that turns
+  /// unsteadily, a rotor not added to the inner ring, and given angular accelerations.
   template <class S, class G, class V, class N, class D>
   [[nodiscard]] auto momentum_rates(const detail::Turning<G, V>& guide,
                                     const detail::SinCos<G>& alpha, const detail::SinCos<S>& beta,
@@ -620,8 +620,8 @@ class CardanGyro {
     const K dy2 = dy3 + ddb;
     const S dz2 = fz + db * x2;
 
-    // A symmetric rotor, added to the ring, leaves only the momentum of its spin: the whole
-    // momentum or, if C is added to the ring, the momentum against the ring.
+    // A symmetric rotor that is added to the ring leaves only the momentum of its spin. If C is
+    // added as well, only the momentum against the ring is left.
     constexpr bool counted = detail::is_static_zero<N>;
     using Spin = std::conditional_t<counted, S, detail::StaticZero>;
     const S L_c = moments_.rotor.z() * S(counted && regulated ? df : S(z2 + df));

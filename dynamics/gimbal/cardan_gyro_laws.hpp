@@ -105,8 +105,8 @@ struct CardanFrequencies {
 ///
 ///   n = (sin beta, -sin alpha cos beta, cos alpha cos beta)
 ///
-/// The change of these angles is the kinematic gimbal error: alpha changes although the axis stays
-/// fixed in space and the guide does not turn about the outer axis.
+/// Their change is the kinematic gimbal error. alpha changes although the axis stays fixed in space
+/// and the guide does not turn about the outer axis.
 ///
 /// Source   : paper 002 (34), third column; the error: below (40)
 /// Requires : n not along the outer axis x, where alpha is not determined and 0 is given

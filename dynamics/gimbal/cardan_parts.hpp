@@ -13,7 +13,7 @@
 namespace kreisel {
 
 /// The principal moments of inertia (A, B, C) of a Cardan gyro's three bodies about the point where
-/// its three axes meet, which is the centre of mass of each.
+/// its axes meet. This point is the centre of mass of each body.
 ///
 /// C of the rotor lies along its spin axis, B of the inner ring along the inner bearing, A of the
 /// outer ring along the outer one. A ring of zeros has no mass.
@@ -121,8 +121,8 @@ struct SinCos {
   S cos = {};
 };
 
-/// Sine and cosine of reference + deviation, both relatively exact to 2u, also where one of them is
-/// nearly 0. The rounding error of the sum is added to first order.
+/// Sine and cosine of reference + deviation, both relatively exact to 2u. This holds even
+/// where one of them is nearly 0. The rounding error of the sum is added to first order.
 template <class S>
 [[nodiscard, gnu::always_inline]] inline SinCos<S> sin_cos(StaticZero /*reference*/,
                                                            const S& deviation) {

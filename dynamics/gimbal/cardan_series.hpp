@@ -112,8 +112,8 @@ class CardanSeries {
   CardanSeries(const CardanConstants& gyro, const Turning& turning)
       : gyro_(gyro), turning_(turning) {}
 
-  /// Fills the columns 1 to `order` of c with the coefficients of (alpha, beta, phi; their rates) in
-  /// powers of (time - t)/h, for the motion that has column 0 at t.
+  /// Fills the columns 1 to `order` of c with the coefficients of (alpha, beta, phi; their rates)
+  /// in powers of (time - t)/h, for the motion that has column 0 at t.
   template <class Coefficients>
   void operator()(double t, double h, int order, Coefficients& c) {
     const auto u = [&] {

@@ -12,8 +12,8 @@
 
 namespace kreisel {
 
-/// The common part of linear equations of a gyro in two rings: small angles alpha and beta with
-/// their rates, a rotor at constant speed, and the gyro of the exact equations.
+/// The common part of linear equations of a gyro in two rings. It has small angles alpha and beta
+/// with their rates, a rotor at constant speed, and the gyro of the exact equations.
 ///
 /// ExactGyro : a CardanGyro
 template <class ExactGyro>

@@ -22,8 +22,8 @@ enum class GuideMomentum {
   first_order  ///< and its part of first order in alpha, beta, and the drive's torque
 };
 
-/// A rotor on a guide that turns, its axis near the guide's z: small oscillations alpha, beta at
-/// constant speed Omega against its suspension, whose rings have no mass.
+/// Small oscillations alpha, beta of a rotor on a guide that turns, its axis near the guide's z.
+/// The rotor has the constant speed Omega against its suspension, whose rings have no mass.
 ///
 ///   oJ + u x J + oJ_f + u x J_f = M     (its components x and y)
 ///

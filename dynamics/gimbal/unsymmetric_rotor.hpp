@@ -15,8 +15,8 @@
 
 namespace kreisel {
 
-/// A rotor with unequal transverse moments A and B that runs at constant speed in a Cardan
-/// suspension with springs, in small oscillations about alpha = beta = 0, guide at rest.
+/// Small oscillations of a rotor with unequal transverse moments A and B about alpha = beta = 0,
+/// guide at rest. The rotor runs at constant speed in a Cardan suspension with springs.
 ///
 ///   d/dt (M(t) x') + C Omega S x' + D x' + K x = 0,   x = (alpha, beta),   S = (0 1; -1 0)
 ///

@@ -11,9 +11,9 @@ namespace kreisel {
 /// A frame whose pose is an analytic function of time that the user writes, as for PosedFrame.
 ///
 /// The user promises that the function is analytic at all times and changes no faster than the
-/// bodies on the guide: no distinction of cases, no short pulse. solve() then uses the Taylor
-/// series of the function and the motion together. Such a series evaluates the function only where
-/// a step begins.
+/// bodies on the guide. It has no distinction of cases and no short pulse. solve() then uses the
+/// Taylor series of the function and the motion together. Such a series evaluates the function only
+/// where a step begins.
 ///
 /// The function is also called with PowerSeries, for which sine, cosine, tangent, exponential,
 /// hyperbolic functions, logarithm, roots and powers are defined.

@@ -81,9 +81,8 @@ struct HarmonicSeries {
   }
 };
 
-/// A frame in harmonic motion (roll, pitch, heave): angular velocity u(t) and inertial acceleration
-/// a(t) of the origin are given on the frame's OWN axes, as strapdown gyros and accelerometers
-/// measure them.
+/// A frame in harmonic motion: roll, pitch, heave. Angular velocity u(t) and inertial acceleration
+/// a(t) of the origin are given on the frame's OWN axes, as strapdown sensors measure them.
 ///
 /// u, ou and a are sums of the series. Attitude and position have no closed form if u has more than
 /// one axis. They are Taylor series in pieces of 1/(2 Omega), Omega = |u|/2 + the greatest

@@ -151,7 +151,8 @@ struct LogSamples {
 ///
 /// High-order differences of a smooth motion are small; those of noise are not. The noise is
 /// therefore the least value left by the orders 4 to 24, each scaled for independent errors. If no
-/// two successive orders agree, the samples are too coarse, and the noise is an upper bound. Errors as smooth as the motion cannot be detected.
+/// two successive orders agree, the samples are too coarse, and the noise is an upper bound. Errors
+/// as smooth as the motion cannot be detected.
 ///
 /// Error  : some 20 % for independent errors and 100 samples
 ///          (tests/dynamics/guide/log_noise.cpp)

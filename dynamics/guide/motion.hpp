@@ -12,10 +12,12 @@ namespace kreisel {
 
 /// The motion of a frame G against a frame I at one time: pose, velocity, acceleration.
 ///
-/// Velocity and rate are written in G, reduced at G's ORIGIN, and the rate is seen from G. They are
+/// Velocity and rate are written in G and reduced at G's ORIGIN. The rate is seen from G. They are
 /// numbers and their plain time derivatives, without a transport term (T = P). Displace them for
-/// use in the body: X_BG * V and X_BG * dV. Do not differentiate the velocity of the guide-fixed
-/// point that coincides with a moving point of the body; the result would be a PlainRate.
+/// use in the body: X_BG * V and X_BG * dV.
+///
+/// Do not differentiate the velocity of the guide-fixed point that coincides with a moving point of
+/// the body. The result would be a PlainRate.
 ///
 /// Source : paper 002 section 2, F and oF
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2
@@ -93,8 +95,8 @@ inline constexpr bool never_turns = requires {
 
 }  // namespace detail
 
-/// The motion of C against A, from the motions of C against B and of B against A. Exact: poses
-/// multiply, velocities add, and the rate of V_BA gets the transport term of the observer C.
+/// The motion of C against A, from the motions of C against B and of B against A. It is exact.
+/// Poses multiply, velocities add, and the rate of V_BA gets the transport term of the observer C.
 ///
 ///   V_CA = V_CB + V_BA,   (d/dt)_C V_CA = (d/dt)_C V_CB + (d/dt)_B V_BA - [V_CB V_BA]
 ///

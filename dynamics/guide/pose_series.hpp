@@ -20,8 +20,8 @@ struct PoseChain {
   Vector3<Wide> v = Vector3<Wide>::Zero();
 };
 
-/// Series coefficients of attitude and position, from those of the angular velocity u and the
-/// acceleration a, both on the rotating axes, and a uniform acceleration g on I's axes:
+/// Series coefficients of attitude and position. They follow from those of the angular velocity u
+/// and the acceleration a, both on the rotating axes, and a uniform acceleration g on I's axes:
 ///
 ///   q' = q u / 2,   x'' = q a q^-1 + g
 template <class Wide>

@@ -57,8 +57,8 @@ class PowerSeries {
     if (b.order_ == 0) return {b[0] * a.coefficient_, a.order_};
     PowerSeries c;
     c.order_ = std::max(a.order_, b.order_);
-    // Four coefficients at a time; memory before the first coefficient of b is read as 0. Two sums
-    // for each coefficient, because an addition waits for the one before in the same sum.
+    // Four coefficients at a time. Memory before the first coefficient of b is 0. Each has
+    // two sums, because an addition waits for the one before it.
     for (int k = 0; k <= c.order_; k += 4) {
       Eigen::Array4d even = Eigen::Array4d::Zero();
       Eigen::Array4d odd = Eigen::Array4d::Zero();

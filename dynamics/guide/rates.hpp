@@ -34,8 +34,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// The initial conditions that a log of rates does not contain: attitude and velocity of the frame
-/// G in I at the log's first time, and the gravity that is missing in its accelerations.
+/// The initial conditions that a log of rates does not contain. They are attitude and velocity of
+/// the frame G in I at the log's first time, and the gravity missing in its accelerations.
 ///
 /// Frame  : attitude G to I, the rest on I's axes
 struct RatesStart {

@@ -8,7 +8,7 @@
 namespace kreisel {
 
 /// A frame with constant angular velocity whose origin has a constant inertial acceleration on the
-/// frame's own axes: a turntable on a vehicle that brakes, a thrusting spinner.
+/// frame's own axes. Examples: a turntable on a vehicle that brakes, a thrusting spinner.
 ///
 ///   R(t) = R(0) exp(u t),   x(t) = x(0) + v(0) t + R(0) t^2 J(u t) a
 ///

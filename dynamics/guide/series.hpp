@@ -16,9 +16,8 @@ namespace kreisel {
 /// The greatest order of Taylor series that is used.
 inline constexpr int most_series_order = 24;
 
-/// The angular velocity and apparent gravity at a guide's origin, on guide axes: coefficients in
-/// powers of (time - t)/h of the angular velocity u, and of gravity less the origin's inertial
-/// acceleration.
+/// The angular velocity and apparent gravity at a guide's origin, on guide axes, as series in
+/// powers of (time - t)/h. Apparent gravity is gravity less the origin's inertial acceleration.
 ///
 /// Units  : rad/s, m/s^2
 struct GuideSeries {

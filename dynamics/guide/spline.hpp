@@ -16,9 +16,9 @@ namespace kreisel::detail {
 /// continuous derivatives. Its knots are the times except (p - 1)/2 inner ones at either end
 /// (not-a-knot), so that no derivative has to be guessed there. Spacing may be uneven.
 ///
-/// With a knot only at every m-th sample the spline smooths. Of all splines on these knots it has
-/// the least sum of squared distances from the samples. Noise e of the samples then causes about
-/// e/sqrt(m) in the value and e/(sqrt(m) (m h)^k) in the k-th derivative.
+/// With a knot only at every m-th sample the spline smooths. It has the least sum of squared
+/// distances from the samples of all splines on these knots. Noise e of the samples then causes
+/// about e/sqrt(m) in the value and e/(sqrt(m) (m h)^k) in the k-th derivative.
 ///
 /// Source : C. de Boor, A Practical Guide to Splines: the collocation matrix in B-splines is banded
 ///          and totally positive, so elimination needs no pivots. Least squares by Givens rotations

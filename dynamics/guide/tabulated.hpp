@@ -48,15 +48,15 @@ struct InterpolationError {
 
 /// A frame whose motion was logged.
 ///
-/// A quintic spline (four continuous derivatives; cubic for less than six samples) runs through the
-/// samples, both of the four components of the quaternion and of the position. The quaternion is
-/// then divided by its norm, which differs from 1 only by the interpolation error.
+/// A quintic spline runs through the samples, both of the quaternion's four components and of the
+/// position. It has four continuous derivatives, and is cubic for less than six samples. The
+/// quaternion is then divided by its norm, which differs from 1 only by the interpolation error.
 ///
 /// The motion does therefore not depend on the choice of either frame's axes, and angular velocity
 /// and acceleration are exact derivatives of the attitude. Samples may be unevenly spaced; q and -q
 /// count as the same attitude.
 ///
-/// By default the spline does not smooth: noise e of the samples causes about e/h in the velocity
+/// By default the spline does not smooth. Noise e of the samples causes about e/h in the velocity
 /// and e/h^2 in the acceleration, and the error estimate contains both. A LogSpline with fewer
 /// knots smooths.
 ///

@@ -9,9 +9,10 @@
 /// forms are for reading, for teaching, and as a second way to the same number. The motor forms of
 /// relative.hpp and momentum.hpp state the same law with fewer operations.
 ///
-/// Letters: u', v' the relative motor at the body's origin O'; u, v the guide motor at O', v the
-/// velocity of the point of the guide frame that coincides with O'; r = r_s the centre of mass; T
-/// the tensor about O'. A mark before a letter is the observer: * body, o guide. All on body axes.
+/// Letters: u', v' are the relative motor at the body's origin O'. u, v are the guide motor at O',
+/// v the velocity of the point of the guide frame that coincides with O'. r = r_s is the centre of
+/// mass, T the tensor about O'. A mark before a letter is the observer: * body, o guide. All on
+/// body axes.
 
 namespace kreisel {
 

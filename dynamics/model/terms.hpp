@@ -34,8 +34,9 @@ class Terms {
   std::vector<Term> list_;
 };
 
-/// The terms that a scene's field computes and those that are left out, by type or by the numbers
-/// of the scene when it was built. The field is compiled from the same constants and types.
+/// The terms of a scene's equations of motion, those that its field computes and those that it
+/// leaves out. A term is left out by the scene's type or by its numbers. The field is compiled from
+/// the same constants and types.
 ///
 ///   std::cout << terms(FixedPointBody(rod, {0, 0, 0}, RestingFrame<>{}, ViscousDrag<>{0.02}));
 ///

@@ -21,8 +21,8 @@ namespace kreisel {
 ///
 /// D      : callable (S t, S angle, S rate) -> S, an angular acceleration. Name S as its result: an
 ///          expression of dual numbers returned as auto refers to temporaries
-/// Source : J. F. Encke, Berliner Astronomisches Jahrbuch fuer 1857; the disturbance of the rotating
-///          earth: paper 002 (23) with one angle
+/// Source : J. F. Encke, Berliner Astronomisches Jahrbuch fuer 1857; the disturbance of the
+///          rotating earth: paper 002 (23) with one angle
 /// Units  : 1/s^2 (k = m g l/Theta), radian, s
 /// Error  : of d over 30 s <= 1e-12 relative    (tests/dynamics/pendulum/pendulum_encke.cpp)
 /// Throws : InvalidInput if k is not a finite number above 0

@@ -32,7 +32,8 @@ namespace kreisel {
 /// S      : number type of the computation; exact::Real keeps the digits of a phase of 1e4 periods
 /// Source : paper 002 (23), the first integral
 /// Units  : rad, rad/s, s
-/// Error  : of the phase  (4 |theta| + 32) epsilon condition()   (tests/dynamics/pendulum/physical_pendulum)
+/// Error  : of the phase  (4 |theta| + 32) epsilon condition()
+///          (tests/dynamics/pendulum/physical_pendulum)
 /// Throws : InvalidInput if there is no moment at all, or the start is not finite;
 ///          ComputationFailed at rest at an equilibrium, or so near a barrier that 1024 terms are
 ///          not enough: between 2e-6 and 2e-7 of its height (case pendulum-barrier of the

@@ -89,7 +89,8 @@ template <class U, class Du, class A, class R>
   return size > 0 ? u / size : Components<double>{};
 }
 
-/// A vector at rest in the inertial frame, on the axes of a guide that turns steadily with u = |u| n:
+/// A vector at rest in the inertial frame, on the axes of a guide that turns steadily. With u = |u|
+/// n:
 ///
 ///   exp(-u t) g = n n.g + cos(|u| t) (g - n n.g) + sin(|u| t) g x n
 struct TurningField {
@@ -395,8 +396,8 @@ template <class L>
   }
 }
 
-/// The terms of the guide in a body's equations: turning, angular acceleration and g', by the type
-/// of the apparent motion, with reasons for those that are missing.
+/// The terms of the guide in a body's equations: turning, angular acceleration and g'. The type of
+/// the apparent motion decides; missing terms have a reason.
 template <class Now, class M, class... Loads>
 struct ApparentTerms {
   static constexpr bool turns = !decltype(Now::u)::static_zero;

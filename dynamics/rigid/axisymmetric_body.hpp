@@ -18,8 +18,8 @@
 
 namespace kreisel {
 
-/// A body of revolution that is fixed at a point of its axis to a point of a moving guide: a top or
-/// a gyro on a ship, at any spin rate.
+/// A body of revolution that is fixed at a point of its axis to a point of a moving guide.
+/// Examples: a top or a gyro on a ship, at any spin rate.
 ///
 /// The motion is that of FixedPointBody, written on axes that follow the body's axis but not its
 /// spin (Resal's axes). On these axes nothing turns with the spin, only with the nutation, so steps

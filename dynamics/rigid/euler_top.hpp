@@ -45,8 +45,8 @@ struct EulerTopState {
   Vector3<double> angular_velocity = Vector3<double>::Zero();  ///< w, on body axes
 };
 
-/// A top with a fixed point in the inertial frame: Euler's free top, the heavy tops of Lagrange and
-/// of Kovalevskaya, and the gyrostat, whose rotor is driven at constant relative speed.
+/// A top with a fixed point in the inertial frame. It is Euler's free top, the heavy top of
+/// Lagrange or of Kovalevskaya, or the gyrostat, whose rotor is driven at constant relative speed.
 ///
 ///   Theta w' + w x (Theta w + h) = -k x gamma,   gamma = the vertical on body axes
 ///

@@ -34,8 +34,8 @@ struct FixedPointBodyState {
   Vector3<double> angular_velocity = Vector3<double>::Zero();                  ///< u', on body axes
 };
 
-/// A rigid body whose origin O' is fixed to a point of a moving guide: a pendulum in a ball joint
-/// on a ship, a top on a turntable, an instrument on gimbals without mass.
+/// A rigid body whose origin O' is fixed to a point of a moving guide. Examples: a pendulum in a
+/// ball joint on a ship, a top on a turntable, an instrument on gimbals without mass.
 ///
 /// Its centre of mass may be anywhere and its inertia general. With the guide at rest it is Euler's
 /// top. Without loads and with the centre of mass at O' the guide has no effect.
@@ -181,9 +181,10 @@ class FixedPointBody {
     return list;
   }
 
-  /// This body without something, for prune(): on a guide in the mean steady motion between two
-  /// times; on a guide at rest in the pose at their middle, with its mean acceleration kept as
-  /// gravity; with zeros for the products of inertia; without loads of one type.
+  /// This body with one simplification, for prune(). GuideUnsteadiness: the guide moves in its mean
+  /// steady motion between two times. GuideRate: the guide rests in its pose at their middle, and
+  /// its acceleration remains as gravity. The others: zero products of inertia, and no loads of one
+  /// type.
   [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
       requires(!SteadyGuide<M>) {
     const auto on_mean = remade(inertia_, mean_motion(guide_, begin, end), loads_);

@@ -167,10 +167,10 @@ class FreeBody {
     return list;
   }
 
-  /// This body without something, for prune(): on a guide in the mean steady motion between two
-  /// times; on a guide at rest in the pose at their middle, with the acceleration of its origin
-  /// kept as gravity; with zeros for the products of inertia; without loads of one type; without
-  /// the centrifugal force.
+  /// This body with one simplification, for prune(). GuideUnsteadiness: the guide moves in its mean
+  /// steady motion between two times. GuideRate: the guide rests in its pose at their middle, and
+  /// the acceleration of its origin remains as gravity. The others: zero products of inertia, no
+  /// loads of one type, no centrifugal force.
   [[nodiscard]] auto without(GuideUnsteadiness /*what*/, double begin, double end) const
       requires(!SteadyGuide<M>) {
     const auto on_mean = remade(inertia_, mean_motion(guide_, begin, end), loads_);

@@ -76,9 +76,9 @@ template <class L>
   return Vector3<double>::Zero();
 }
 
-/// Adds the momenta that a body keeps on a guide at rest under uniform gravity alone, by name.
-/// These are the angular momentum about a fixed point of the guide, along gravity if there is any,
-/// and for a free body the linear momentum across gravity.
+/// Adds the momenta that a body keeps on a guide at rest under uniform gravity alone, by name. The
+/// angular momentum about a fixed point of the guide is kept along gravity, or as a whole without
+/// gravity. A free body keeps its linear momentum across gravity.
 ///
 /// about : the fixed point of a fixed-point body, the guide's origin for a free one; on guide axes
 /// Frame : guide axes
