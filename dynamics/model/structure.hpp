@@ -41,9 +41,9 @@ struct CentrifugalForce {
   static constexpr const char* name = "CentrifugalForce";
 };
 
-/// Quantities that only prune() may leave out. GuideUnsteadiness is the variation of the
-/// guide's u and acceleration about their means. For a Cardan gyro: A_1 - B_1 and both rings' moments
-/// of inertia. The last: all loads of the type L.
+/// Quantities that only prune() may leave out. GuideUnsteadiness is the variation of the guide's u
+/// and acceleration about their means. For a Cardan gyro: A_1 - B_1 and both rings' moments of
+/// inertia. The last: all loads of the type L.
 struct GuideUnsteadiness {
   static constexpr const char* name = "GuideUnsteadiness";
 };
