@@ -56,7 +56,7 @@ class LinearMotion {
 
  private:
   StudySystem system_;
-  steady_motion::Linearisation about_;
+  steady_motion::Linearization about_;
 };
 
 /// States of the precession equations.

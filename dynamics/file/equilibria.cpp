@@ -218,7 +218,7 @@ class Search {
   }
 
   void add(VectorXd state, double residual) {
-    const Linearisation there = linearized(system_, 0, state);
+    const Linearization there = linearized(system_, 0, state);
     const VectorXd& rate = there.rate;
     for (int i = 0; i < directions_.rates; ++i) {
       const bool runs = directions_.running[static_cast<std::size_t>(i)];

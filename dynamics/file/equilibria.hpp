@@ -33,7 +33,7 @@ struct Equilibria {
 ///
 /// start : its rates are taken where they are given or those of rotors
 /// t_end : up to which the equations have to stay what they are
-/// Cost  : at most max(16, 6000/n^2) starts for n rates, at most 100 linearisations for each
+/// Cost  : at most max(16, 6000/n^2) starts for n rates, at most 100 linearizations for each
 [[nodiscard]] Equilibria find_equilibria(const StudySystem& system, const Eigen::VectorXd& start,
                                          double t_end);
 

@@ -13,7 +13,7 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace steady_motion {
 
-Linearisation linearized(const StudySystem& system, double t, const VectorXd& y) {
+Linearization linearized(const StudySystem& system, double t, const VectorXd& y) {
   return linearize<Guide, Body>(system, t, y);
 }
 
@@ -108,7 +108,7 @@ VectorXd off(const StudySystem& system, const VectorXd& y) {
   return tangent.moved(y, eta);
 }
 
-bool stays(const StudySystem& system, const Linearisation& linear, double t_end) {
+bool stays(const StudySystem& system, const Linearization& linear, double t_end) {
   const Tangent tangent = tangent_of(system, linear.state);
   const double fastest = linear.rate.cwiseAbs().maxCoeff();
   std::vector<double> times{0.31 * t_end, 0.77 * t_end};
@@ -116,7 +116,7 @@ bool stays(const StudySystem& system, const Linearisation& linear, double t_end)
   if (fastest * t_end > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
   return std::all_of(times.begin(), times.end(), [&](double t) {
     const VectorXd later = tangent.moved(linear.state, VectorXd(t * linear.rate));
-    const Linearisation then = linearized(system, t, later);
+    const Linearization then = linearized(system, t, later);
     return (then.A - linear.A).norm() <= 1e-9 * linear.A.norm() &&
            (then.rate - linear.rate).norm() <= 1e-9 * (1 + linear.rate.norm());
   });
@@ -124,7 +124,7 @@ bool stays(const StudySystem& system, const Linearisation& linear, double t_end)
 
 namespace {
 
-Steady steady_at(const StudySystem& system, const Linearisation& linear) {
+Steady steady_at(const StudySystem& system, const Linearization& linear) {
   Steady steady;
   steady.state = linear.state;
   const Places running = Directions(system).running;
@@ -139,7 +139,7 @@ Steady steady_at(const StudySystem& system, const Linearisation& linear) {
 }  // namespace
 
 Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_end) {
-  const Linearisation at_guess = linearized(system, 0, guess);
+  const Linearization at_guess = linearized(system, 0, guess);
   const double change = at_guess.unsteadiness.norm();
   const bool moves = at_guess.rate.norm() > 0;
   if (moves && change <= 1e-12 * at_guess.A.norm() * at_guess.rate.norm() &&
@@ -164,7 +164,7 @@ Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_en
     const auto found =
         find_equilibrium(system, 0, guess,
                          {.held = list(held), .running = list(joined(directions.running, cyclic))});
-    const Linearisation there = linearized(system, 0, found.state);
+    const Linearization there = linearized(system, 0, found.state);
     if (!stays(system, there, t_end)) {
       steady.reason =
           "the linear equations change along the motion or with time (if periodically: --period)";

@@ -34,9 +34,9 @@ struct Steady {
 
 namespace steady_motion {
 
-using Linearisation = kreisel::Linearisation<Guide, Body>;
+using Linearization = kreisel::Linearization<Guide, Body>;
 
-[[nodiscard]] Linearisation linearized(const StudySystem& system, double t,
+[[nodiscard]] Linearization linearized(const StudySystem& system, double t,
                                        const Eigen::VectorXd& y);
 
 [[nodiscard]] Tangent tangent_of(const StudySystem& system, const Eigen::VectorXd& y);
@@ -82,7 +82,7 @@ template <class Kind>
 }
 
 /// Whether the linear equations stay what they are along the motion and with time.
-[[nodiscard]] bool stays(const StudySystem& system, const Linearisation& linear, double t_end);
+[[nodiscard]] bool stays(const StudySystem& system, const Linearization& linear, double t_end);
 
 /// The steady motion at the guess, or next to it.
 [[nodiscard]] Steady find_steady(const StudySystem& system, const Eigen::VectorXd& guess,

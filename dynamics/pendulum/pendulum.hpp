@@ -537,7 +537,7 @@ struct LinearPendulum {
 };
 
 template <class S>
-[[nodiscard]] LinearPendulum<S> linearised(const PendulumBody<S>& body,
+[[nodiscard]] LinearPendulum<S> linearized(const PendulumBody<S>& body,
                                            const PendulumCoefficients<S>& c) {
   return {body.theta_c, c.e() + S(2) * c.k, c.f + c.h};
 }

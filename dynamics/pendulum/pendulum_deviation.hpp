@@ -73,7 +73,7 @@ template <class S>
                                                   const PendulumGuide<S>& guide,
                                                   const std::optional<S>& amplitude) {
   const PendulumCoefficients<S> c = coefficients(body, guide);
-  const LinearPendulum<S> linear = linearised(body, c);
+  const LinearPendulum<S> linear = linearized(body, c);
   PendulumNumbers<S> n;
   n.formula_24 = formula_24(body, guide);
   n.formula_25 = formula_25(body, guide);

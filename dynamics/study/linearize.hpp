@@ -45,7 +45,7 @@ concept Differentiable = requires(const Scene& scene, const detail::Dual& t,
 ///
 /// Units  : those of the state, radian for the angles that stand for a quaternion
 template <class Observer, class In>
-struct Linearisation {
+struct Linearization {
   Eigen::VectorXd state;           ///< about which
   Eigen::MatrixXd A;               ///< state matrix
   Eigen::VectorXd rate;            ///< of the state, as eta': 0 at an equilibrium
@@ -168,7 +168,7 @@ struct Reduced {
 ///               numbers of five
 /// Throws      : as rates() does: of a BodySystem InvalidInput where a load takes no dual numbers
 template <class Observer, class In, class Scene>
-[[nodiscard]] Linearisation<Observer, In> linearize(const Scene& scene, double t,
+[[nodiscard]] Linearization<Observer, In> linearize(const Scene& scene, double t,
                                                     const typename Scene::Vector& y,
                                                     std::vector<int> quaternions = {}) {
   const Tangent tangent = detail::tangent_of(scene, y.size(), std::move(quaternions));

@@ -110,7 +110,7 @@ class BodySystem {
   }
 
   /// The vector field for dual numbers (Eigen's AutoDiffScalar with derivatives of fixed size), as
-  /// the exact linearisation takes it:  M d(v') = -d(forces that v' takes).
+  /// the exact linearization takes it:  M d(v') = -d(forces that v' takes).
   ///
   /// Error  : rates in time of a guide's accelerations and of rotors' speeds that take doubles alone
   ///          are differences, which err by 2^-42 of their fifth derivatives

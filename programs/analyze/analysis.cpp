@@ -55,7 +55,7 @@ std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) 
 }
 
 Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
-  const kreisel::steady_motion::Linearisation there = linearized(system, 0, state);
+  const kreisel::steady_motion::Linearization there = linearized(system, 0, state);
   const Directions directions(system);
   const Places out = directions.without_roots(there.A);
   const std::vector<int> kept = list(out, false);
@@ -113,7 +113,7 @@ bool has_potential(const kreisel::StudySystem& system, const kreisel::SceneFile&
 ///
 /// Source : Lagrange and Dirichlet; gyroscopic forces and dampers do not spoil it
 bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibrium) {
-  const kreisel::steady_motion::Linearisation there = linearized(system, 0, equilibrium.state);
+  const kreisel::steady_motion::Linearization there = linearized(system, 0, equilibrium.state);
   const Directions directions(system);
   const Places fixed =
       joined(directions.held,

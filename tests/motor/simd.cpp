@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(calculate_each_by_itself) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(permute_cyclically) {
+BOOST_AUTO_TEST_CASE(go_round) {
   const Vec4d a(1, 2, 3, 4);
   const Vec4d next = a.next();
   const Vec4d after = a.after();
@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(permute_cyclically) {
   BOOST_TEST((after[0] == 3 && after[1] == 1 && after[2] == 2 && after[3] == 4));
 }
 
-BOOST_AUTO_TEST_CASE(take_static_zeros_for_0) {
+BOOST_AUTO_TEST_CASE(take_absent_components_for_0) {
   const Vec4d a = detail::vec4d(detail::Components<double, detail::StaticZero, double>{2, {}, -1});
   BOOST_TEST((a[0] == 2 && a[1] == 0 && a[2] == -1 && a[3] == 0));
 }

@@ -174,10 +174,10 @@ BOOST_AUTO_TEST_CASE(bodies_may_be_dual_numbers) {
   BOOST_TEST(near(c.f.derivatives()[0], -2 * 0.5, 1, 4));
 }
 
-BOOST_AUTO_TEST_CASE(linearised_field_is_the_tangent_at_0) {
+BOOST_AUTO_TEST_CASE(linearized_field_is_the_tangent_at_0) {
   const Given<double> in = given<double>(cases().back());
   const auto c = coefficients(in.body, in.guide);
-  const LinearPendulum<double> linear = linearised(in.body, c);
+  const LinearPendulum<double> linear = linearized(in.body, c);
   BOOST_TEST(near(linear.acceleration(0.0) * in.body.theta_c, -c.moment(0.0), c.weight, 4));
   BOOST_TEST(linear.stiffness == c.stiffness(0.0));
   const double phi = 1e-3;

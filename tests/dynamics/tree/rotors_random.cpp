@@ -294,7 +294,7 @@ BOOST_AUTO_TEST_CASE(obeys_its_matrices) {
 }
 
 // Dual numbers through rotors against those through ordinary bodies, and against differences.
-BOOST_AUTO_TEST_CASE(is_linearised_by_dual_numbers) {
+BOOST_AUTO_TEST_CASE(is_linearized_by_dual_numbers) {
   using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 3, 1>>;
   using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
   double worst = 0;
