@@ -9,8 +9,8 @@
 #include <dynamics/step/integrator.hpp>
 
 // A free gyro in Cardan's suspension, tilted by 0.5 rad, gets a knock and nutates. Its rings have
-// mass, so it also drifts about the outer axis, with the square of the knock. Prints the drift by
-// the exact equations and by Magnus's law; with a file name (.svg) it also draws the nutations.
+// mass, so it also drifts about the outer axis, as the square of the knock. Prints the drift by the
+// exact equations and by Magnus's law; with a file name (.svg) it also draws the nutations.
 
 using namespace kreisel;
 
@@ -29,7 +29,7 @@ void drift() {
   for (const double knock : {0.25, 0.5, 1.0, 2.0, 4.0}) {
     const GimbalDrift law = gimbal_drift(moments, tilt, 0, knock, spin);
     Integrator run(gyro, 0, {.beta = tilt, .beta_rate = knock, .phi_rate = spin});
-    // Mean of alpha' over 60 nutations under a bell, so that it matters little where they end.
+    // Mean of alpha' over 60 nutations; a bell-shaped weight makes the ends unimportant.
     double sum = 0, weights = 0;
     const double end = 60 * 2 * pi / law.nutation_frequency;
     for (int i = 1; i < 1000; ++i) {

@@ -10,8 +10,8 @@
 #include <dynamics/step/integrator.hpp>
 
 // Euler's top turns about its middle axis, which is unstable: every 30 s it turns over and back
-// (Dzhanibekov's nut). Prints its rates and the steps' error against the closed form; with a file
-// name (.svg) it also draws the polhodes, the ways of the angular momentum through the body.
+// (Dzhanibekov's nut). Prints its rates and the error of the steps against the closed form. With a
+// file name (.svg) it also draws the polhodes, the paths of the angular momentum in the body.
 
 using namespace kreisel;
 
@@ -33,7 +33,7 @@ void turn_over() {
   fmt::print("period {:.9f} s, {:.0f} evaluations\n", truth.period(), run.effort().evaluations);
 }
 
-/// The way of L/|L| through the body, seen from the direction (1, 1, 1): its front or its back.
+/// The path of L/|L| in the body, seen from the direction (1, 1, 1): its front or its back.
 void polhode(fmt::ostream& out, const Vector3<double>& L, bool front) {
   const Vector3<double> right(-std::sqrt(0.5), std::sqrt(0.5), 0);
   const Vector3<double> up = Vector3<double>(-1, -1, 2).normalized();

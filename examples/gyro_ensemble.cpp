@@ -1,4 +1,4 @@
-// gyro_ensemble: how far many gyros in Cardan's suspension drift whose tilt, knock and moments of
+// gyro_ensemble: the drift of many gyros in Cardan's suspension. Their tilt, knock and moments of
 // inertia are scattered about those of one drawing.
 
 #include <fmt/core.h>
@@ -28,7 +28,7 @@
 #include <dynamics/ensemble/ranks.hpp>
 using Ranks = kreisel::Ranks;
 #else
-/// This process alone.
+/// The ranks of a program without MPI: this process alone.
 class Ranks {
  public:
   Ranks(int& /*argc*/, char**& /*argv*/) {}
@@ -80,7 +80,8 @@ Member<Gyro> make(const Request& request, MemberRandom& random) {
   return {Gyro(moments, {}, {}), {.beta = tilt, .beta_rate = knock, .phi_rate = 50}};
 }
 
-/// The mean of alpha' under a bell, so that it matters little where the nutations end.
+/// The mean of alpha' with a bell-shaped weight, so that the ends of the nutations have little
+/// influence.
 double drift(const Trajectory<Gyro::State>& trajectory) {
   double sum = 0, weights = 0;
   for (std::size_t i = 0; i < trajectory.times.size(); ++i) {
@@ -92,7 +93,7 @@ double drift(const Trajectory<Gyro::State>& trajectory) {
   return sum / weights;
 }
 
-/// What a row says of a member; of one that failed the message alone.
+/// The row of a member; for a failed member it contains only the message.
 std::string row(const Request& request, std::size_t index,
                 const Trajectory<Gyro::State>& trajectory) {
   const RunReport& report = trajectory.report;
@@ -111,7 +112,7 @@ std::string row(const Request& request, std::size_t index,
                      report.error_estimate);
 }
 
-/// Mean and deviation of a column, added up in the order of members.
+/// Mean and deviation of a column, summed in the order of members.
 struct Statistics {
   double count = 0, mean = 0, squares = 0;
 
@@ -188,7 +189,8 @@ std::vector<std::string> compute(const Request& request, const MemberRange& rang
   return rows;
 }
 
-/// All that no file has yet, shared between the ranks; then the rows of all files, on rank 0.
+/// Computes the parts that no file has yet, shared between the ranks. Returns the rows of all
+/// files, on rank 0.
 std::vector<std::string> compute_in_parts(const Request& request, Ranks& ranks) {
   const PartFiles parts(
       request.parts,

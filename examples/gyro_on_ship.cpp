@@ -8,9 +8,9 @@
 #include <dynamics/step/integrator.hpp>
 
 // A free gyro on a ship that rolls about x by 10 degrees, every 8 s, and yaws about z by 2 degrees,
-// every 20 s. Its outer axis is x, its spin axis stands 30 degrees out of the plane across x. The
-// spin axis should stay in space, and does so in rings without mass. Prints the angles the rings
-// take, how far the axis has left its direction, and the moment that the ship has to hold.
+// every 20 s. Its outer axis is x; its spin axis is 30 degrees out of the plane across x. In rings
+// without mass the spin axis keeps its direction in space. Prints the angles of the rings, the
+// deviation of the axis, and the moment on the ship.
 
 using namespace kreisel;
 
@@ -28,7 +28,7 @@ const CardanMoments heavy{.rotor = {0.005, 0.005, 0.008},
                           .outer_ring = {0.006, 0.0045, 0.005}};
 const CardanMoments light{.rotor = heavy.rotor};
 
-/// The rotor's axis in space.
+/// The rotor's axis in the inertial frame.
 Vector3<double> axis(double t, double alpha, double beta) {
   return ship(t).X.value.rotation * GimbalAngles{alpha, beta}.axis();
 }

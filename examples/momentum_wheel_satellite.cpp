@@ -8,8 +8,8 @@
 #include <dynamics/study/spectrum.hpp>
 #include <dynamics/tree/body_system.hpp>
 
-// A satellite with two momentum wheels in a V, 20 degrees either side of its axis y, nutates after a
-// knock and precesses under a torque across: with free wheels and with regulated ones.
+// A satellite with two momentum wheels in a V, 20 degrees either side of its axis y. It nutates
+// after a knock and precesses under a transverse torque, with free wheels and with regulated ones.
 
 using namespace kreisel;
 

@@ -1,5 +1,5 @@
-// A turntable turns at 1 rad/s. A body rides on it 1 m from the axis, moves along the tangent at
-// 1 m/s and turns at 2 rad/s against the table. Which force does that take, and for what?
+// A turntable turns at 1 rad/s. A body on it, 1 m from the axis, moves along the tangent at 1 m/s
+// and turns at 2 rad/s against the table. Prints the force on the body by cause.
 
 #include <iostream>
 

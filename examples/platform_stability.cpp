@@ -8,9 +8,9 @@
 #include <dynamics/gimbal/gyro_platform.hpp>
 #include <dynamics/study/campbell.hpp>
 
-// A platform that floats freely, steadied by three gyros whose frames hang on springs. Prints the
-// modes at 1000 rad/s, also by the paper's (26), whose rows 1 to 3 hold for no angular velocity;
-// with a file name (.svg) draws how they change with the rotors' speed.
+// A freely floating platform, stabilised by three gyros whose frames are on springs. Prints the
+// modes at 1000 rad/s, also by the paper's (26), whose rows 1 to 3 do not hold for an angular
+// velocity. With a file name (.svg) it draws the modes over the rotors' speed.
 
 using namespace kreisel;
 

@@ -7,8 +7,8 @@
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/study/precession_gimbals.hpp>
 
-// A gyro on springs in two gimbals is released from rest. How far technical (precession) equations
-// lead from the exact ones in 1 s, and their own bound for it; drawn with a file name (.svg).
+// A gyro on springs in two gimbals is released from rest. Prints the error of the precession
+// (technical) equations after 1 s and their bound of it; with a file name (.svg) it draws both.
 
 using namespace kreisel;
 

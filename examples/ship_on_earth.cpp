@@ -12,9 +12,9 @@
 #include <dynamics/solve/solve.hpp>
 #include <motor/attitude.hpp>
 
-// A pendulum hangs in a ball joint above the deck of a ship that rolls in a swell, on the turning
-// earth. Which force does its motion take, and for what? Earth, ship and pendulum keep their
-// frames; the parts of the law stay readable one by one.
+// A pendulum in a ball joint above the deck of a ship that rolls in a swell, on the rotating earth.
+// Prints the torque of its motion by cause. Earth, ship and pendulum keep their own frames, so the
+// parts of the law can be read one by one.
 
 using namespace kreisel;
 
@@ -22,7 +22,7 @@ namespace {
 
 struct Earth {};
 
-/// The ship against the earth at its berth: rolling, pitching and heaving, x down, y north, z east.
+/// The ship against the earth at its berth: roll, pitch and heave, x down, y north, z east.
 constexpr auto swell = [](const auto& t) {
   using std::sin;
   using T = std::decay_t<decltype(t)>;

@@ -12,11 +12,11 @@
 #include <motor/attitude.hpp>
 
 // A brick falls from 30000 ft over the equator and tumbles, without air: check case 2 of NASA's
-// NESC, by which flight simulators are compared. Prints, every 0.1 s, its attitude against the local
-// level below it and its body rates against the inertial frame. The guide is the earth at the point
-// of release, so the fall is small in it; the level below the brick is turned by the fall's
-// deflection to the east, 6e-5 degrees after 30 s. All decimals but the last are certain: the closed
-// form of the tumbling agrees to 5.5e-13 degrees (tests/examples/examples.cpp).
+// NESC, a case for the comparison of flight simulators. Prints, every 0.1 s, its attitude against
+// the local level below it and its body rates against the inertial frame. The guide is the earth at the point of release, so the fall is small in it. The level below the
+// brick turns by the fall's deflection to the east, 6e-5 degrees after 30 s. All decimals except
+// the last are certain: the closed form of the tumbling agrees to 5.5e-13 degrees
+// (tests/examples/examples.cpp).
 
 using namespace kreisel;
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr double degree = 0.017453292519943295;
 
-/// North, east and down where the brick is, as columns on the axes of the earth.
+/// North, east and down at the brick, as columns on the axes of the earth.
 Matrix3<double> level(const Vector3<double>& p_Earth) {
   double latitude = 0, longitude = 0, height = 0;
   std::vector<double> east_north_up(9);
@@ -41,7 +41,7 @@ void run() {
   const auto brick = InertiaTensor<Body>::about_centre(2.26796, Vector3<double>::Zero(),
                                                        Matrix3<double>(moments.asDiagonal()));
 
-  // The guide's axes are down, west and north; the brick's lie along north, east and down.
+  // The guide's axes are down, west and north; the brick's axes are along north, east and down.
   const EarthSite<double> release{.latitude = 0, .azimuth = 0, .height = 30000 * 0.3048};
   const auto earth = earth_frame(release);
   const FreeBody body(brick, earth, OblateGravitation<>{});

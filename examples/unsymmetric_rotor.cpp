@@ -10,8 +10,8 @@
 #include <dynamics/study/stability_boundaries.hpp>
 
 // A rotor with unequal transverse moments A and B runs at constant speed between springs of 1 and
-// 1.5 N m/rad; (A+B)/2 = 1 kg m^2, C = 0.5 kg m^2. Prints in which ranges of the speed its rest is
-// unstable (at lower speeds there are more, far narrower ones); with a file name (.svg) draws them.
+// 1.5 N m/rad; (A+B)/2 = 1 kg m^2, C = 0.5 kg m^2. Prints the unstable ranges of speed;
+// lower speeds have more, far narrower ones. With a file name (.svg) it draws them.
 
 using namespace kreisel;
 

@@ -1,4 +1,4 @@
-// kreisel for Python: scenes of simulate, their motion as numpy arrays.
+// The Python module kreisel: scene files and their motion as numpy arrays.
 
 #include <chrono>
 #include <cmath>
@@ -28,7 +28,7 @@ using namespace py::literals;
 
 namespace {
 
-/// A scene as text, so that every run may set its own end, tolerance and method against it.
+/// A scene as text, so that every run can override its end, tolerance and method.
 struct Scene {
   std::string text;
   std::filesystem::path path;
@@ -87,7 +87,7 @@ std::string key_of(const std::string& word) {
 
 std::string toml_of(const std::string& key, const py::handle& value);
 
-/// `between` stands between what lies in the list.
+/// A list as TOML, with `between` between its entries.
 std::string toml_list(const std::string& key, const py::handle& values,
                       const std::string& between) {
   std::string text = "[" + between;
@@ -102,7 +102,7 @@ std::string toml_list(const std::string& key, const py::handle& values,
 std::string toml_table(const std::string& key, const py::dict& table) {
   std::string text = "{";
   for (const auto& [name, value] : table) {
-    if (!py::isinstance<py::str>(name)) throw py::type_error(key + ": a key is no text");
+    if (!py::isinstance<py::str>(name)) throw py::type_error(key + ": keys must be text");
     const auto word = name.cast<std::string>();
     if (text.size() > 1) text += ", ";
     text += key_of(word) + " = " + toml_of(key + "." + word, value);
@@ -112,7 +112,7 @@ std::string toml_table(const std::string& key, const py::dict& table) {
 
 /// A Python value as TOML; numbers keep all their digits.
 ///
-/// Throws : TypeError, naming the key, for what TOML has not
+/// Throws : TypeError with the key, for a value that TOML does not have
 std::string toml_of(const std::string& key, const py::handle& value) {
   if (py::hasattr(value, "tolist")) return toml_of(key, value.attr("tolist")());  // numpy's
   if (py::hasattr(value, "__fspath__")) return toml_of(key, value.attr("__fspath__")());
@@ -129,7 +129,7 @@ std::string toml_of(const std::string& key, const py::handle& value) {
                        py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
 }
 
-/// A line for each keyword, and for each body.
+/// The scene of keyword arguments, a line for each keyword and for each body.
 Scene scene_of_keywords(const py::kwargs& keywords) {
   std::string text;
   for (const auto& [name, value] : keywords) {
@@ -141,13 +141,13 @@ Scene scene_of_keywords(const py::kwargs& keywords) {
   return scene_of_text(std::move(text), "keywords");
 }
 
-/// Asks Python ten times a second whether a signal has come: taking its lock costs more than an
+/// Checks Python's signals ten times a second, because taking Python's lock costs more than an
 /// evaluation.
 class SignalWatch {
   using Clock = std::chrono::steady_clock;
 
  public:
-  /// Without Python's lock.
+  /// True if a signal has arrived. Called without Python's lock.
   [[nodiscard]] bool stop() {
     if (stop_ || Clock::now() < next_) return stop_;
     next_ = Clock::now() + std::chrono::milliseconds(100);
@@ -156,7 +156,7 @@ class SignalWatch {
     return stop_;
   }
 
-  /// With it.
+  /// Throws the signal's exception. Called with Python's lock.
   void rethrow() const {
     if (stop_) throw py::error_already_set();
   }
@@ -170,8 +170,9 @@ kreisel::SceneFile requested(const Scene& scene, std::optional<double> t_end,
                              const std::optional<double>& tolerance,
                              const std::optional<std::string>& method,
                              const std::optional<std::vector<double>>& times) {
-  if (times && t_end) throw kreisel::InvalidInput("t_end: times have an end of their own");
-  if (times && times->empty()) throw kreisel::InvalidInput("times: there are none");
+  if (times && t_end)
+    throw kreisel::InvalidInput("t_end and times exclude each other: give one of them");
+  if (times && times->empty()) throw kreisel::InvalidInput("times must not be empty");
   if (times) t_end = times->back();
   if (t_end && !(*t_end > 0 && std::isfinite(*t_end))) {
     throw kreisel::InvalidInput("t_end must be a number above 0");
@@ -197,8 +198,7 @@ py::object part(const py::array_t<double>& rows, std::size_t begin, int count) {
   return rows[py::make_tuple(all, py::slice(first, first + count, 1))];
 }
 
-/// A RuntimeWarning where the tolerance was not reached. Throws what Python makes of it where
-/// warnings are errors.
+/// Issues a RuntimeWarning if the tolerance was not reached. Throws if warnings are errors in Python.
 void warn_if_missed(const kreisel::RunReport& report) {
   if (report.tolerance_kept) return;
   std::ostringstream text;
@@ -278,15 +278,17 @@ PYBIND11_MODULE(kreisel, m) {
       "Rigid bodies, pendulums and gyros seen from moving frames.\n\n"
       "SI units and radians. Quaternions are (w, x, y, z).";
 
-  // The latest is asked first, so that what is derived comes after its base.
+  // Python tries the latest first, so derived exceptions are registered after their base.
   const auto error = py::register_exception<kreisel::Error>(m, "Error");
   const auto invalid = py::register_exception<kreisel::InvalidInput>(m, "InvalidInput", error);
   py::register_exception<kreisel::SceneMistakes>(m, "SceneMistakes", invalid);
   py::register_exception<kreisel::ComputationFailed>(m, "ComputationFailed", error);
-  m.attr("Error").attr("__doc__") = "Whatever this module raises of its own.";
-  m.attr("InvalidInput").attr("__doc__") = "The data are at fault; the message says which and why.";
-  m.attr("SceneMistakes").attr("__doc__") = "A line for each: file:line:column: key: reason.";
-  m.attr("ComputationFailed").attr("__doc__") = "The data are legal, the answer cannot be had.";
+  m.attr("Error").attr("__doc__") = "Base class of the exceptions of this module.";
+  m.attr("InvalidInput").attr("__doc__") =
+      "Invalid data; the message names the value and the reason.";
+  m.attr("SceneMistakes").attr("__doc__") =
+      "Mistakes in a scene, a line for each: file:line:column: key: reason.";
+  m.attr("ComputationFailed").attr("__doc__") = "Valid data without a computable answer.";
 
   py::class_<kreisel::InvariantDrift>(m, "Invariant", "A number that should not change in a run.")
       .def_readonly("name", &kreisel::InvariantDrift::name, "energy, momenta, ...")
@@ -301,65 +303,69 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("why", &kreisel::Term::why, "why not, or which components are not");
 
   using Report = kreisel::RunReport;
-  py::class_<Report>(m, "Report", "How far a run is off and what it cost.")
-      .def_readonly("method", &Report::method, "that computed it")
-      .def_readonly("tolerance", &Report::tolerance, "asked for")
+  py::class_<Report>(m, "Report", "Error and cost of a run.")
+      .def_readonly("method", &Report::method, "method of the run")
+      .def_readonly("tolerance", &Report::tolerance, "requested tolerance")
       .def_readonly("error_estimate", &Report::error_estimate,
                     "of the global error: attitudes in rad, others relative to their size")
       .def_readonly("tolerance_kept", &Report::tolerance_kept, "error_estimate <= tolerance")
       .def_readonly("all_evaluations", &Report::all_evaluations,
-                    "with those for the estimate and for attempts that fell short")
+                    "including those for the estimate and for attempts that missed the tolerance")
       .def_readonly("run_time", &Report::run_time, "s")
-      .def_readonly("invariants", &Report::invariants, "what should not have changed")
+      .def_readonly("invariants", &Report::invariants, "quantities that should be constant")
       .def_property_readonly(
-          "steps", [](const Report& r) { return r.effort.steps; }, "taken")
+          "steps", [](const Report& r) { return r.effort.steps; }, "accepted steps")
       .def_property_readonly(
           "rejected", [](const Report& r) { return r.effort.rejected; },
-          "steps too long, taken again")
+          "steps that were too long and repeated")
       .def_property_readonly(
           "evaluations", [](const Report& r) { return r.effort.evaluations; },
-          "of the equations, for what is returned");
+          "of the equations, for the returned motion");
 
-  py::class_<Run>(m, "Run", "A motion that was computed. Arrays are by output time.")
-      .def_readonly("title", &Run::title, "of the scene")
-      .def_readonly("model", &Run::model, "exact, or the approximation that was asked for")
+  py::class_<Run>(m, "Run", "A computed motion. Arrays are by output time.")
+      .def_readonly("title", &Run::title, "title of the scene")
+      .def_readonly("model", &Run::model, "exact, or the requested approximation")
       .def_readonly("columns", &Run::columns, "names of the columns of rows")
       .def_readonly("rows", &Run::rows, "the numbers of simulate --csv")
       .def_property_readonly(
           "times", [](const Run& run) { return part(run.rows, 0, 1); }, "s")
       .def_readonly("coordinates", &Run::coordinates,
                     "by body: angle in rad or displacement in m; two angles; attitude against the "
-                    "parent, and of a free body its place in m")
+                    "parent, and of a free body its position in m")
       .def_readonly("rates", &Run::rates,
                     "by body: rad/s or m/s; angular velocity on body axes, and of a free body its "
                     "velocity in m/s on the parent's axes")
       .def_readonly("reactions", &Run::reactions,
-                    "by body, where asked for: 'force' in N and 'torque' in N m that the parent "
-                    "exerts at the joint, on body axes, and 'drive_torque' in N m")
-      .def_readonly("errors", &Run::errors,
-                    "estimates of the global error, measured as Report.error_estimate, which is "
-                    "the greatest")
-      .def_readonly("terms", &Run::terms, "of the exact equation, kept or not")
-      .def_readonly("report", &Run::report, "how far the run is off and what it cost");
+                    "by body, on request: 'force' in N and 'torque' in N m of the parent at the "
+                    "joint, on body axes, and 'drive_torque' in N m")
+      .def_readonly(
+          "errors", &Run::errors,
+          "estimates of the global error over time; Report.error_estimate is the greatest")
+      .def_readonly("terms", &Run::terms, "terms of the exact equation, kept and dropped")
+      .def_readonly("report", &Run::report, "error and cost of the run");
 
-  py::class_<Scene>(m, "Scene", "A mechanical system on a guide frame, as a scene file has it.")
-      .def(py::init(&scene_of_file), "path"_a, "Reads a scene file, TOML.")
+  py::class_<Scene>(m, "Scene",
+                    "A mechanical system on a guide frame, described as in a scene file.")
+      .def(py::init(&scene_of_file), "path"_a, "Reads a scene file (TOML).")
       .def(py::init(&scene_of_keywords),
-           "The same of keyword arguments: title, guide, gravity, body, solve, report as the file "
-           "has\nthem. Tables are dicts, body is a list of them; arrays of numpy are lists.\n\n"
+           "Builds a scene from keyword arguments: title, guide, gravity, body, solve, report, as "
+           "in "
+           "a\nscene file. Tables are dicts, body is a list of dicts; numpy arrays are lists.\n\n"
            "    Scene(gravity={'kind': 'uniform', 'vector': [0, 0, -9.81]},\n"
            "          body=[{'name': 'rod', 'joint': {'kind': 'revolute', 'axis': [0, 1, 0]},\n"
            "                 'mass': 1, 'centre': [0, 0, -1], 'inertia': [0.1, 0.1, 0.1]}],\n"
            "          solve={'t_end': 2})")
-      .def_readonly("text", &Scene::text, "as a scene file has it")
-      .def_static("from_text", &scene_of_text, "text"_a, "path"_a = "scene.toml",
-                  "The same of a text; path names it in messages, tables are looked for beside it.")
+      .def_readonly("text", &Scene::text, "the scene as the text of a scene file")
+      .def_static(
+          "from_text", &scene_of_text, "text"_a, "path"_a = "scene.toml",
+          "Builds a scene from the text of a scene file. path is its name in messages; its logs "
+          "are searched beside path.")
       .def("solve", &solve_scene, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),
            "method"_a = py::none(), "times"_a = py::none(), "reactions"_a = false,
-           "The motion from t = 0.\n\n"
+           "Computes the motion from t = 0.\n\n"
            "t_end      s; times in s, increasing, instead of the scene's output times\n"
-           "tolerance  of the global error, see Report.error_estimate\n"
+           "tolerance  bound of the global error, see Report.error_estimate\n"
            "method     auto, closed form, verner98, gauss16, radau13, splitting, taylor\n"
-           "reactions  whether to tell what every joint carries\n\n"
-           "What is left out is the scene's. Python's lock is released meanwhile.");
+           "reactions  True: return the load of every joint\n\n"
+           "Omitted arguments are those of the scene. Python's lock is released during the run.");
 }

@@ -128,7 +128,7 @@ class OfKeywords(unittest.TestCase):
             self.scene(body=[self.BODY | {"mass": float("nan")}])
         with self.assertRaisesRegex(TypeError, r"body\[0\]\.mass: .* NoneType"):
             self.scene(body=[self.BODY | {"mass": None}])
-        with self.assertRaisesRegex(TypeError, "guide: a key is no text"):
+        with self.assertRaisesRegex(TypeError, "guide: keys must be text"):
             self.scene(guide={1: 2})
         with self.assertRaises(kreisel.SceneMistakes):
             kreisel.Scene()
