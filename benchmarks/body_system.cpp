@@ -1,5 +1,5 @@
-// Chains of 1 to 4096 revolute bodies: BodySystem beside articulated bodies and Newton-Euler
-// written out by hand for such chains and nothing else, on body axes, as textbooks do.
+// Chains of 1 to 4096 revolute bodies, by BodySystem and by hand. The code by hand has articulated
+// bodies and Newton-Euler on body axes for such chains alone, as in textbooks.
 
 #include <Eigen/Core>
 #include <benchmark/benchmark.h>
@@ -73,7 +73,7 @@ void inverse(benchmark::State& state) {
   }
 }
 
-/// To order 20, as solve() takes it to 1e-10.
+/// The series to order 20, as in solve() at 1e-10.
 void series(benchmark::State& state) {
   System<RestingFrame<>> s(resting(), static_cast<int>(state.range(0)));
   auto series = s.system.series();
@@ -110,7 +110,7 @@ void inverse_by_hand(benchmark::State& state) {
   }
 }
 
-/// Times of two things that differ say nothing.
+/// Refuses to time two computations with different results.
 bool both_agree() {
   const int n = 16;
   System<RestingFrame<>> s(resting(), n);

@@ -1,5 +1,6 @@
-// Members of an ensemble a second: one by one, in packs, and in packs on two threads, all held to
-// one accuracy; with the greatest true error of the first 64, which has to be the same.
+// Members of an ensemble per second: one by one, in packs, and in packs on two threads, all with
+// the same accuracy. Prints the greatest true error of the first 64 members as well, which must be
+// equal.
 
 #include <fmt/core.h>
 
@@ -55,7 +56,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// One way to run an ensemble, and what its repetitions took.
+/// One way to run an ensemble, and the times of its repetitions.
 struct Way {
   std::string name;
   std::vector<double> processor;  ///< s, of all threads

@@ -1,6 +1,6 @@
-// What a right-hand side costs, beside the least that can be written by hand for the same scene:
-// doubles, no frames, nothing that the scene does not need. The library's forms are those of a user
-// who states nothing but the scene; benchmarks/pruning.cpp has those who do.
+// The cost of a right-hand side against the least code by hand for the same scene: doubles, no
+// frames, no unneeded terms. The library's forms are those of a user who declares only the scene;
+// benchmarks/pruning.cpp has forms with declarations.
 
 #include <Eigen/Geometry>
 #include <benchmark/benchmark.h>
@@ -91,7 +91,8 @@ void time(benchmark::State& state, const Vector& start, const Field& field) {
 
 bool good = true;
 
-/// Registers a field of the library and the same by hand; times of two that differ say nothing.
+/// Registers a field of the library and the same by hand; refuses to time two with different
+/// results.
 template <class Vector, class Field, class ByHand>
 void pair(const std::string& name, const Vector& start, const Field& field, const ByHand& by_hand) {
   const Vector y = inputs(start)[7];

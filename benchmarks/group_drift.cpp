@@ -1,5 +1,5 @@
-// How far a rotation drifts off the group, and off the truth, when it is turned step by step: 1e9 equal
-// turns of 2.7e-3 rad by three policies. Usage: group_drift [steps]
+// The drift of a rotation off the group and off the truth over many steps: 1e9 equal rotations of
+// 2.7e-3 rad by three policies. Usage: group_drift [steps]
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
@@ -17,7 +17,7 @@ namespace {
 
 const Vector3<double> turn(0.001, -0.002, 0.0015);
 
-/// The angle between the attitude R and that of n exact turns.
+/// The angle between the attitude R and the attitude after n exact rotations.
 double error(const Matrix3<Digits50>& R, double n) {
   const Vector3<Digits50> w = turn.cast<Digits50>() * Digits50(n);
   const Matrix3<Digits50> exact = exp(Motor<Digits50>{w, {}}).rotation;

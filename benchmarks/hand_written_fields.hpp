@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-/// Right-hand sides written by hand, each for one scene and nothing else: doubles, no frames, nothing
-/// that the scene does not need, everything constant worked out beforehand.
+/// Right-hand sides written by hand, each for one scene alone: doubles, no frames, no unneeded
+/// terms, every constant computed beforehand.
 
 namespace by_hand {
 
@@ -15,7 +15,7 @@ using Free = Eigen::Matrix<double, 13, 1>;  // quaternion; place; angular veloci
 using Gyro = Eigen::Matrix<double, 6, 1>;   // alpha, beta, phi; their rates
 using Angle = Eigen::Vector2d;
 
-/// The matrix of a quaternion: of norm 1, which the integrator would have to keep, or of any.
+/// The matrix of a quaternion of norm 1, which the integrator would have to keep, or of any norm.
 enum class Norm { any, one };
 
 template <Norm norm>
@@ -60,7 +60,7 @@ struct PrincipalTop {
   }
 };
 
-/// Any axes: six numbers of the tensor, six of its inverse.
+/// On arbitrary axes: six numbers of the tensor, six of its inverse.
 struct GeneralTop {
   Eigen::Matrix3d T;
   V3 k;  // weight moment
@@ -85,8 +85,8 @@ struct GeneralTop {
 
 // --- Bodies on a guide that turns ------------------------------------------------------------------
 
-/// A ball pendulum on the earth, x south, z up: the earth's rate has no y, gravity only a z. State:
-/// attitude and rate against the earth. The rate of R^t w_E is -u' x R^t w_E.
+/// A ball pendulum on the earth, x south, z up: the earth's rate has no y component, gravity only a
+/// z component. State: attitude and rate against the earth. The rate of R^t w_E is -u' x R^t w_E.
 struct BallPendulum {
   V3 moments;
   V3 earth;
@@ -112,8 +112,9 @@ struct BallPendulum {
   }
 };
 
-/// A body with any inertia, held on a guide that turns steadily with u; gravity rests in the
-/// inertial frame: in the guide it is n n.g + cos(|u| t) (g - n n.g) + sin(|u| t) g x n.
+/// A body with arbitrary inertia and a fixed point, on a guide that turns steadily with u. Gravity
+/// rests in the inertial frame; in the guide it is n n.g + cos(|u| t) (g - n n.g) + sin(|u| t) g x
+/// n.
 struct HeldOnTurningGuide {
   Eigen::Matrix3d T;
   V3 s;  // first moment
@@ -151,7 +152,8 @@ struct HeldOnTurningGuide {
   }
 };
 
-/// A body with any inertia, held in a lift that goes up and down by sin(2 t) and does not turn.
+/// A body with arbitrary inertia and a fixed point, in a lift that moves up and down by sin(2 t)
+/// without turning.
 struct HeldInLift {
   Eigen::Matrix3d T;
   V3 s;  // first moment
@@ -176,8 +178,8 @@ struct HeldInLift {
   }
 };
 
-/// A body on principal axes through its centre of mass, free in a guide that turns steadily with u;
-/// gravity rests in the guide, `steady` is it less the acceleration of the guide's origin.
+/// A body on principal axes through its centre of mass, free in a guide that turns steadily with u.
+/// Gravity rests in the guide; `steady` is gravity less the acceleration of the guide's origin.
 struct FreeOnTurningGuide {
   V3 moments;
   V3 u;
@@ -229,8 +231,8 @@ struct PlanePendulum {
   }
 };
 
-/// (23) on principal axes, E, F, H and K from the guide's motion each time; Motion tells u, ou and
-/// g' at t.
+/// (23) on principal axes, with E, F, H and K computed from the guide's motion at each call. Motion
+/// returns u, ou and g' at t.
 template <class Motion>
 struct PlanePendulumOnGuide {
   Motion motion;
@@ -257,7 +259,7 @@ struct CardanGyro {
   double A = A_1 + A_2;
   double B = A_1 + B_2;
 
-  /// Springs and friction, if there are any, less a moment.
+  /// The moment of springs and friction, if there are any, less a given moment.
   template <bool braced>
   [[nodiscard]] double braced_a(const Gyro& y, double moment) const {
     return braced ? -outer_stiffness * y[0] - outer_damping * y[3] - moment : -moment;

@@ -3,8 +3,8 @@ find_path(VALGRIND_INCLUDE_DIR valgrind/callgrind.h)
 # kreisel_count(<folder>): the program <folder>_count of benchmarks/<folder>, whose instructions
 # tests/support/instructions.sh counts: optimised whatever the preset, for any processor of its family.
 #
-# Without packed arithmetic of straight lines: which g++ makes of them, with what shuffling, depends
-# on where numbers happen to lie.
+# Packed arithmetic of straight lines is off: g++ forms packs, and shuffles, that depend on the
+# addresses of numbers.
 function(kreisel_count folder)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/benchmarks/${folder}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/(kdl|simbody)\\.cpp$")

@@ -1,6 +1,6 @@
-// What one operation of the motor calculus costs by kreisel, by hand, in matrices of Eigen and by the
-// libraries that are installed; and one of the factors that the stiff integrator takes. Nobody is
-// timed who does not give the same numbers.
+// The cost of one operation of the motor calculus by kreisel, by hand, in matrices of Eigen and by
+// the installed libraries. One factorisation of the stiff integrator is measured too. A contender
+// with other results is not timed.
 
 #include <Eigen/LU>
 #include <benchmark/benchmark.h>
@@ -22,7 +22,7 @@ namespace {
 
 namespace detail = kreisel::detail;
 
-/// The greatest difference, of the greatest number.
+/// The greatest difference, relative to the greatest number.
 double difference(const std::vector<double>& found, const std::vector<double>& expected) {
   if (found.size() != expected.size()) return HUGE_VAL;
   double off = 0;
@@ -35,7 +35,7 @@ double difference(const std::vector<double>& found, const std::vector<double>& e
   return off / size;
 }
 
-/// Returns whether all do the same.
+/// Returns true if all contenders have the same results.
 bool register_kernels() {
   bool good = true;
   const std::vector<kernels::Contender> all = kernels::contenders();

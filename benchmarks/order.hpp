@@ -4,7 +4,7 @@
 
 #include <motor/error.hpp>
 
-/// What a program of many runs is told to do:  [--quick] [--<one> NAME|all] --out DIR.
+/// The command line of a program of many runs:  [--quick] [--<one> NAME|all] --out DIR.
 struct Order {
   bool quick = false;
   std::string wanted = "all";

@@ -1,5 +1,5 @@
-// Dzhanibekov's top for 100 s by kreisel and by the engines that are installed, each as it comes:
-// what becomes of energy, momentum and attitude, and what it costs. Usage: peers_drift
+// Dzhanibekov's top for 100 s by kreisel and by the installed engines with their default settings:
+// drift of energy, momentum and attitude, and the cost. Usage: peers_drift
 
 #include <fmt/core.h>
 
@@ -31,7 +31,7 @@ const Top top{{1, 2, 3}, {1e-3, 2, 1e-3}};
 
 Vector3<double> vector(const Triple& v) { return {v[0], v[1], v[2]}; }
 
-/// By solve(), to a tolerance.
+/// The motion by solve(), to a tolerance.
 std::vector<Turning> ours(const Top& t, Method method, double tolerance) {
   const EulerTop body(vector(t.moments));
   kreisel::SolveOptions options{.output_times = {}, .tolerance = tolerance, .method = method};
@@ -76,7 +76,7 @@ std::vector<Engine> engines() {
   return all;
 }
 
-/// What has become of a motion at its times, the greatest of each.
+/// The greatest errors of a motion over its times.
 struct Drift {
   double energy = 0;    ///< relative, with its sign
   double momentum = 0;  ///< of the vector in inertial space, relative

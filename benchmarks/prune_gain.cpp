@@ -1,5 +1,5 @@
-// What leaving terms out by prune() saves in a run of solve(), and after how many runs it has paid
-// for its bounds. Writes a Markdown table; times are CPU times, the least of nine.
+// The time that prune() saves in a run of solve(), and the number of runs after which its bounds
+// have paid. Writes a Markdown table; times are CPU times, the least of nine.
 //
 // Usage: prune_gain
 
@@ -34,7 +34,7 @@ double least_seconds(const Work& work) {
   return least;
 }
 
-/// ns of a call of the field.
+/// ns for a call of the field.
 template <class Scene>
 double field(const Scene& scene, const typename Scene::State& start) {
   constexpr int calls = 100000;

@@ -1,5 +1,5 @@
-// What a right-hand side costs in general, as its scene is named, and by hand. Refuses to time forms
-// that do not give the same numbers; script/pruning adds the instructions.
+// The cost of a right-hand side in three forms: general, pruned, by hand. Refuses to time forms
+// with different results; script/pruning adds the instructions.
 
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,9 @@
-// What a gyro on springs costs to the same accuracy as its rotor turns faster, in three curves:
+// The cost of a gyro on springs at equal accuracy as its rotor turns faster, in three curves:
 //
-//   spin       the same momentum L at a higher and higher speed: as a rotor, whose angle no step
-//              resolves, regulated and free, beside the same body with its angle resolved
+//   spin       the same momentum L at higher and higher speeds: as a rotor whose angle no step
+//              resolves, regulated and free, and as a body with its angle resolved
 //   momentum   L rises, and with it the nutation, of a frequency of about L/J, which exact equations
-//              have to follow, excited or not
+//              must follow, excited or not
 //   technical  the same from the velocity of the precession by the technical equations, which leave
 //              the nutation out, and the bound of their error
 //
@@ -39,14 +39,14 @@ namespace {
 
 using System = BodySystem<RestingFrame<>>;
 
-/// rad, of both gimbals' angles together at the end.
+/// rad, the error of both gimbals' angles together at the end.
 constexpr double wanted = 1e-9;
 
 constexpr double about_fork = 1.5e-3, about_ring = 1.5e-3;  // kg m^2, with the rotor across
 
-/// Two rings on springs and a rotor in them: in a mode of rotors, or as an ordinary body whose
-/// moments of inertia across its axis are apart, by 2e-3 of them if a body can, so that its angle
-/// matters.
+/// Two rings on springs and a rotor in them, in a mode of rotors or as an ordinary body. The body's
+/// transverse moments differ by a fraction of 2e-3, if that is possible for a body, so that its
+/// angle matters.
 System gyro(const std::optional<RotorMode>& mode, double momentum, double speed) {
   const double C = momentum / speed, A = 5e-4;
   const auto ring = [](double mass, const Vector3<double>& moments) {
@@ -95,7 +95,7 @@ Run run(const System& system, const System::State& from, double span, double tol
   return {end.coordinates.head<2>(), steps.effort().evaluations, clock_seconds() - begin};
 }
 
-/// A row of the file. Costs are of a second of the motion.
+/// A row of the file. Costs are per second of the motion.
 struct Point {
   std::string curve;
   std::string row;
@@ -107,8 +107,8 @@ struct Point {
   double bound = 0;  ///< the technical equations' own
 };
 
-/// The exact equations at the tolerance a step that leaves the error that is wanted, between the two
-/// of a ladder where it does.
+/// The exact equations at a tolerance for the wanted error. Where two steps of a ladder enclose the
+/// error, the result is between them.
 Point at_equal_accuracy(const System& system, const System::State& from, double span,
                         const Eigen::Vector2d& truth) {
   struct Rung {
@@ -142,7 +142,7 @@ Point exact(const System& system, const System::State& from, double span) {
   return at_equal_accuracy(system, from, span, truth(system, from, span));
 }
 
-/// The technical equations' forces, counted.
+/// The forces of the technical equations, with a counter of calls.
 class Counted final : public TechnicalModel {
  public:
   explicit Counted(const TechnicalModel& model) : model_(&model) {}
@@ -257,7 +257,7 @@ std::vector<double> decades(double from, double to, int in_a_decade) {
 std::vector<Point> measure(bool quick) {
   std::vector<Measurement> tasks;
   for (const double speed : decades(1e2, quick ? 1e4 : 1e6, quick ? 1 : 2)) add_spin(tasks, speed);
-  // The technical equations go on where the exact ones would take hours.
+  // The technical equations are computed also where the exact ones would take hours.
   const double last = quick ? 1 : 100;
   for (const double momentum : decades(0.1, 1e3, 3)) {
     add_momentum(tasks, momentum, momentum < 1.01 * last);
@@ -287,7 +287,7 @@ void write(const std::string& file, const std::vector<Point>& points) {
   }
 }
 
-/// A block of data of gnuplot's: x, evaluations, error, bound.
+/// A data block for gnuplot: x, evaluations, error, bound.
 std::string data(const char* name, const std::vector<Point>& points, const char* row,
                  double Point::*x, bool certified = false) {
   std::string text = fmt::format("${} << END\n", name);
@@ -298,7 +298,7 @@ std::string data(const char* name, const std::vector<Point>& points, const char*
   return text + "END\n";
 }
 
-// The colours are Okabe and Ito's, which the colour-blind tell apart.
+// The colours are those of Okabe and Ito, which colour-blind people can distinguish.
 void draw(const std::string& directory, const std::vector<Point>& points) {
   const std::string format =
       "set terminal svg size 800,560 font 'Helvetica,14' background 'white'\n"

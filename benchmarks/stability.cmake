@@ -2,8 +2,8 @@ find_package(Boost 1.74 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
-# kreisel_stability(): the program build/<preset>/bin/stability, for the benchmarks or, compiled like
-# them, for the tests
+# kreisel_stability(): the program build/<preset>/bin/stability, for the benchmarks, or for the
+# tests with the same options
 function(kreisel_stability)
   set(folder ${PROJECT_SOURCE_DIR}/benchmarks)
   file(GLOB cases CONFIGURE_DEPENDS ${folder}/stability/*.cpp)

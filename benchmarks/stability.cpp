@@ -1,11 +1,12 @@
-// The catalogue of stiff and extreme cases: each over every scene and method it applies to, held
-// against closed forms, references of 25 digits or an independent run. An answer is right within
-// the error it reports, or there is a clear error; anything else has FAILED. Writes stability.csv,
-// stability.md and pictures of drift into a directory.
+// The catalogue of stiff and extreme cases, each over every scene and method to which it applies.
+// Results are compared with closed forms, references of 25 digits or an independent run. A result
+// is right if its error is within the reported estimate, or if there is a clear error message;
+// everything else has FAILED. Writes stability.csv, stability.md and pictures of drift into a
+// directory.
 //
 // Usage: stability [--quick] [--case NAME|all] --out DIR
 //
-// Exit status: 0, or 1 if a case failed, 2 for a wrong call, 3 if nothing can be written.
+// Exit status: 0; 1 if a case failed; 2 for a wrong call; 3 if the output cannot be written.
 
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
-// Error against run time: every method on every scene over all tolerances, each result held against
-// a truth that no method computes. Writes work_precision.csv, two pictures a scene and
+// Error against run time: every method on every scene over all tolerances. Each result is compared
+// with a truth that no method computes. Writes work_precision.csv, two pictures for each scene and
 // work_precision.md into a directory.
 //
 // Usage: work_precision [--quick] [--scene NAME|all] --out DIR

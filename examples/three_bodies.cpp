@@ -8,9 +8,9 @@
 #include <dynamics/tree/body_system.hpp>
 #include <motor/attitude.hpp>
 
-// A crane on the deck of a rolling ship has a column that a motor turns steadily, a jib locked at
-// an angle, and a load that swings below it. Prints the swing of the load, the torque of the motor,
-// and the load of the bearing on the deck by cause.
+// A crane on the deck of a rolling ship: a steadily driven column, a jib locked at an angle, and a
+// load that swings below it. Prints the swing of the load, the torque of the motor, and the load of
+// the bearing on the deck by cause.
 
 using namespace kreisel;
 

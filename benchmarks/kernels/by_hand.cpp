@@ -1,4 +1,4 @@
-// On arrays of numbers, without a library: the least that the same operations take.
+// The operations on arrays of numbers, without a library: the least cost.
 
 #include <cmath>
 
@@ -88,7 +88,7 @@ inline Ten displaced_inertia(const double* X, const double* T) {
           row(X, 2, q.data()) - (y * fz + z * fy)};
 }
 
-/// For angles that are not small.
+/// The function for angles that are not small.
 inline Twelve exponential(const double* w) {
   const double* v = w + 3;
   const double t2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
@@ -110,7 +110,7 @@ inline Twelve exponential(const double* w) {
           a * v[2] + wv * w[2] + x * v[1] - y * v[0]};
 }
 
-/// For angles that are neither small nor near the half turn.
+/// The function for angles that are neither small nor near the half turn.
 inline Six logarithm(const double* X) {
   const double* x = X + 9;
   const double twice = (X[0] + X[4] + X[8] + 1) / 2;

@@ -13,8 +13,8 @@ namespace kernels {
 
 constexpr std::size_t inputs = 64;  // fit the first-level cache; enough that nothing is a constant
 
-/// Motors as (resultant; moment), a pose as its rotation by columns and its translation, an inertia
-/// as mass, first moment and tensor (xx yy zz xy xz yz) about the origin.
+/// The inputs. Motors are (resultant; moment), a pose is its rotation by columns and its
+/// translation. An inertia is mass, first moment and tensor (xx yy zz xy xz yz) about the origin.
 struct Numbers {
   std::array<double, 6> a, b;
   std::array<double, 12> pose, other;
@@ -24,8 +24,8 @@ struct Numbers {
   std::array<double, 10> inertia;
 };
 
-/// Somebody who does one operation on the i-th of the numbers. How often is left to him, so that
-/// nothing but the operation is between two of them.
+/// A contender that does one operation on the i-th of the numbers. It repeats the operation itself,
+/// so that nothing else is between two operations.
 struct Contender {
   std::string operation;
   std::string name;
@@ -33,20 +33,20 @@ struct Contender {
   std::function<std::vector<double>(std::size_t input)> answer;
 };
 
-/// Out of line, so that all pay the same for their call and their result.
+/// Out of line, so that all contenders pay equally for call and result.
 template <class Operation, class Input>
 [[gnu::noinline]] auto call(const Operation& operation, const Input& input) {
   return operation(input);
 }
 
-/// Some inputs would lie across lines of the cache and others not, of one library and not of another.
+/// Aligned, because otherwise some inputs of some libraries would lie across lines of the cache.
 template <class Input>
 struct alignas(64) OnLinesOfItsOwn {
   Input input;
 };
 
-/// `operate` works on one of the `all`, which are the Numbers in a library's own forms; `flat` makes
-/// a list of numbers, in their order, of what comes out.
+/// `operate` works on one of `all`, the Numbers in a library's own forms. `flat` makes a list of
+/// numbers of the result, in order.
 template <class Input, class Operation, class Flat>
 Contender contender(std::string operation, std::string name, const std::array<Input, inputs>& all,
                     Operation operate, Flat flat) {
@@ -68,7 +68,7 @@ Contender contender(std::string operation, std::string name, const std::array<In
 
 using All = std::array<Numbers, inputs>;
 
-/// The numbers in forms of a library's own, which are made by `make`.
+/// The numbers in a library's own forms, made by `make`.
 template <class Make>
 auto each(const All& numbers, Make make) {
   std::array<decltype(make(numbers[0])), inputs> result;
@@ -82,7 +82,7 @@ auto each(const All& numbers, Make make) {
 [[nodiscard, gnu::visibility("default")]] std::vector<Contender> kdl(const All& numbers);
 [[nodiscard, gnu::visibility("default")]] std::vector<Contender> simbody(const All& numbers);
 
-/// Everybody who is here, on the same random numbers; kreisel first.
+/// All installed contenders on the same random numbers; kreisel first.
 [[nodiscard]] std::vector<Contender> contenders();
 
 }  // namespace kernels

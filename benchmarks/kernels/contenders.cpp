@@ -14,7 +14,7 @@ namespace kernels {
 
 namespace {
 
-/// Angles between a third of a radian and three, where nobody's series is taken.
+/// Angles between a third of a radian and three, where no contender uses a series.
 All random_numbers() {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;

@@ -1,5 +1,5 @@
-// Does every operation a thousand times and has callgrind write down what that has cost:
-// tests/support/instructions.sh. Each dump's description names operation and contender.
+// Runs every operation a thousand times while callgrind counts its instructions:
+// tests/support/instructions.sh. Each dump's description contains operation and contender.
 
 #include <valgrind/callgrind.h>
 

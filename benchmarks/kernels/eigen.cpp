@@ -1,5 +1,4 @@
-// Matrices of six rows and columns, as those write it who have no type for a motor; and rotations as
-// quaternions.
+// Matrices of six rows and columns, as without a type for motors; and rotations as quaternions.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -22,7 +21,7 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }
 
-/// Of the motor product, and of a displacement.
+/// The 6x6 matrices of the motor product and of a displacement.
 Matrix6 matrix(const Eigen::Matrix3d& diagonal, const Eigen::Matrix3d& below) {
   return (Matrix6() << diagonal, Eigen::Matrix3d::Zero(), below, diagonal).finished();
 }

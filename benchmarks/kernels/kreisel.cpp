@@ -1,4 +1,4 @@
-// With frames in the types, and without. What the types have to say they say to the compiler alone.
+// With frames in the types, and without. The types exist only at compile time.
 
 #include <Eigen/Core>
 

@@ -1,5 +1,5 @@
-// Simbody. Its spatial vectors are (angular velocity; velocity) and (torque; force); it has no
-// product of two of them, and moves inertias, not vectors, from frame to frame.
+// Simbody. Its spatial vectors are (angular velocity; velocity) and (torque; force). It has no
+// product of two of them, and moves inertias, not vectors, between frames.
 
 #include <SimTKcommon.h>
 

@@ -1,5 +1,5 @@
-// Bullet, in the single precision of Debian's package. Steps of 1/240 s, as its Python module takes
-// them; the gyroscopic torque is implicit on body axes, as the library has it.
+// Bullet, in the single precision of Debian's package. Steps of 1/240 s, the default of its Python
+// module; the gyroscopic torque is implicit on body axes, the default of the library.
 
 #include <btBulletDynamicsCommon.h>
 

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-/// What is asked of every engine. No type of any of them appears, and none of ours, so that their
-/// headers never meet.
+/// The common interface of all engines. It contains no type of any engine and none of ours, so that
+/// their headers never meet.
 namespace peers {
 
 using Triple = std::array<double, 3>;
 
-/// A body of 1 kg that turns about its centre of mass, which rests, free of force and torque. Its
-/// axes are the inertial ones at the start.
+/// A body of 1 kg that turns about its centre of mass at rest, without force and torque. Its axes
+/// are the inertial ones at the start.
 struct Top {
   Triple moments;  ///< of inertia, along the body's axes
   Triple rate;     ///< at the start
@@ -28,7 +28,7 @@ struct Engine {
   std::string version;
   std::string how;  ///< its integrator and step, as it comes
 
-  /// The motion at count times, the last of which is `end`: whole numbers of steps apart.
+  /// The motion at `count` times, the last of which is `end`; whole numbers of steps apart.
   std::function<std::vector<Turning>(const Top&, double end, int count)> run;
 };
 
@@ -38,7 +38,7 @@ struct Engine {
 [[gnu::visibility("default")]] std::vector<Engine> ode();
 [[gnu::visibility("default")]] std::vector<Engine> simbody();
 
-/// The same by an engine that takes equal steps: step() takes one, now() tells the motion.
+/// An engine with equal steps: step() makes one, now() returns the motion.
 template <class Step, class Now>
 std::vector<Turning> equal_steps(double end, int count, double length, const Step& step,
                                  const Now& now) {

@@ -1,4 +1,4 @@
-// MuJoCo, by its default steps and by Runge and Kutta's.
+// MuJoCo, by its default steps and by Runge-Kutta steps.
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ Engine engine(const std::string& integrator, const std::string& name) {
     const std::unique_ptr<mjModel, void (*)(mjModel*)> model(scenes::load(xml.str()),
                                                              mj_deleteModel);
     const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(model.get()), mj_deleteData);
-    // Of a free joint three are of the place, then the rate on body axes.
+    // A free joint has three numbers of the position first, then the rate on body axes.
     std::copy(top.rate.begin(), top.rate.end(), data->qvel + 3);
     return equal_steps(
         end, count, model->opt.timestep, [&] { mj_step(model.get(), data.get()); },

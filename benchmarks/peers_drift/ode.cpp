@@ -1,4 +1,4 @@
-// ODE. It recommends no step; 1/100 s is what its own demonstrations take most often.
+// ODE. It recommends no step; 1/100 s is the most frequent one in its own demonstrations.
 
 #include <memory>
 #include <ode/ode.h>

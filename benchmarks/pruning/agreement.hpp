@@ -4,8 +4,8 @@
 
 namespace pruning {
 
-/// The greatest difference of two forms, of the greatest rate of an angle or a place, or of a
-/// velocity: the two halves of the states apart.
+/// The greatest difference of two forms, relative to the greatest rate of an angle or position, or
+/// of a velocity. The two halves of the states are compared apart.
 [[nodiscard]] inline double difference(const Form& form, const Form& reference) {
   double worst = 0;
   const auto compare = [&worst](const auto& found, const auto& expected) {

@@ -14,8 +14,8 @@
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/load/load.hpp>
 
-/// Right-hand sides in three forms: general, as one would write it who knows nothing of the scene;
-/// pruned, the same scene by its name; by hand, the least that computes the same numbers.
+/// Right-hand sides in three forms. General: independent of the scene. Pruned: the scene's own
+/// type. By hand: the least code for the same numbers.
 
 namespace pruning {
 
@@ -32,7 +32,7 @@ struct Case {
   std::vector<Form> forms;  // general, pruned, by hand; and what takes more for granted
 };
 
-/// States beside `start`, a moment for each.
+/// States near `start`, with a time for each.
 template <class Vector>
 struct Inputs {
   std::array<Vector, inputs> states;
@@ -49,8 +49,8 @@ struct Inputs {
   }
 };
 
-/// The field called out of line, and all of it inline here, so that every form pays the same for its
-/// call and its result.
+/// The field is called out of line and inlined inside, so that every form pays equally for call and
+/// result.
 template <class Vector, class Field>
 [[gnu::noinline, gnu::flatten]] Vector call(const Field& field, double t, const Vector& y) {
   return field(t, y);
@@ -72,13 +72,13 @@ template <class Vector, class Field>
           }};
 }
 
-/// A guide of which nothing is known but that it moves as M does.
+/// A guide that moves as M does, with no other declaration.
 template <class M>
 [[nodiscard]] auto any_guide(const M& guide) {
   return [guide](double t) { return guide(t); };
 }
 
-/// A load of which nothing is known but that it acts as L does.
+/// A load that acts as L does, with no other declaration.
 template <class L>
 [[nodiscard]] auto any_load(const L& load) {
   return [load](const kreisel::LoadContext<>& s) { return load(s); };

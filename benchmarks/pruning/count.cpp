@@ -1,5 +1,5 @@
-// Runs every form a thousand times and has callgrind write down what each has cost:
-// tests/support/instructions.sh. Each dump's description names case and form.
+// Runs every form a thousand times while callgrind counts its instructions:
+// tests/support/instructions.sh. Each dump's description contains case and form.
 
 #include <valgrind/callgrind.h>
 

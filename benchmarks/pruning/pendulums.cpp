@@ -32,7 +32,7 @@ PendulumGuide<> deck(double t) {
   return {{0.1 * s, 0.05, 0.2 * c}, {0.09 * c, 0, -0.18 * s}, {9.81, 0.3 * s, 0.2 * c}, {}};
 }
 
-/// The same without what principal axes do not feel.
+/// The same pendulum without the terms that vanish on principal axes.
 struct Deck {
   V3 u, du, g;
 };

@@ -24,7 +24,7 @@ Matrix3<double> lopsided() {
   return T;
 }
 
-/// EulerTop's weight, k = m g r_s, as that of a body.
+/// EulerTop's weight moment, k = m g r_s, for a body.
 InertiaTensor<Body> body(const Matrix3<double>& tensor, const V3& k) {
   const Vector3<double> first_moment = k / gravity;
   return {{mass, first_moment, Symmetric3<double>::from(tensor)}};

@@ -9,7 +9,7 @@
 
 #include "peer.hpp"
 
-/// Chains as BodySystem takes them.
+/// The chains as bodies of BodySystem.
 namespace scenes {
 
 inline kreisel::Vector3<double> vector(const Triple& v) { return {v[0], v[1], v[2]}; }
@@ -30,7 +30,7 @@ inline std::vector<kreisel::BodyDescription> described(const Chain& chain) {
   return bodies;
 }
 
-/// Unlike bodies, so that nothing is saved by what is 0 or equal.
+/// Unequal bodies, so that zeros and equal numbers save nothing.
 inline Chain random_chain(std::size_t n) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);

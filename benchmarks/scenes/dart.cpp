@@ -1,4 +1,4 @@
-// DART. O(n); a base that moves is a joint whose actuator prescribes the acceleration.
+// DART. O(n); a moving base is a joint whose actuator prescribes the acceleration.
 
 #include <Eigen/Geometry>
 

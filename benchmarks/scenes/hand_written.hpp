@@ -8,12 +8,12 @@
 
 #include "peer.hpp"
 
-/// What one would write who needs this chain or this gyro and nothing else.
+/// Code written by hand for this chain or this gyro alone.
 namespace scenes {
 
 /// Articulated bodies and Newton-Euler for chains of revolute joints, on body axes, moments about
-/// the body's origin, as textbooks do; R takes body to parent axes. A base that rests is known when
-/// it is compiled: that saves a tenth.
+/// the body's origin, as in textbooks. R takes body to parent axes. A base at rest is known at
+/// compile time, which saves a tenth.
 template <bool moves>
 class HandWrittenChain {
  public:
@@ -142,15 +142,15 @@ class HandWrittenChain {
   std::vector<Part> links_;
 };
 
-/// A gyro in Cardan's suspension with a symmetric rotor, its three axes through one point that is
-/// everybody's centre of mass. Indices 1, 2, 3: rotor, inner ring, outer ring.
+/// A gyro in Cardan's suspension with a symmetric rotor. Its three axes meet in the centre of mass
+/// of all bodies. Indices 1, 2, 3: rotor, inner ring, outer ring.
 struct HandWrittenGyro {
   double A_1, C_1;
   double A_2, B_2, C_2;
   double A_3, B_3, C_3;
 
-  /// On a base at rest, from Lagrange's equations: with the rotor's momentum N about its axis and
-  /// K = C_2 - A_2 - A_1
+  /// The gyro on a base at rest, by Lagrange's equations. With the rotor's momentum N about its
+  /// axis and K = C_2 - A_2 - A_1
   ///
   ///   (A_3 + C_2 sin^2 b + (A_2 + A_1) cos^2 b) a'' = -b' cos b (2 K a' sin b + N)
   ///                                 (B_2 + A_1) b'' =  a' cos b (  K a' sin b + N)
@@ -169,8 +169,8 @@ struct HandWrittenGyro {
     dv[2] = -(dda * s + da * db * c);
   }
 
-  /// On a base with the constant angular velocity u, by Euler's equations: x, y, z are angular
-  /// velocities on each ring's axes, dx, dy, dz their rates without the accelerations sought.
+  /// The gyro on a base with constant angular velocity u, by Euler's equations. x, y, z are angular
+  /// velocities on each ring's axes, dx, dy, dz their rates without the unknown accelerations.
   void moving(const double* u, const double* y, double* dv) const {
     const double sa = std::sin(y[0]);
     const double ca = std::cos(y[0]);

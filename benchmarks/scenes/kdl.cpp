@@ -1,4 +1,4 @@
-// Orocos KDL. Mass matrix and recursion of Newton and Euler; no joint can be prescribed.
+// Orocos KDL. Mass matrix and Newton-Euler recursion; joints cannot be prescribed.
 
 #include <Eigen/Cholesky>
 

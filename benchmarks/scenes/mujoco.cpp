@@ -1,5 +1,5 @@
-// MuJoCo. Sparse mass matrix; no joint can be prescribed. Of mj_forward and mj_inverse only the
-// calls that the answer needs: those two also do what a simulator needs.
+// MuJoCo. Sparse mass matrix; joints cannot be prescribed. Only the needed calls of mj_forward and
+// mj_inverse are made, because these two also do the work of a simulator.
 
 #include <Eigen/Cholesky>
 

@@ -11,7 +11,7 @@ namespace scenes {
 
 /// A model from its description in MJCF, to be deleted by mj_deleteModel.
 ///
-/// Throws : std::runtime_error with MuJoCo's own words
+/// Throws : std::runtime_error with MuJoCo's own message
 inline mjModel* load(const std::string& xml) {
   const auto files = std::make_unique<mjVFS>();  // megabytes: too large for the stack
   mj_defaultVFS(files.get());

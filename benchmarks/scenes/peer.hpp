@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-/// What is asked of every library. No type of any of them appears, and none of ours, so that their
-/// headers never meet.
+/// The common interface of all libraries. It contains no type of any library and none of ours, so
+/// that their headers never meet.
 namespace scenes {
 
 using Triple = std::array<double, 3>;
 
-/// A body and the revolute joint in its origin that holds it to the one before, all at angle 0 on
-/// the parent's axes.
+/// A body with a revolute joint in its origin that connects it to the body before; at angle 0 all
+/// are on the parent's axes.
 struct Link {
   Triple axis;      ///< of length 1
   Triple position;  ///< of the joint, from the parent's origin
@@ -22,7 +22,7 @@ struct Link {
   Triple moments;  ///< of inertia about the centre of mass, along the body's axes
 };
 
-/// A chain of such bodies on a base that turns at a constant rate about its origin, or rests.
+/// A chain of such bodies on a base that rests or turns at a constant rate about its origin.
 struct Chain {
   std::vector<Link> links;
   Triple gravity = {};
@@ -56,8 +56,8 @@ struct Library {
 [[gnu::visibility("default")]] Library mujoco();
 [[gnu::visibility("default")]] Library simbody();
 
-/// The joint that a turning base becomes in libraries whose trees stand on what rests, with a body
-/// of any inertia.
+/// The joint of a turning base in libraries whose trees start from a body at rest, with a body of
+/// arbitrary inertia.
 struct BaseJoint {
   Link link;
   double rate;

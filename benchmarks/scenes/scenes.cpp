@@ -1,5 +1,5 @@
-// The Cardan gyro and chains of 4 to 256 revolute joints: ours, written out by hand, and by the
-// libraries that are installed. Only what answers as ours does is timed.
+// The Cardan gyro and chains of 4 to 256 revolute joints: by kreisel, by hand, and by the installed
+// libraries. Only libraries with the same results are timed.
 
 #include <Eigen/Core>
 
@@ -70,8 +70,8 @@ Inputs inputs(std::size_t n, const std::function<double(std::size_t)>& largest_r
   return result;
 }
 
-/// Somebody who answers a question. How many times in a row is left to him, so that nothing but the
-/// answer is between two answers.
+/// A contender that answers a question. It repeats the answer itself, so that nothing else is
+/// between two answers.
 struct Contender {
   std::string name;
   std::string how;
@@ -94,7 +94,8 @@ Contender contender(std::string name, std::string how, F f) {
           }};
 }
 
-/// The contenders for one piece of work, the first of them being the measure, and who cannot do it.
+/// The contenders for one task, the first of which is the reference, and the libraries that cannot
+/// do it.
 struct Work {
   std::string title;
   Inputs input;
@@ -192,7 +193,7 @@ Work gyro(bool moves) {
       {.005, .005, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
   const HandWrittenGyro hand{.005, .008, .002, .0015, .0028, .006, .0045, .005};
   Chain chain;
-  // The masses do nothing, but no library takes a body without one.
+  // The masses have no effect, but no library accepts a body without mass.
   chain.links = {{{1, 0, 0}, {}, 1, {}, {.006, .0045, .005}},
                  {{0, 1, 0}, {}, 1, {}, {.002, .0015, .0028}},
                  {{0, 0, 1}, {}, 1, {}, {.005, .005, .008}}};
@@ -249,7 +250,8 @@ Work chain(std::size_t n, Question question, bool moves) {
   return work;
 }
 
-/// The greatest difference of two answers to one question, of the greatest number in the first's.
+/// The greatest difference of two answers to one question, relative to the greatest number of the
+/// first.
 double difference(const Work& work, const Contender& other) {
   double worst = 0;
   VectorXd ours(work.input[0].dv.size());
@@ -278,7 +280,7 @@ double time(const Contender& contender, const Inputs& input, long count) {
   return cpu_seconds() - begin;
 }
 
-/// How often is enough for one repetition.
+/// The number of calls that is enough for one repetition.
 long count_for(const Contender& contender, const Inputs& input) {
   for (long count = 1;; count *= 2) {
     const double taken = time(contender, input, count);
@@ -293,7 +295,7 @@ struct Measured {
   double spread;  ///< between them lies the middle half
 };
 
-/// In turn, so that what else the machine does meets all of them.
+/// By turns, so that disturbances of the machine affect all of them.
 std::vector<Measured> measure(const std::vector<Contender>& contenders, const Inputs& input) {
   std::vector<long> counts;
   for (const Contender& c : contenders) counts.push_back(count_for(c, input));
@@ -311,14 +313,14 @@ std::vector<Measured> measure(const std::vector<Contender>& contenders, const In
   return result;
 }
 
-/// Three digits, none after the point where the number needs more before it.
+/// Three digits; no decimals if the number has more digits before the point.
 std::string number(double x) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(x < 10 ? 2 : x < 100 ? 1 : 0) << x;
   return text.str();
 }
 
-/// Returns whether all answers were the same.
+/// Returns true if all answers were the same.
 bool report(std::ostream& out, Work work) {
   bool all_agree = true;
   std::vector<double> off;

@@ -1,4 +1,4 @@
-// Simbody. O(n); a base that moves is a mobilizer with a prescribed Motion.
+// Simbody. O(n); a moving base is a mobilizer with a prescribed Motion.
 
 #include <Simbody.h>
 #include <algorithm>

@@ -7,7 +7,7 @@
 
 namespace stability {
 
-/// Any guide and any load: solve() is then compiled for one scene, not for each pair of them.
+/// Any guide and any load, so that solve() is compiled for one scene and not for each pair of them.
 struct AnyGuide {
   std::function<kreisel::FrameMotion<kreisel::Guide, kreisel::Inertial>(double)> motion;
 

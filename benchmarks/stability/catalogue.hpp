@@ -8,7 +8,7 @@
 
 namespace stability {
 
-/// What became of a run.
+/// The outcome of a run.
 enum class Verdict {
   accurate,  ///< within the tolerance, as it says
   reported,  ///< off by more than the tolerance, but not by more than it says
@@ -26,7 +26,7 @@ enum class Verdict {
   return "none";
 }
 
-/// One run of a case. What does not apply is NaN.
+/// One run of a case. Fields that do not apply are NaN.
 struct Row {
   std::string variant;  ///< the scene, and how extreme
   std::string method;
@@ -40,15 +40,15 @@ struct Row {
   std::string note = "";
 };
 
-/// Where a case puts its rows. A case runs in a process of its own, so that its rows are known
-/// also if it crashes or never ends.
+/// The sink of a case's rows. A case runs in a process of its own, so that its rows are known even
+/// if it crashes or never ends.
 class Recorder {
  public:
   Recorder(int pipe, bool quick) : pipe_(pipe), quick_(quick) {}
 
   [[nodiscard]] bool quick() const { return quick_; }
 
-  /// To be said before a run: it is what is reported if the run never comes back.
+  /// Called before a run: its text is reported if the run never returns.
   void begin(const std::string& variant, const std::string& method) const;
   void add(const Row& row) const;
 
@@ -73,7 +73,7 @@ struct Case {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Each adds its cases.
+/// Each function adds its cases.
 using AddCases = void (*)(std::vector<Case>&);
 
 void tops(std::vector<Case>& cases);

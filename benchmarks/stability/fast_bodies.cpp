@@ -29,7 +29,7 @@ void spins(const Recorder& out) {
   for (const double spin : {0.0, 1e3, 1e5, 1e6}) {
     const exact::LagrangeTop motion(A, C, 0.1 * 9.81 * 0.05, {0, 0, spin}, tilted);
     const double end = spin > 1e3 ? 1e3 / spin : 1;
-    // The closed form is on the body's axes; Resal's are turned back by the spin, w_z t.
+    // The closed form is on the body's axes. Resal's axes are rotated back by the spin, w_z t.
     const Trial<Fast> trial{
         fmt::format("{:g} rad/s", spin),
         body,

@@ -1,4 +1,4 @@
-// Bodies free on guides that move in extreme ways, through FreeBody.
+// Free bodies on guides with extreme motions, by FreeBody.
 
 #include <fmt/core.h>
 
@@ -30,8 +30,8 @@ Eigen::Quaterniond about_z(double angle) {
   return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
 }
 
-/// Thrown with v from x0, turning by itself; seen from a guide that turns about z with `rate`. Its
-/// origin O' lies at -centre from the centre of mass, on body axes.
+/// A body thrown with v from x0, which turns freely, seen from a guide that turns about z with
+/// `rate`. Its origin O' lies at -centre from the centre of mass, on body axes.
 struct Thrown {
   exact::FreeTop turning;
   Vector3<double> x0;
@@ -74,7 +74,7 @@ void thrown(const Recorder& out) {
   }
 }
 
-/// The state's origin far from the centre of mass: what rounding leaves of the tensor about it.
+/// The state's origin far from the centre of mass: the rounding error of the tensor about it.
 void far_origins(const Recorder& out) {
   for (const double away : {1e1, 1e3, 1e5, 1e7, 1e9}) {
     const Vector3<double> centre(away, -away, away);
@@ -88,8 +88,8 @@ void far_origins(const Recorder& out) {
                         truth.at(0),
                         {.output_times = every(1, 5), .tolerance = 1e-9, .max_evaluations = 1e5},
                         [&](double t) { return truth.at(t); }};
-      // Place and velocity of O' are rounded to 1e-16 of themselves at the start already; what the
-      // tensor about O' has lost was lost before it was handed over.
+      // Position and velocity of O' are rounded to 1e-16 relative at the start already. The digits
+      // that the tensor about O' lacks were lost before the start.
       trial.truth_error = 4e-16 * away * away;
       trial.must_answer = away < 1e5;
       attempt_all(out, trial, {Method::automatic, Method::gauss16, Method::radau13});
@@ -110,7 +110,7 @@ void far_places(const Recorder& out) {
                       {.output_times = every(1, 5), .tolerance = 1e-9},
                       [&](double t) { return truth.at(t); }};
     attempt_all(out, trial, by_steps);
-    // And carried round there.
+    // The same body, carried round there.
     const Free seen(inertia({0, 0, 0}), {RotatingFrame<>{{0, 0, 0.5}}}, no_load());
     const Thrown turned{truth.turning, truth.x0, truth.v, {0, 0, 0}, 0.5};
     const Trial<Free> round{fmt::format("{:g} m from the axis of a guide of 0.5 rad/s", away),

@@ -1,5 +1,5 @@
-// Guides at rates and times that are extreme, and events of their own: where a log ends, where a
-// turn is too fast.
+// Guides at extreme rates and times, and their own events: the end of a log, a rotation that is too
+// fast.
 
 #include <fmt/core.h>
 
@@ -40,7 +40,7 @@ double distance(const Motion& a, const Motion& b) {
       (a.dV.value.moment - b.dV.value.moment).norm() / size);
 }
 
-/// Rates so small that nothing may be seen of them.
+/// Rates so small that they have no visible effect.
 void slow_guides(const Recorder& out) {
   const Motion rest = RestingFrame<>{}(1.0);
   const auto expect = [&](const std::string& what, const std::string& kind, const Motion& m) {
@@ -68,7 +68,8 @@ void slow_guides(const Recorder& out) {
   }
 }
 
-/// Rates and times so great that the angle's digits go: rate times time is all that is known of it.
+/// Rates and times so great that the angle loses digits: only the product of rate and time is
+/// known.
 void fast_guides(const Recorder& out) {
   for (const double rate : {1e3, 1e6, 1e9}) {
     for (const double t : {1.0, 1e3, 1e9}) {
@@ -100,7 +101,7 @@ void fast_guides(const Recorder& out) {
   }
 }
 
-/// Sampled where a motion leaves its log, and logs that do not hold what was asked.
+/// Sampled logs at their ends, and logs with invalid contents.
 void logs(const Recorder& out) {
   MotionLog<> log;
   for (int i = 0; i <= 50; ++i) {

@@ -32,7 +32,7 @@ constexpr Methods by_steps = {Method::automatic, Method::verner98, Method::gauss
 const CardanMoments heavy_rings{{5e-4, 5e-4, 8e-4}, {2e-4, 3e-4, 2.5e-4}, {4e-4, 4e-4, 4e-4}};
 constexpr double reference_angle = 0.3;
 
-/// From references of 25 digits, whose beta counts from 0.
+/// Gyros against references of 25 digits, whose beta counts from 0.
 void bearing(const Recorder& out, const std::string& name, const std::string& variant,
              double stiffness, double damping, double budget, Methods methods,
              double& evaluations) {
@@ -73,14 +73,14 @@ void damped_bearings(const Recorder& out) {
 void undamped_bearings(const Recorder& out) {
   double evaluations = 0;
   const std::string variant = "1e6 N m/rad, 1e4 oscillations";
-  // Other codes of order 8 spend 3e6 to be right to 4e-9 there (GSL's rk8pd, odeint's rkf78).
+  // Other codes of order 8 need 3e6 for an error of 4e-9 there (GSL's rk8pd, odeint's rkf78).
   bearing(out, "S4d_cardan_k1e6_d0", variant, 1e6, 0, out.quick() ? 3e7 : 1e8, {Method::automatic},
           evaluations);
   bearing(out, "S4d_cardan_k1e6_d0", variant, 1e6, 0, out.quick() ? 3e6 : 1e8,
           {Method::radau13, Method::gauss16}, evaluations);
 }
 
-/// 1e11 oscillations: no method resolves them, and none may pretend.
+/// 1e11 oscillations: no method resolves them, and none may report a result.
 void unresolved_bearing(const Recorder& out, Methods methods) {
   const Gyro gyro(heavy_rings, {{0.5, 1e-3}, {1e12, 0, reference_angle}}, {});
   Trial<Gyro> trial{"1e12 N m/rad without damping, a budget of 1e6",
@@ -96,7 +96,7 @@ void hopeless_bearing(const Recorder& out) {
   unresolved_bearing(out, {Method::automatic, Method::radau13});
 }
 
-/// The same with Gauss's equal steps, of which there would be 1e7.
+/// The same bearing with Gauss's equal steps, of which there would be 1e7.
 void endless_bearing(const Recorder& out) { unresolved_bearing(out, {Method::gauss16}); }
 
 /// The trajectories of tests/data/cardan-gyro.json on a guide at rest.
@@ -152,7 +152,7 @@ void near_gimbal_lock(const Recorder& out) {
       const CardanMoments moments{heavy_rings.rotor, rings * heavy_rings.inner_ring,
                                   rings * heavy_rings.outer_ring};
       const Gyro gyro(moments, {}, {});
-      // Moving along the lock, not through it.
+      // The motion is along the lock, not through it.
       const State start{.beta = std::numbers::pi / 2 - off, .alpha_rate = 0.3, .phi_rate = 100};
       const double end = 0.05;
       Trial<Gyro> trial{
@@ -162,7 +162,8 @@ void near_gimbal_lock(const Recorder& out) {
           {.output_times = {end}, .tolerance = 1e-8, .max_evaluations = out.quick() ? 3e5 : 1e7},
           [&](double t) { return in_long_double(gyro, start, t); }};
       trial.must_answer = rings >= 1e-4;
-      // Near lock what the start's last digit is worth grows; two runs in 64 bits know by how much.
+      // Near the lock the error of the start's last digit grows; two runs in 64 bits measure by how
+      // much.
       State moved = start;
       moved.beta = std::nextafter(moved.beta, 0.0);
       try {
@@ -171,7 +172,7 @@ void near_gimbal_lock(const Recorder& out) {
         kreisel::detail::ErrorMeasure<Gyro> distance(1e-3);
         trial.truth_error = 1e-4 * distance(a, b) + 1e-14;
       } catch (const kreisel::Error&) {
-        // Then there is no truth, and the trials below have to refuse.
+        // Then there is no truth, and the trials below must refuse.
         trial.truth = [](double) { return State{.alpha = double(NAN)}; };
         trial.must_answer = false;
       }
@@ -202,7 +203,7 @@ void massless_rings(const Recorder& out) {
     double turns = 0;  // of phi, whole ones
     double phi_before = start.phi;
     const auto truth = [&](double t) {
-      // Followed in steps so small that phi is known but for whole turns.
+      // Integrated in steps so small that phi is known except for whole turns.
       State s;
       const int n = 400;
       for (int i = 1; i <= n; ++i) {
@@ -286,7 +287,7 @@ void drift_of_gyro(const Recorder& out) {
       worst = test::worst_of(worst, std::abs(off));
       out.drift(fmt::format("energy, {}", name(method)), run.times[i], off);
     }
-    // Two parts of the state make an energy: twice their error, beside one rounding.
+    // An energy has two parts of the state: twice their error, and one rounding.
     expect_below(out, fmt::format("energy over {:g} s", end), name(method), worst,
                  4 * run.report.error_estimate + 4e-16, run.report.message);
   }

@@ -80,7 +80,7 @@ void fast_lagrange(const Recorder& out) {
   }
 }
 
-/// Fast and without a closed form: the weight pulls across the axis too, and splitting is chosen.
+/// A fast top without a closed form: the weight pulls across the axis too, and splitting is chosen.
 void endless_splitting(const Recorder& out) {
   const EulerTop top({A, A, C}, {0.1 * k, 0, k});
   const State start{tilted_by(0.5), {0, 0, 1e6}};
@@ -93,7 +93,7 @@ void endless_splitting(const Recorder& out) {
   attempt(out, trial, Method::automatic);
 }
 
-/// A weight across: chaos for all but special bodies.
+/// A transverse weight: chaotic except for special bodies.
 void kovalevskaya(const Recorder& out) {
   // Body x, where the weight pulls, is z of the truth: x, y, z -> z, x, y.
   const Eigen::Quaterniond p(0.5, 0.5, 0.5, 0.5);  // takes truth's axes to the body's

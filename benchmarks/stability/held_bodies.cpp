@@ -1,4 +1,4 @@
-// A body held on guides that move in extreme ways, through FixedPointBody.
+// Fixed-point bodies on guides with extreme motions, by FixedPointBody.
 
 #include <Eigen/LU>
 #include <fmt/core.h>
@@ -41,14 +41,14 @@ Eigen::Quaterniond about(const Vector3<double>& v, double t) {
   return {std::cos(half), along.x(), along.y(), along.z()};
 }
 
-/// A free top as seen from a guide: attitude and rate against it, its own turned through `turn` and
-/// turning with u, both of the guide.
+/// A free top seen from a guide: attitude and rate against the guide, from its own ones. The guide
+/// is rotated by `turn` and turns with u.
 State seen(const exact::TopMotion& m, const Eigen::Quaterniond& turn, const Vector3<double>& u) {
   const Eigen::Quaterniond q = turn.conjugate() * m.attitude;
   return {q, m.angular_velocity - q.conjugate() * u};
 }
 
-/// Free of torque it does not matter how the guide moves.
+/// Without torque the motion of the guide has no effect.
 void turning_guides(const Recorder& out) {
   for (const double rate : {0.0, 1e-320, 1e-300, 1e-170, 1e-12, 7.292115e-5, 1.0, 1e3}) {
     if (out.quick() && (rate == 1e-300 || rate == 1e-12)) continue;
@@ -69,7 +69,7 @@ void turning_guides(const Recorder& out) {
   }
 }
 
-/// A turntable about the vertical leaves weight as it is.
+/// A turntable about the vertical does not change the weight.
 void turntables(const Recorder& out) {
   for (const double rate : {1e-320, 1.0, 1e3}) {
     const Vector3<double> u(0, 0, rate);
@@ -88,11 +88,11 @@ void turntables(const Recorder& out) {
   }
 }
 
-/// Whose rate jumps from 0 to 20 rad/s at t = 0.7314: the body keeps its own.
+/// A guide whose rate jumps from 0 to 20 rad/s at t = 0.7314: the body keeps its own rate.
 void jumps_of_the_rate(const Recorder& out) {
   const double jump = 0.7314;
   const Vector3<double> u(0, 0, 20);
-  // As seen from the guide the body's rate jumps: a run to the jump, another from there.
+  // Seen from the guide the body's rate jumps: one run to the jump, another from there.
   const AnyGuide guide{[=](double t) {
     RotatingFrame<> turning{u};
     if (t < jump) return FrameMotion<Guide, Inertial>{};
@@ -146,7 +146,7 @@ void jumps_of_the_acceleration(const Recorder& out) {
                "the top weighs twice as much behind the jump");
 }
 
-/// A thousandth of a second in a hundred.
+/// A pulse of a thousandth of a second within a hundred seconds.
 void pulse(const Recorder& out) {
   const double begin = 41.0371;
   const double end = begin + 1e-3;
@@ -168,12 +168,12 @@ void pulse(const Recorder& out) {
       {Eigen::Quaterniond::Identity(), {0, 0, 1}},
       {.output_times = every(10, 100), .discontinuities = {begin, end}, .tolerance = 1e-9},
       truth};
-  // The times of the jumps are only known to an ulp, over which the torque is 1e3.
+  // The times of the jumps are known only to an ulp, in which the torque is 1e3.
   trial.truth_error = 2e3 * 60 * 7e-15;
   attempt_all(out, trial, {Method::automatic, Method::verner98, Method::radau13});
 }
 
-/// Guides far away and bodies held far from the guide's origin.
+/// Guides far away and fixed points far from the guide's origin.
 void far_guides(const Recorder& out) {
   const Vector3<double> w(0.3, -0.4, 8);
   const exact::LagrangeTop motion(1, 0.6, 0.5 * 9.81, w, tilted);
@@ -197,8 +197,8 @@ void far_guides(const Recorder& out) {
           }};
       attempt_all(out, trial, {Method::automatic, Method::verner98, Method::gauss16});
     }
-    // On a guide that turns, the fixed point away is carried round: at u^2 r without mass outside
-    // the fixed point nothing of it is felt.
+    // On a guide that turns, the distant fixed point moves in a circle with u^2 r. A body whose
+    // mass is in the fixed point is not affected.
     const Vector3<double> u(0, 0, 0.5);
     const Held carried(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, diagonal(1, 2, 2.5)),
                        {away, away, -away}, {RotatingFrame<>{u}}, no_load());
@@ -232,8 +232,8 @@ State in_long_double(const Matrix3<double>& tensor, const State& start, double e
   return Held::from_vector(steps.advance_to(end).cast<double>());
 }
 
-/// Tensors that are all but singular, on axes that are not principal: the truth takes them as the
-/// doubles that they are.
+/// Nearly singular tensors, on axes that are not principal. The truth uses them as the doubles that
+/// they are.
 void nearly_singular(const Recorder& out) {
   for (const double least : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-15}) {
     const Eigen::Quaterniond turn = Eigen::Quaterniond(0.7, 0.3, -0.5, 0.4).normalized();
@@ -259,7 +259,7 @@ void nearly_singular(const Recorder& out) {
   }
 }
 
-/// Springs and dampers on a body held, from soft to 1e12 N m/rad: about z, in closed form.
+/// Springs and dampers on a fixed-point body, from soft to 1e12 N m/rad: about z, in closed form.
 void stiff_springs(const Recorder& out) {
   double evaluations = 0;
   for (const double stiffness : {1e3, 1e6, 1e9, 1e12}) {
@@ -296,7 +296,7 @@ void stiff_springs(const Recorder& out) {
       z += rest;
       return State{{std::cos(z / 2), 0, 0, std::sin(z / 2)}, {0, 0, dz}};
     };
-    // The load's angle is rounded to 1e-16, which the spring makes 1e-16 k of torque.
+    // The load's angle is rounded to 1e-16, and the spring makes a torque of 1e-16 k of it.
     const Trial<Held> trial{
         fmt::format("{:g} N m/rad, damped", stiffness),
         body,

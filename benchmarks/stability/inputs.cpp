@@ -33,7 +33,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr std::array<double, 3> no_numbers = {nan, inf, -inf};
 
-/// One of the numbers that go in, by name, and what is made of them.
+/// One input number with its name, and the call that uses it.
 struct Input {
   const char* name;
   std::function<void(double)> with;
@@ -242,7 +242,7 @@ void closed_forms(const Recorder& out) {
         {"rate", [](double x) { exact::PendulumMotion(1, 1, x); }}});
 }
 
-/// A run refuses, or says how it failed.
+/// A run refuses, or reports its failure.
 void tasks(const Recorder& out) {
   const EulerTop top({1, 2, 3}, {0.1, 0, 1});
   const EulerTop::State start{Eigen::Quaterniond::Identity(), {1, 2, 3}};

@@ -1,4 +1,4 @@
-// Cases, each in a process of its own, and the bar that shows how far they are.
+// Runs cases, each in a process of its own, with a progress bar.
 
 #include "isolated.hpp"
 
@@ -31,7 +31,7 @@ void stop(int signal) {
 
 using Clock = std::chrono::steady_clock;
 
-/// One line of tabs and no line breaks inside.
+/// A text without tabs and line breaks, for a line with tabs.
 std::string flat(std::string text) {
   for (char& c : text) {
     if (c == '\t' || c == '\n') c = ' ';
@@ -46,7 +46,7 @@ std::vector<std::string> fields(const std::string& line) {
   return parts;
 }
 
-/// What the parent knows of a case while it runs.
+/// The parent's record of a running case.
 struct Watch {
   Finding found;
   std::string variant;  ///< of the run that was begun last
@@ -100,7 +100,7 @@ struct Watch {
   _exit(status);  // not exit(): what the parent has begun is not ours to end
 }
 
-/// What a process has computed, not what it has waited.
+/// CPU time of a process, without its waiting.
 double cpu_seconds(pid_t process) {
   clockid_t clock{};
   timespec spent{};

@@ -13,7 +13,7 @@ struct DriftPoint {
   double value;
 };
 
-/// What a case has brought.
+/// The results of a case.
 struct Finding {
   std::string name;
   std::string extreme;
@@ -21,11 +21,12 @@ struct Finding {
   std::vector<DriftPoint> drift;
 };
 
-/// Runs all, each in a process of its own, with a bar on a terminal. Ctrl-C ends it; what was found
-/// is returned. A case that crashes or does not end in time has failed, and the others go on.
+/// Runs all cases, each in a process of its own, with a bar on a terminal. Ctrl-C ends the
+/// catalogue and returns the results so far. A case that crashes or does not end in time has
+/// failed, and the others continue.
 std::vector<Finding> run_isolated(const std::vector<Case>& cases, bool quick);
 
-/// Whether Ctrl-C was pressed.
+/// True if Ctrl-C was pressed.
 bool interrupted();
 
 }  // namespace stability

@@ -1,4 +1,4 @@
-// What was found, as CSV, as tables and as pictures of drift.
+// The results as CSV, as tables and as pictures of drift.
 
 #include "output.hpp"
 

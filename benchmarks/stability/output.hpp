@@ -10,7 +10,7 @@ namespace stability {
 /// Every row.
 void write_csv(const std::string& path, const std::vector<Finding>& findings);
 
-/// What failed, how many of each verdict, and every row.
+/// Failures, the number of each verdict, and every row.
 void write_tables(const std::string& path, const std::vector<Finding>& findings);
 
 /// Drift over time, an SVG for each case that has one.

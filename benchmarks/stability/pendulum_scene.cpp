@@ -1,4 +1,4 @@
-// PhysicalPendulum, by closed form and by the steps that take over where its series ends.
+// PhysicalPendulum, by closed form and by the steps that replace it where its series ends.
 
 #include <fmt/core.h>
 

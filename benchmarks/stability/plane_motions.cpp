@@ -1,4 +1,4 @@
-// Motions of one coordinate with any field: pendulums, oscillators, and fields that fail.
+// Motions of one coordinate in arbitrary fields: pendulums, oscillators, and fields that fail.
 
 #include <fmt/core.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using kreisel::Method;
 
-/// y'' or y' as any function: solve() is compiled once for all.
+/// y'' or y' as any function, so that solve() is compiled once for all.
 struct Plane {
   using Vector = Eigen::Vector2d;
   struct State {
@@ -71,7 +71,7 @@ void near_the_top(const Recorder& out) {
 void small_swings(const Recorder& out) {
   for (const double angle : {1e-320, 1e-300, 1e-170, 1e-30, 1e-10}) {
     for (const double smallest : {0.0, 1e-3}) {
-      // solve() does not know that this field has no squares, which underflow below 1e-146.
+      // This field has no squares, which underflow below 1e-146, but solve() must assume them.
       swing(out, fmt::format("amplitude {:g}, smallest = {:g}", angle, smallest), angle, 0,
             {.output_times = every(1, 5), .tolerance = 1e-9, .absolute_scale = smallest}, "",
             angle > 1e-146 || smallest > 0);
@@ -86,7 +86,7 @@ void many_swings(const Recorder& out) {
   for (double t = period / 4; t < end; t *= 2) times.push_back(t);
   times.push_back(end);
   swing(out, fmt::format("{:.0g} periods", end / period), 0.1, 0,
-        // Ten times what is spent at most by default: a hundred million do not get there.
+        // Ten times the default budget: a hundred million evaluations are not enough.
         {.output_times = times, .tolerance = 1e-9, .max_evaluations = 1e9}, "pendulum");
 }
 
@@ -112,7 +112,7 @@ void undamped_spring(const Recorder& out) {
   }
 }
 
-/// Pulled along by what is damped at once:  y' = -k (y - cos t) - sin t.
+/// A stiff relaxation to a slow motion:  y' = -k (y - cos t) - sin t.
 void stiff_relaxation(const Recorder& out) {
   double first = 0;
   for (const double k : {1e3, 1e6, 1e9, 1e12}) {
@@ -140,7 +140,7 @@ void stiff_relaxation(const Recorder& out) {
   }
 }
 
-/// Fields that stop to be numbers at t = 1: y = t until then.
+/// Fields that are no numbers from t = 1 on; y = t until then.
 void field_that_fails(const Recorder& out) {
   for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
     const Plane field{[=](double t, const Vector&) { return Vector(t > 1 ? bad : 1.0, 0); }};
@@ -161,7 +161,7 @@ void field_that_fails(const Recorder& out) {
   attempt_all(out, trial, by_steps);
 }
 
-/// Defined for y <= 1 only, where the motion arrives at rest:  y' = sqrt(1 - y).
+/// Defined only for y <= 1, where the motion comes to rest:  y' = sqrt(1 - y).
 void edge_of_the_domain(const Recorder& out) {
   const Plane field{[](double, const Vector& y) { return Vector(std::sqrt(1 - y[0]), -y[1]); }};
   const auto truth = [](double t) {
@@ -195,8 +195,8 @@ void blow_up(const Recorder& out) {
   attempt_all(out, trial, by_steps);
 }
 
-/// Coulomb's friction on a spring: the field jumps where the rate changes its sign, and no time of
-/// it is known before.
+/// Coulomb friction on a spring: the field jumps where the rate changes its sign, at times that are
+/// not known beforehand.
 void dry_friction(const Recorder& out) {
   const double friction = 0.1;
   const Plane field{[=](double, const Vector& y) {
@@ -226,7 +226,7 @@ void dry_friction(const Recorder& out) {
   attempt_all(out, trial, by_steps);
 }
 
-/// A force that jumps at times that are known.
+/// A force that jumps at known times.
 void square_wave(const Recorder& out) {
   const Plane field{
       [](double t, const Vector&) { return Vector(std::fmod(t, 1.0) < 0.5 ? 1.0 : -1.0, 1); }};
@@ -291,7 +291,7 @@ void output_times(const Recorder& out) {
   attempt_all(out, tiny, by_steps);
 }
 
-/// A field that throws what is none of ours, and one that throws ours.
+/// A field that throws a foreign exception, and one that throws an Error of the library.
 void field_that_throws(const Recorder& out) {
   const Plane foreign{[](double t, const Vector&) -> Vector {
     if (t > 1) throw std::runtime_error("the user's own");

@@ -1,5 +1,5 @@
-// Rotors in linear equations: an unsymmetric one near the ranges where it is unstable, and the modes
-// of a platform with three gyros.
+// Rotors in linear equations: an unsymmetric rotor near its unstable ranges, and the modes of a
+// platform with three gyros.
 
 #include <Eigen/LU>
 #include <fmt/core.h>
@@ -56,7 +56,7 @@ struct OnItsAxes {
     return {stiffness + speed * speed * (C - B), stiffness + speed * speed * (C - A)};
   }
 
-  /// The roots' squares, the greater first.
+  /// The squares of the roots, the greater first.
   [[nodiscard]] std::array<Real, 2> squares() const {
     const auto [k_1, k_2] = springs();
     const Real E = A + B - C;
@@ -68,7 +68,7 @@ struct OnItsAxes {
 
   [[nodiscard]] Real period() const { return std::numbers::pi_v<Real> / std::abs(speed); }
 
-  /// Over one period, in which the axes have made half a turn, on  (x, x').
+  /// The transition matrix over one period, in which the axes have made half a turn, on  (x, x').
   [[nodiscard]] Matrix4 transition() const {
     const auto [k_1, k_2] = springs();
     const Real g = speed * (A + B - C);
@@ -87,8 +87,8 @@ struct OnItsAxes {
   }
 };
 
-/// Verdict, growth and transition matrix beside the limits of the unstable range. Beyond what the
-/// matrix tells of its error the last digits of A, B and C make A/B times as much.
+/// Verdict, growth and transition matrix near the limits of the unstable range. The last digits of
+/// A, B and C have an effect of A/B times as much, which the matrix's error does not contain.
 void beside_limit(const Recorder& out, const std::string& what, const Vector3<double>& rotor,
                   double stiffness, double limit) {
   double worst_growth = 0;
@@ -104,7 +104,7 @@ void beside_limit(const Recorder& out, const std::string& what, const Vector3<do
     const OnItsAxes truth{rotor.x(), rotor.y(), rotor.z(), stiffness, speed};
     const Eigen::Matrix4d wrong =
         (X.matrix.cast<Real>() - truth.transition()).cwiseAbs().cast<double>();
-    // Rates in units of the speed, lest what is great in other units be small.
+    // Rates in units of the speed, so that no number is small in other units.
     const Eigen::Vector4d units(1, 1, std::abs(speed), std::abs(speed));
     const Eigen::Matrix4d scale = units * units.cwiseInverse().transpose();
     const double size = X.matrix.cwiseQuotient(scale).cwiseAbs().maxCoeff();
@@ -175,7 +175,8 @@ void unsymmetric_rotor(const Recorder& out) {
     try {
       const UnsymmetricRotor<> gyro(moments, {{1}, {1}}, speed);
       const auto verdict = paired_multipliers(gyro, {.max_evaluations = 1e5}).verdict();
-      // Without a spring to matter it is C = 0.5 < B: at any speed above the range it is stable.
+      // Without a significant spring C = 0.5 < B decides: the rotor is stable at any speed above
+      // the range.
       expect_below(out, what, "Floquet", verdict == Stability::unstable ? 1 : 0, 0.5);
     } catch (const kreisel::Error& error) {
       add_refusal(out, what, "Floquet", error.what());
@@ -195,7 +196,7 @@ Coefficients on_springs(double speed, double stiffness) {
   return c;
 }
 
-/// How far a root of  det(s^2 M + s G + K) = 0  is off: Newton's correction, by elimination in 64
+/// The error of a root of  det(s^2 M + s G + K) = 0:  Newton's correction, by elimination in 64
 /// bits.
 ///
 ///   d ln det / ds = trace(P^-1 P'),   P = s^2 M + s G + K
@@ -229,7 +230,7 @@ double correction(const Coefficients& c, const std::complex<double>& root) {
   return double(1 / std::abs(trace));
 }
 
-/// Couplings from none to 1e12 rad/s, springs from next to nothing to rigid.
+/// Couplings from none to 1e12 rad/s, springs from nearly none to rigid.
 void platform_modes(const Recorder& out) {
   for (const double speed : {0.0, 1e-6, 1.0, 1e3, 1e6, 1e9, 1e12}) {
     for (const double stiffness : {1e-9, 0.5, 1e9}) {

@@ -1,4 +1,4 @@
-// The steppers alone: events, number types, attitudes step by step, what each refuses.
+// The steppers alone: events, number types, attitudes step by step, refusals.
 
 #include <fmt/core.h>
 
@@ -38,7 +38,7 @@ struct Circle {
 };
 using CircleSteps = ExplicitRungeKutta<Eigen::Vector2d, Circle<double>>;
 
-/// How often and when g changes its sign up to `end`.
+/// The number of sign changes of g up to `end`.
 template <class G>
 std::vector<double> crossings(const G& g, double end, Crossing wanted = Crossing::any) {
   CircleSteps steps({}, 0.0, {1, 0}, {.relative = 1e-13});
@@ -82,11 +82,11 @@ void events(const Recorder& out) {
          {1.2345});
   expect("g of 1e-300",
          crossings([](double, const Eigen::Vector2d& y) { return 1e-300 * y[0]; }, 4), {pi / 2});
-  // At the singular point of an angle: atan2 jumps there by 2 pi, which is no zero of the motion.
+  // At the singular point of an angle atan2 jumps by 2 pi, which is no zero of the motion.
   expect("an angle that leaps from pi to -pi",
          crossings([](double, const Eigen::Vector2d& y) { return std::atan2(y[1], y[0]); }, 5),
          {pi});
-  // A pendulum that all but comes to rest upright.
+  // A pendulum that nearly comes to rest upright.
   const exact::PendulumMotion motion(1, 0, 2 * (1 - 1e-10));
   const auto pendulum = [](double, const Eigen::Vector2d& y) {
     return Eigen::Vector2d(y[1], -std::sin(y[0]));
@@ -103,7 +103,7 @@ void events(const Recorder& out) {
                  {"t = "});
 }
 
-/// The circle in the number type S, to what its digits allow.
+/// The circle in the number type S, to the accuracy of its digits.
 template <class S>
 void circle_in(const Recorder& out, const char* what, double accuracy, double bound) {
   using Vector = Eigen::Matrix<S, 2, 1>;

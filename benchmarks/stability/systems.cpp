@@ -1,4 +1,5 @@
-// Trees of bodies: masses far apart, bodies without mass, axes that coincide, stiff joints.
+// Trees of bodies: masses of very different size, bodies without mass, coinciding axes, stiff
+// joints.
 
 #include <fmt/core.h>
 
@@ -23,7 +24,7 @@ using namespace kreisel;
 using System = BodySystem<RestingFrame<>>;
 using State = System::State;
 
-/// A point of mass m at the end of a rod of length l in a joint about y, hung from `parent`.
+/// A point of mass m at the end of a rod of length l in a joint about y below `parent`.
 BodyDescription bob(const std::string& name, const std::string& parent, double mass, double length,
                     double above = 0) {
   return {
@@ -35,8 +36,8 @@ BodyDescription bob(const std::string& name, const std::string& parent, double m
 
 const UniformGravity<Guide> gravity{{0, 0, -9.81}};
 
-/// A pendulum whose bob carries another of next to no mass, which swings as it may: the first must
-/// not notice.
+/// A pendulum whose bob carries another of nearly no mass. The light one must not affect the heavy
+/// one.
 void mass_ratios(const Recorder& out) {
   const exact::PendulumMotion motion(9.81, 0.5, 0);
   for (const double mass : {1e-6, 1e-9, 1e-12, 1e-15}) {
@@ -53,14 +54,15 @@ void mass_ratios(const Recorder& out) {
           worst, std::abs(run.states[i].coordinates[0] - motion.at(run.times[i]).angle));
     }
     const bool done = run.report.status == RunStatus::complete;
-    // What the light one does to the heavy one is of the order of its mass.
+    // The effect of the light one on the heavy one is of the order of its mass.
     expect_below(out, what, "verner98", done ? worst : double(NAN),
                  run.report.error_estimate + 50 * mass, run.report.message);
   }
 }
 
 void heavy_end(const Recorder& out) {
-  // A heavy bob on a light one: two rods in line are one pendulum as long as both in the limit.
+  // A heavy bob on a light one: in the limit two rods in line are one pendulum of their total
+  // length.
   for (const double mass : {1e3, 1e6, 1e9}) {
     const System system(
         {}, {bob("light", "guide", 1e-3, 0.5), bob("heavy", "light", mass, 0.5, 0.5)}, gravity);
@@ -96,7 +98,7 @@ void singular_trees(const Recorder& out) {
                    rates(system, system.rest());
                  },
                  {"ghost"});
-  // Without mass in the middle: legal, it is its child that has some.
+  // A body without mass in the middle is legal, because its child has mass.
   {
     const System system({}, {massless, bob("bob", "ghost", 1, 1)}, gravity);
     State start = system.rest();
@@ -122,7 +124,7 @@ void singular_trees(const Recorder& out) {
     expect_refusal(out, "a ring without mass at gimbal lock", "BodySystem",
                    [&] { rates(system, start); });
   }
-  // No freedom at all.
+  // A system without degrees of freedom.
   {
     const System system({}, {}, gravity);
     out.begin("no bodies", "BodySystem");
@@ -141,7 +143,7 @@ void singular_trees(const Recorder& out) {
   }
 }
 
-/// What a stiff joint makes of a pendulum against one that is held: 1/k apart.
+/// The difference of a pendulum with a stiff joint from one with a locked joint: 1/k.
 void rigid_limit(const Recorder& out) {
   const auto swing = [&](double stiffness) {
     std::vector<BodyDescription> bodies{bob("upper", "guide", 1, 1),
@@ -172,7 +174,7 @@ void rigid_limit(const Recorder& out) {
   }
 }
 
-/// Couplings by momenta that let nothing else count, in a frame that is held and in one that is free.
+/// Couplings by momenta that dominate everything else, in a fixed frame and in a free one.
 void platform_motions(const Recorder& out) {
   using Angles = GyroPlatform::Angles;
   constexpr std::array<int, 5> angles = {0, 1, 3, 5, 6};  // among the coordinates behind the base

@@ -1,4 +1,4 @@
-// Tops free of torque.
+// Tops without torque.
 
 #include <fmt/core.h>
 
@@ -31,7 +31,7 @@ using State = EulerTop::State;
 
 const Eigen::Quaterniond tilted(std::cos(0.25), std::sin(0.25), 0, 0);
 
-/// A free top, its truth in 50 digits for the closed form and that closed form for the steps.
+/// A free top: the truth is in 50 digits for the closed form, and the closed form for the steps.
 void free_top(const Recorder& out, const std::string& variant, const Vector3<double>& moments,
               const State& start, kreisel::SolveOptions options, bool in_50_digits = true,
               const std::string& picture = "") {
@@ -61,8 +61,8 @@ void dzhanibekov(const Recorder& out) {
   }
 }
 
-/// On the separatrix L^2 = 2 E B:  A (B - A) w1^2 = C (C - B) w3^2, which (1, 2, 4/3...) meets in
-/// numbers that are exact.
+/// On the separatrix L^2 = 2 E B:  A (B - A) w1^2 = C (C - B) w3^2, which these numbers meet
+/// exactly.
 void separatrix(const Recorder& out) {
   const Vector3<double> moments(2, 3, 4);  // 2 w1^2 = 4 w3^2 . 1, so w1^2 = 2 w3^2
   const double root = std::sqrt(2.0);
@@ -90,7 +90,7 @@ void equal_moments(const Recorder& out) {
   free_top(out, "I1 = I2 (1 - 1e-15)", {2 * (1 - 1e-15), 2, 3}, start, options);
   free_top(out, "sphere", {2, 2, 2}, start, options);
   free_top(out, "sphere but for 1e-15", {2, 2 * (1 + 1e-15), 2 * (1 - 1e-15)}, start, options);
-  // The same answer from both branches.
+  // Both branches must have the same result.
   const kreisel::exact::FreeTop round({2, 2, 3}, start.angular_velocity, tilted);
   const kreisel::exact::FreeTop general({2 * (1 + 1e-15), 2, 3}, start.angular_velocity, tilted);
   expect_below(out, "I1 = I2 against I1 = I2 (1 + 1e-15)", "closed form",
@@ -172,7 +172,7 @@ void horizons(const Recorder& out) {
   }
 }
 
-/// Equal steps have no number in advance: how many 1e9 s take, nobody waits for.
+/// Equal steps have no limit beforehand: the steps for 1e9 s would take too long.
 void endless(const Recorder& out) {
   const State start{tilted, {0.5, 2, -0.3}};
   const EulerTop top({1, 2, 3});
@@ -218,7 +218,8 @@ void backwards(const Recorder& out) {
   kreisel::detail::ErrorMeasure<EulerTop> distance(1e-3);
   expect_below(out, "there and back", "verner98",
                distance(EulerTop::to_vector(back.states[0]), EulerTop::to_vector(start)),
-               // What the rate is off by at the turn leads the attitude astray on all the way back.
+               // The error of the rate at the reversal makes the attitude wrong on the whole way
+               // back.
                3 * (there.report.error_estimate + back.report.error_estimate));
   free_top(out, "t1 = t0", {1, 2, 3}, start, {.output_times = {0}}, false);
 }

@@ -17,7 +17,7 @@
 
 namespace stability {
 
-/// A scene to be solved, and the truth at every time.
+/// A scene for solve(), with the truth at every time.
 template <class Scene>
 struct Trial {
   std::string variant;
@@ -30,7 +30,7 @@ struct Trial {
   std::string picture = "";  ///< the series of the picture of drift, if there is one
 };
 
-/// What rounding leaves uncertain of an angle that the truth has turned through, relative.
+/// The relative rounding uncertainty of an angle of rotation of the truth.
 inline constexpr double rounding_of_angle = 2e-16;
 
 [[nodiscard]] inline std::vector<double> every(double step, double end, double begin = 0) {
@@ -40,7 +40,7 @@ inline constexpr double rounding_of_angle = 2e-16;
   return times;
 }
 
-/// Whether words say what is wrong: not empty, and more than a name.
+/// True if a message says what is wrong: not empty, and more than a name.
 [[nodiscard]] inline bool says_something(const std::string& message) { return message.size() > 20; }
 
 /// The greatest relative drift.
@@ -53,7 +53,7 @@ inline constexpr double rounding_of_angle = 2e-16;
   return worst;
 }
 
-/// Weighs a trajectory against the truth.
+/// Compares a trajectory with the truth.
 template <class Scene>
 void weigh(const Recorder& out, const Trial<Scene>& trial,
            const kreisel::Trajectory<typename Scene::State>& found, Row& row) {
@@ -98,7 +98,7 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
   }
 }
 
-/// Solves by a method, if that applies to the scene.
+/// Solves by a method, if it applies to the scene.
 template <class Scene>
 Row attempt(const Recorder& out, const Trial<Scene>& trial, kreisel::Method method) {
   kreisel::SolveOptions options = trial.options;
@@ -141,7 +141,7 @@ void attempt_all(const Recorder& out, const Trial<Scene>& trial, Methods methods
   for (const kreisel::Method method : methods) attempt(out, trial, method);
 }
 
-/// A number held to a bound.
+/// Compares a number with a bound.
 inline void expect_below(const Recorder& out, const std::string& variant, const std::string& method,
                          double error, double bound, const std::string& note = "") {
   Row row;
@@ -154,7 +154,7 @@ inline void expect_below(const Recorder& out, const std::string& variant, const 
   out.add(row);
 }
 
-/// An end without an answer: right if it says why.
+/// An end without a result: right if its message gives the reason.
 inline void add_refusal(const Recorder& out, const std::string& variant, const std::string& method,
                         const std::string& words) {
   Row row;
@@ -165,7 +165,7 @@ inline void add_refusal(const Recorder& out, const std::string& variant, const s
   out.add(row);
 }
 
-/// Something that has to be refused with a clear error that holds all the words.
+/// An input that must be refused with a clear error that contains all the words.
 template <class Do>
 void expect_refusal(const Recorder& out, const std::string& variant, const std::string& method,
                     const Do& act, std::initializer_list<const char*> words = {}) {

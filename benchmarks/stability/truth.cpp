@@ -50,7 +50,7 @@ EulerTop::State symmetric_in_50_digits(const EulerTop& top, const EulerTop::Stat
   const Digits50 t = time;
   const Eigen::Quaterniond& q = start.attitude;
   const Vector w = start.angular_velocity.cast<Digits50>();
-  // On axes that leave the excess of spin behind, the momentum stands still.
+  // On axes that do not take part in the excess of spin the momentum is constant.
   const Quaternion q0(q.w(), q.x(), q.y(), q.z());
   const Vector L(w.x(), w.y(), Digits50(C / A) * w.z());
   const Digits50 excess = (A - C) / A * w.z();

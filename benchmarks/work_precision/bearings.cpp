@@ -1,4 +1,4 @@
-// A Cardan gyro with massive rings, its inner bearing the stiffer the less it matters.
+// A Cardan gyro with massive rings whose inner bearing is stiffer and stiffer.
 
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/guide/resting.hpp>
@@ -16,8 +16,8 @@ using Gyro = kreisel::CardanGyro<kreisel::RestingFrame<>>;
 const kreisel::CardanMoments moments{{5e-4, 5e-4, 8e-4}, {2e-4, 3e-4, 2.5e-4}, {4e-4, 4e-4, 4e-4}};
 constexpr double reference_angle = 0.3;
 
-/// phi counts turns, so its error is relative, as the rates' are. `beta_from` is where the
-/// reference's beta counts from.
+/// phi counts turns, so its error is relative, as that of the rates. The reference's beta counts
+/// from `beta_from`.
 Problem<Gyro> gyro_problem(const char* name, const char* reference_name, double stiffness,
                            double damping, double beta_from = 0) {
   using enum Unit;
@@ -68,7 +68,7 @@ void bearing_1e12(std::vector<Run>& runs, const Thoroughness& thoroughness) {
           0.1);
 }
 
-/// The bearing's deviation of 1e-13 rad counts by its own size.
+/// The bearing's deviation of 1e-13 rad is measured by its own size.
 void bearing_deviation(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   auto problem =
       gyro_problem("bearing_deviation", "S4f_cardan_k1e12_d2e9_dev", 1e12, 2e9, reference_angle);

@@ -1,5 +1,5 @@
-// Gyros in massive rings: free, on a base that turns, with an unsymmetric rotor that a motor keeps at
-// its speed; and a satellite with a control moment gyro, as a tree of bodies.
+// Gyros in massive rings: free, on a turning base, and with an unsymmetric regulated rotor. A
+// satellite with a control moment gyro is a tree of bodies.
 
 #include <cmath>
 #include <numbers>
@@ -51,13 +51,13 @@ void add_gyro(std::vector<Run>& runs, const char* name, const char* reference, c
   methods.not_stiff();
 }
 
-/// A BodySystem of the size that the satellite has, for those who ask for its size beforehand.
+/// A BodySystem with the size of the satellite, for steppers whose size is fixed at compile time.
 class Satellite {
  public:
   using Vector = Eigen::Matrix<double, 17, 1>;
   using State = Vector;
 
-  /// Attitude, place, gimbal and rotor; their rates.
+  /// Attitude, position, gimbal and rotor; their rates.
   static constexpr std::array<int, 8> blocks = {4, 3, 1, 1, 3, 3, 1, 1};
   static Vector to_vector(const State& state) { return state; }
   static State from_vector(const Vector& y) { return y; }

@@ -1,4 +1,4 @@
-// Runs, their CPU time, and the bar that shows how far they are.
+// Runs, their CPU time, and a progress bar.
 
 #include <fmt/core.h>
 
@@ -32,7 +32,7 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// A line on stderr that says how far we are, on a terminal only.
+/// A progress line on stderr, on a terminal only.
 class Bar {
  public:
   explicit Bar(std::size_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}

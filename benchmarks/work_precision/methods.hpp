@@ -30,7 +30,7 @@
 
 namespace work_precision {
 
-/// The scene's field, for double and for what the scene takes besides.
+/// The scene's field, for double and for the other numbers that the scene accepts.
 template <class Scene>
 struct FieldOf {
   const Scene* scene;
@@ -59,7 +59,7 @@ class Methods {
 
   [[nodiscard]] const P& problem() const { return *problem_; }
 
-  /// Runs of a stepper: make(problem, setting) gives one with advance_to() and effort().
+  /// Runs of a stepper: make(problem, setting) returns one with advance_to() and effort().
   template <class Make>
   void add(const std::string& method, const std::vector<double>& settings, const Make& make) {
     for (const double setting : settings) {
@@ -71,22 +71,22 @@ class Methods {
     }
   }
 
-  /// Runs of anything: run(problem) gives a Result.
+  /// Runs of any method: run(problem) returns a Result.
   template <class Do>
   void note(const std::string& method, double setting, const Do& run) {
     runs_.push_back(
         {problem_->name, method, setting, [run, problem = problem_] { return run(*problem); }});
   }
 
-  /// What one calls who knows nothing about integrators.
+  /// solve() with its defaults, for users without knowledge of integrators.
   void automatic() { solved(work_precision::automatic, kreisel::Method::automatic); }
 
-  /// solve() by the method of one's own choice, with the same error estimate.
+  /// solve() by a chosen method, with the same error estimate.
   void solved_by(kreisel::Method method) {
     solved(fmt::format("{}{}", fixed_choice, kreisel::name(method)), method);
   }
 
-  /// All for fields that are not stiff.
+  /// All methods for fields that are not stiff.
   void not_stiff() {
     solved_by(kreisel::Method::verner98);
     if constexpr (knows_series) solved_by(kreisel::Method::taylor);
@@ -96,8 +96,8 @@ class Methods {
     cvode<false>();
   }
 
-  /// The explicit ones, which get a part of the evaluations lest they fail slowly, and those for
-  /// stiff fields, with the scene's exact Jacobian.
+  /// The explicit methods, with a part of the evaluations so that they do not fail slowly. Then the
+  /// methods for stiff fields, with the scene's exact Jacobian.
   void stiff(double explicit_part) {
     solved_by(kreisel::Method::radau13);
     if (explicit_part == 1) solved_by(kreisel::Method::verner98);
@@ -253,7 +253,7 @@ class Methods {
   template <bool exact_jacobian>
   void cvode() {
     using kreisel::CvodeMethod;
-    // Evaluations are the least of what it costs.
+    // Evaluations are the least part of its cost.
     const Budget few{thoroughness_.max_evaluations / 10};
     add("CVODE Adams", thoroughness_.tolerances, [few](const P& p, double tolerance) {
       return kreisel::CvodeSteps(CvodeMethod::adams, Field{&p.scene}, 0.0, p.start,

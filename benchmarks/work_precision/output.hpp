@@ -7,21 +7,21 @@
 
 namespace work_precision {
 
-/// The method that is no integrator.
+/// The name of the closed form, which is no integrator.
 inline const std::string closed_form = "closed form";
 
-/// Whether it is one of the libraries'.
+/// True for a method of another library.
 bool of_a_library(const std::string& method);
 
-/// Whether it is one of our steppers, bare.
+/// True for one of our bare steppers.
 bool is_stepper(const std::string& method);
 
 void write_csv(const std::string& path, const std::vector<Point>& points);
 
-/// Who wins, how honest solve() is, and who failed.
+/// The tables: the fastest methods, the honesty of solve(), and the failures.
 void write_tables(const std::string& path, const std::vector<Point>& points);
 
-/// Error over time and over evaluations, two SVG a scene.
+/// Error over time and over evaluations, two SVG for each scene.
 ///
 /// Throws : kreisel::ComputationFailed if gnuplot does not draw them
 void draw(const std::string& directory, const std::vector<Point>& points);

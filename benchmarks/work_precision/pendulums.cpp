@@ -26,7 +26,8 @@ using kreisel::Vector3;
 constexpr double earth_rate = 7.292115e-5;
 constexpr double weight = 19.62;  // m g a/Theta, 1/s^2
 
-/// A plane physical pendulum with that; on the earth it swings in the meridian of 45 degrees:
+/// A plane physical pendulum with this weight; on the earth it swings in the meridian of 45
+/// degrees:
 ///
 ///   phi'' = -19.62 sin phi + wE^2 sin(phi - 45 deg) cos(phi - 45 deg)
 template <class Motion>
@@ -44,7 +45,7 @@ void add_all(std::vector<Run>& runs, const P& problem, const Thoroughness& thoro
   methods.not_stiff();
 }
 
-/// Of a plane one, its making included.
+/// The closed form of a plane pendulum, with its construction.
 template <class P>
 void add_closed_form(std::vector<Run>& runs, const P& problem, const Thoroughness& thoroughness) {
   Methods methods(runs, problem, thoroughness);
@@ -65,7 +66,7 @@ void pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   auto problem = plane_problem("pendulum", kreisel::RestingPendulumGuide<>{2 * weight});
   const kreisel::exact::PendulumMotion truth(weight, 0.1, 0);
   const double end = 1000 * truth.period();
-  // Quarters but for a bit: at rest and upright an error of time would not show.
+  // Nearly quarter periods: at rest and upright an error of time would not show.
   for (const double part : {0.2501, 0.5002, 0.7503, 1.0004}) {
     problem.times.push_back(part * end);
     const auto m = truth.at(part * end);
@@ -87,7 +88,7 @@ void earth_pendulum(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   add_closed_form(runs, problem, thoroughness);
 }
 
-/// The reference counts the rate absolute, FixedPointBody against the earth.
+/// The reference has the absolute rate, FixedPointBody the rate against the earth.
 void earth_ball(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   using kreisel::Body, kreisel::Guide;
   const double up = std::sqrt(0.5);

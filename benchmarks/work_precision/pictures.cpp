@@ -16,8 +16,9 @@ namespace work_precision {
 
 namespace {
 
-/// A method looks the same in every picture. The colours are Okabe and Ito's, which the
-/// colour-blind tell apart; what shares one differs in its marks. Ours are drawn thick.
+/// A method looks the same in every picture. The colours are those of Okabe and Ito, which
+/// colour-blind people can distinguish; methods of one colour differ in their marks. Ours are drawn
+/// thick.
 struct Look {
   const char* method;
   const char* colour;
@@ -40,7 +41,7 @@ constexpr Look looks[] = {
     {"Odeint dopri5", sky, 1},  {"Odeint rkf78", sky, 6},  {"Odeint Bulirsch-Stoer", sky, 8},
     {"CVODE Adams", grey, 8},   {"CVODE BDF", grey, 2}};
 
-/// What is drawn upwards, and its name in the file's.
+/// The quantity on the vertical axis, and its name in the file's name.
 struct Axis {
   const char* file;
   const char* label;

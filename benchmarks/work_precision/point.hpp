@@ -7,7 +7,7 @@
 
 namespace work_precision {
 
-/// What solve() says of its own run, beside the truth in the same measure.
+/// The report of solve() about its own run, with the truth by the same measure.
 struct Promise {
   std::string method;  ///< that it chose
   double error;
@@ -15,15 +15,15 @@ struct Promise {
   bool kept;  ///< it says that the estimate is within the tolerance
 };
 
-/// What a run gives back.
+/// The result of a run.
 struct Result {
   double error;
   double evaluations;
   std::optional<Promise> promise = {};
 };
 
-/// A run to be measured. `setting` is a tolerance or a step; the runs of a method on a scene stand
-/// in a row, the cheapest first.
+/// A run to be measured. `setting` is a tolerance or a step. The runs of a method on a scene are
+/// consecutive, the cheapest first.
 struct Run {
   std::string scene;
   std::string method;
@@ -31,7 +31,7 @@ struct Run {
   std::function<Result()> run;
 };
 
-/// A run measured: how far off, how dear. Where it failed, `status` says why.
+/// A measured run: its error and its cost. For a failed run `status` gives the reason.
 struct Point {
   std::string scene;
   std::string method;
@@ -43,15 +43,15 @@ struct Point {
   std::optional<Promise> promise;
 };
 
-/// The method that stands for what one calls who knows nothing about integrators, and how the name of
-/// one begins that solve() was told to take; both tell their error.
+/// The name of solve() with its defaults, and the first part of its name with a chosen method. Both
+/// report their error.
 inline const std::string automatic = "auto";
 inline const std::string fixed_choice = "solve: ";
 
 inline const std::string ok = "ok";
 inline const std::string not_tried = "not tried: too slow at the setting before";
 
-/// How much time a measurement may take.
+/// The time budget of a measurement.
 struct Thoroughness {
   bool quick;
   std::vector<double> tolerances;
@@ -65,10 +65,10 @@ struct Thoroughness {
   static Thoroughness in_a_minute();
 };
 
-/// Measures all, with a bar on a terminal. Ctrl-C ends it; what was measured is returned.
+/// Measures all runs, with a bar on a terminal. Ctrl-C ends it and returns the measured ones.
 std::vector<Point> measure(const std::vector<Run>& runs, const Thoroughness& thoroughness);
 
-/// Whether Ctrl-C was pressed.
+/// True if Ctrl-C was pressed.
 bool interrupted();
 
 }  // namespace work_precision

@@ -13,7 +13,7 @@
 
 namespace work_precision {
 
-/// What the error of a block of the state is.
+/// The measure of the error of a block of the state.
 enum class Unit {
   attitude,  ///< the angle between two quaternions, of any norm, in rad
   angle,     ///< the distance, which is one in rad

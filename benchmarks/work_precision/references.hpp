@@ -5,13 +5,13 @@
 
 namespace work_precision {
 
-/// States that arithmetic in 34 digits has computed.
+/// States computed in arithmetic of 34 digits.
 struct Reference {
   std::vector<double> times;
   std::vector<std::vector<double>> states;
 };
 
-/// The scene's from tests/data/ode-scenes.json.
+/// The states of the scene from tests/data/ode-scenes.json.
 Reference reference(const std::string& scene);
 
 }  // namespace work_precision

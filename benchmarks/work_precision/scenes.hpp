@@ -6,7 +6,7 @@
 
 namespace work_precision {
 
-/// Each adds its runs.
+/// Each function adds its runs.
 using AddRuns = void (*)(std::vector<Run>&, const Thoroughness&);
 
 void dzhanibekov(std::vector<Run>& runs, const Thoroughness& thoroughness);
@@ -23,7 +23,7 @@ void cardan_on_base(std::vector<Run>& runs, const Thoroughness& thoroughness);
 void cardan_blades(std::vector<Run>& runs, const Thoroughness& thoroughness);
 void satellite(std::vector<Run>& runs, const Thoroughness& thoroughness);
 
-/// In a bearing of 1e3, 1e6, 1e9 N m/rad, of 1e6 without damping, of 1e12, and of 1e12 with the
+/// Bearings of 1e3, 1e6, 1e9 N m/rad, of 1e6 without damping, of 1e12, and of 1e12 with the
 /// bearing's deviation to ten digits.
 void bearing_1e3(std::vector<Run>& runs, const Thoroughness& thoroughness);
 void bearing_1e6(std::vector<Run>& runs, const Thoroughness& thoroughness);

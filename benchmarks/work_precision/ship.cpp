@@ -14,8 +14,8 @@
 
 namespace work_precision {
 
-/// The truth is Verner98 at 1e-16, which two other accuracies confirm to 1e-14: below that this
-/// scene says nothing.
+/// The truth is Verner98 at 1e-16, which two other accuracies confirm to 1e-14. Below that the
+/// scene is not informative.
 void ship(std::vector<Run>& runs, const Thoroughness& thoroughness) {
   using namespace kreisel;
   const auto guide = analytic([](const auto& t) {

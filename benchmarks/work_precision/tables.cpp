@@ -1,4 +1,4 @@
-// The measured points as CSV, and what they say.
+// The measured points as CSV, and their tables.
 
 #include <fmt/os.h>
 
@@ -15,7 +15,7 @@ namespace work_precision {
 
 namespace {
 
-/// In the order of their first point.
+/// The names in the order of their first point.
 template <class Get>
 std::vector<std::string> names(const std::vector<Point>& points, const Get& get) {
   std::vector<std::string> all;
@@ -34,14 +34,14 @@ std::vector<std::string> methods(const std::vector<Point>& points, const std::st
   return names(points, [&](const Point& p) { return p.scene == scene ? p.method : ""; });
 }
 
-/// Who comes to an error in the least time: a run that does, and the time; null where nobody does.
+/// The fastest method for an error: a run that reaches it, and the time; null if none does.
 struct Fastest {
   const Point* point = nullptr;
   double seconds = 0;
 };
 
-/// The time to come to just that error, as a power of it between this run and the one before, at a
-/// coarser setting: else the winner would be who happened to be tried at the right one.
+/// The time for exactly this error, as a power of the error between this run and the one before, at
+/// a coarser setting. Otherwise the method would win whose setting happens to fit.
 double time_to(const std::vector<Point>& points, std::size_t i, double error) {
   const Point& p = points[i];
   if (i == 0 || !(p.error > 0)) return p.seconds;
@@ -71,7 +71,7 @@ std::string ratio(const Fastest& p, const Fastest& q) {
   return p.point && q.point ? fmt::format("{:.2g}", p.seconds / q.seconds) : "-";
 }
 
-/// The greatest of some ratios, and where.
+/// The greatest of some ratios, and its case.
 struct Worst {
   double ratio = 0;
   std::string where = "-";

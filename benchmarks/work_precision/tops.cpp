@@ -1,4 +1,4 @@
-// Tops held at a point: Dzhanibekov's, a fast and a slow one of Lagrange, the fast one's axis.
+// Fixed-point tops: Dzhanibekov's, a fast and a slow one of Lagrange, the fast one's axis.
 
 #include <Eigen/Geometry>
 
@@ -87,8 +87,8 @@ void splitting(Methods<TopProblem>& methods, double spin, bool quick) {
   runs.template operator()<kreisel::KahanLi8>("KahanLi8");
 }
 
-/// The axis of a symmetric heavy top and its angular momentum, both on inertial axes: the spin,
-/// which nothing depends on, is left out.
+/// The axis of a symmetric heavy top and its angular momentum, both on inertial axes. The spin is
+/// left out, because nothing depends on it.
 ///
 ///   e' = (L x e)/A,   L' = -k e x vertical
 struct AxisOfTop {
@@ -113,7 +113,7 @@ struct AxisOfTop {
             S(0)};
   }
 
-  /// The same coefficient by coefficient, for Taylor's steps.
+  /// The same equations coefficient by coefficient, for Taylor steps.
   struct Series {
     static constexpr int most_order = kreisel::most_series_order;
 
