@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::printf(
-      "%.0e turns\n\n| policy | norm off by | attitude off by, rad | ns/turn "
+      "%.0e turns\n\n| policy | norm error | attitude error, rad | ns/turn "
       "|\n|---|---|---|---|\n",
       n);
   measure("rotated()", n, [](const auto& q) { return rotated(q, turn); });

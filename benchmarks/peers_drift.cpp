@@ -112,7 +112,7 @@ double cpu_seconds() {
 void print() {
   fmt::print(
       "Moments {}, {}, {} kg m^2, rates {}, {}, {} rad/s, {} s.\n\n"
-      "| by | how | energy off by | momentum off by | attitude off by, rad | ms |\n"
+      "| by | how | energy error | momentum error | attitude error, rad | ms |\n"
       "|---|---|---|---|---|---|\n",
       top.moments[0], top.moments[1], top.moments[2], top.rate[0], top.rate[1], top.rate[2], end);
   for (const Engine& engine : engines()) {

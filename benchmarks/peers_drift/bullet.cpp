@@ -42,7 +42,7 @@ std::vector<Turning> run(const Top& top, double end, int count) {
 std::vector<Engine> bullet() {
   constexpr int version = BT_BULLET_VERSION;
   return {{"Bullet", std::to_string(version / 100) + '.' + std::to_string(version % 100),
-           "as it comes, 1/240 s, single precision", run}};
+           "default, 1/240 s, single precision", run}};
 }
 
 }  // namespace peers

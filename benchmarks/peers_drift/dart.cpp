@@ -37,6 +37,6 @@ std::vector<Turning> run(const Top& top, double end, int count) {
 
 }  // namespace
 
-std::vector<Engine> dart() { return {{"DART", DART_VERSION, "as it comes, 1/1000 s", run}}; }
+std::vector<Engine> dart() { return {{"DART", DART_VERSION, "default, 1/1000 s", run}}; }
 
 }  // namespace peers

@@ -26,7 +26,7 @@ struct Turning {
 struct Engine {
   std::string name;
   std::string version;
-  std::string how;  ///< its integrator and step, as it comes
+  std::string how;  ///< its integrator and step, with default settings
 
   /// The motion at `count` times, the last of which is `end`; whole numbers of steps apart.
   std::function<std::vector<Turning>(const Top&, double end, int count)> run;

@@ -42,8 +42,6 @@ Engine engine(const std::string& integrator, const std::string& name) {
 
 }  // namespace
 
-std::vector<Engine> mujoco() {
-  return {engine("Euler", "Euler, as it comes"), engine("RK4", "RK4")};
-}
+std::vector<Engine> mujoco() { return {engine("Euler", "Euler, default"), engine("RK4", "RK4")}; }
 
 }  // namespace peers

@@ -45,7 +45,7 @@ Engine engine(double accuracy, const std::string& what) {
 }  // namespace
 
 std::vector<Engine> simbody() {
-  return {engine(0, "accuracy as it comes"), engine(1e-9, "accuracy 1e-9")};
+  return {engine(0, "default accuracy"), engine(1e-9, "accuracy 1e-9")};
 }
 
 }  // namespace peers

@@ -365,18 +365,18 @@ void head(std::ostream& out, const char* title, const char* what) {
 
 bool run(std::ostream& out) {
   out << "# The same work by kreisel and by others\n\n"
-      << "kreisel, and what is written by hand, built here: " SCENES_BUILD "\n\n";
+      << "kreisel and the code by hand, built here: " SCENES_BUILD "\n\n";
   for (const Library& library : libraries())
     out << "- " << library.name << ' ' << library.version << '\n';
   if (!missing().empty()) out << "- not installed:" << missing() << '\n';
   out << "\nThe libraries are as installed. Debian builds them with -O2 for any amd64 and with "
          "their "
-         "assertions; what calls them here is built for any amd64 too.\n\n"
+         "assertions. The code that calls them here is built for any amd64 too.\n\n"
          "CPU time of one evaluation in ns: median of "
       << repetitions
-      << " repetitions, all programs in turn, and the width of their middle half. Timed only where "
-         "the answers to "
-      << input_count << " random inputs differ from kreisel's by no more than " << tolerance
+      << " repetitions, all programs in turn, and the width of their middle half. A library is "
+         "timed only if its answers to "
+      << input_count << " random inputs differ from kreisel's by at most " << tolerance
       << " of the greatest number in each.\n";
 
   bool agree = true;

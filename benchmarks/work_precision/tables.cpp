@@ -83,12 +83,11 @@ struct Worst {
 
 void winners(fmt::ostream& out, const std::vector<Point>& points) {
   out.print(
-      "### Who wins\n\n"
-      "The least time to an error, in ms, between the settings tried as a power of the error; "
-      "\"-\" "
-      "where nobody\ngets there. \"auto\" is solve() with its error estimate; beside it solve() "
-      "with the best fixed\nmethod and the same estimate, and the best bare stepper, ours or a "
-      "library's, that tells no error.\n\n"
+      "### Fastest methods\n\n"
+      "The least time to an error, in ms, interpolated between settings as a power of the error; "
+      "\"-\" where no\nmethod reaches it. \"auto\" is solve() with its error estimate, \"fixed\" "
+      "solve() with the best fixed\nmethod and the same estimate, \"bare\" the best stepper, ours "
+      "or a library's, without an estimate.\n\n"
       "| scene | error | best stepper of ours | ms | best library | ms | library / ours | closed "
       "form, ms | auto | ms | fixed | ms | auto / fixed | auto / bare |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
@@ -131,7 +130,8 @@ void winners(fmt::ostream& out, const std::vector<Point>& points) {
     }
   }
   out.print(
-      "\nA library is faster in {} of the {} places where both get there, at most {:.2g} times "
+      "\nA library is faster in {} of the {} cases where both reach the error, at most {:.2g} "
+      "times "
       "({}).\nauto takes at most {:.2g} times what solve() takes with the best fixed method ({}), "
       "and at "
       "most {:.2g} times\nwhat the best bare stepper takes ({}).\n\n",
@@ -166,10 +166,10 @@ void least_errors(fmt::ostream& out, const std::vector<Point>& points) {
 
 void honesty(fmt::ostream& out, const std::vector<Point>& points) {
   out.print(
-      "### Whether solve() knows how wrong it is\n\n"
+      "### Error estimates of solve()\n\n"
       "True error over error estimate, both by the measure of RunReport. \"kept\": the true error "
-      "is within the\ntolerance; \"no, said so\": it is not, and the report says that it may "
-      "not be.\n\n"
+      "is within the\ntolerance; \"no, reported\": it is not, and the report does not claim "
+      "it.\n\n"
       "| scene | tolerance | method | true error | estimate | true / estimate | kept |\n"
       "|---|---|---|---|---|---|---|\n");
   struct Count {
@@ -198,7 +198,7 @@ void honesty(fmt::ostream& out, const std::vector<Point>& points) {
               error, estimate, share,
               error <= p.setting ? "yes"
               : broken           ? "**no**"
-                                 : "no, said so");
+                                 : "no, reported");
     Count& count = p.evaluations > 0 ? by_steps : closed;
     count.all += 1;
     count.within += share >= 0.1 && share <= 1 ? 1 : 0;
@@ -218,7 +218,7 @@ void honesty(fmt::ostream& out, const std::vector<Point>& points) {
 
 void failures(fmt::ostream& out, const std::vector<Point>& points) {
   out.print(
-      "### Who failed\n\n"
+      "### Failures\n\n"
       "| scene | method | runs | failed | not tried after a slow one | the first to fail |\n"
       "|---|---|---|---|---|---|\n");
   for (const std::string& scene : scenes(points)) {
