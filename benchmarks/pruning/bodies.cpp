@@ -41,12 +41,12 @@ std::vector<Case> bodies() {
   });
   const by_hand::HeldInLift lift_hand{T, lopsided.value.first_moment, g};
   return {
-      {"held body in a lift",
+      {"fixed-point body in a lift",
        {form("general", held_start,
              field(FixedPointBody(lopsided, point, any_guide(lift), any_load(weight)))),
         form("pruned", held_start, field(FixedPointBody(lopsided, point, lift, weight))),
         form("by hand", held_start, [=](double t, const Top& y) { return lift_hand(t, y); })}},
-      {"held body on a turntable with gravity at rest",
+      {"fixed-point body on a turntable with gravity at rest",
        {form("general", held_start,
              field(FixedPointBody(lopsided, point, any_guide(table), any_load(gravitation)))),
         form("pruned", held_start, field(FixedPointBody(lopsided, point, table, gravitation))),

@@ -326,7 +326,7 @@ void held_bodies(std::vector<Case>& cases) {
   cases.push_back({"far-guides", "reference points 1e9 m away", &far_guides});
   cases.push_back({"nearly-singular", "tensors singular but for 1e-2 to 1e-15", &nearly_singular});
   cases.push_back(
-      {"stiff-springs", "damped springs to 1e12 N m/rad on a held body", &stiff_springs});
+      {"stiff-springs", "damped springs to 1e12 N m/rad on a fixed-point body", &stiff_springs});
 }
 
 }  // namespace stability

@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(centrifugal_part_follows_the_rotation_rate) {
   // 17 turns a day: gravity is gone at the equator.
   site.latitude = 0;
   site.rotation_rate = 17.1 * 7.292115e-5;
-  BOOST_TEST(message_of([&] { (void)normal_gravity(site); }).find("no gravity that points down") !=
+  BOOST_TEST(message_of([&] { (void)normal_gravity(site); }).find("gravity does not point down") !=
              std::string::npos);
 }
 

@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(are_refused_if_they_are_none) {
   refused("sample 6: not a finite", [](RatesLog& log) {
     log.angular_velocities[5].x() = std::numeric_limits<double>::quiet_NaN();
   });
-  refused("comes no later", [](RatesLog& log) { log.times[5] = log.times[4]; });
+  refused("must be later", [](RatesLog& log) { log.times[5] = log.times[4]; });
   refused("turns by more", [](RatesLog& log) { log.angular_velocities[5].x() = 1e9; });
   RatesStart start;
   start.attitude.coeffs() *= 2;

@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(is_refused_if_it_is_none) {
           [&](MotionLog<>& log) { log.positions[5].y() = nan; });
   refused("not a finite", [&](MotionLog<>& log) { log.attitudes[5].w() = nan; });
   refused("not a finite", [&](MotionLog<>& log) { log.times[5] = nan; });
-  refused("comes no later", [](MotionLog<>& log) { log.times[5] = log.times[4]; });
+  refused("must be later", [](MotionLog<>& log) { log.times[5] = log.times[4]; });
   refused("norm 0", [](MotionLog<>& log) { log.attitudes[5].coeffs().setZero(); });
   refused("norm 2", [](MotionLog<>& log) { log.attitudes[5].coeffs() *= 2; });
   refused("more than 90 degrees", [](MotionLog<>& log) {
