@@ -91,7 +91,7 @@ void measure(const char* name, const Make& make) {
   const Sampling alone{.count = members, .threads = 1, .estimates_errors = false};
   Sampling two = alone;
   two.threads = 2;
-  for (int i = 0; i < repetitions; ++i) {  // by turns, so that all meet the same disturbances
+  for (int i = 0; i < repetitions; ++i) {  // alternately, so that disturbances affect all
     run(ways[0], [&] { return ensemble<double>(alone, make, options); });
     run(ways[1], [&] { return ensemble(alone, make, options); });
     run(ways[2], [&] { return ensemble(two, make, options); });

@@ -29,7 +29,7 @@ using by_hand::Gyro;
 using by_hand::Top;
 using by_hand::V3;
 
-// --- A top held at a point -----------------------------------------------------------------------
+// --- A top with a fixed point ---------------------------------------------------------------------
 
 const V3 top_moments(0.25, 0.27, 0.06);
 const V3 top_weight(0.3, -0.2, 4);

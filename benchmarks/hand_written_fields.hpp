@@ -11,7 +11,7 @@ namespace by_hand {
 
 using V3 = Eigen::Vector3d;
 using Top = Eigen::Matrix<double, 7, 1>;    // quaternion x, y, z, w; angular velocity
-using Free = Eigen::Matrix<double, 13, 1>;  // quaternion; place; angular velocity; velocity
+using Free = Eigen::Matrix<double, 13, 1>;  // quaternion; position; angular velocity; velocity
 using Gyro = Eigen::Matrix<double, 6, 1>;   // alpha, beta, phi; their rates
 using Angle = Eigen::Vector2d;
 
@@ -36,7 +36,7 @@ struct Rotation {
   }
 };
 
-// --- Tops held at a point of the inertial frame ----------------------------------------------------
+// --- Tops with a fixed point in the inertial frame -------------------------------------------------
 
 struct PrincipalTop {
   V3 moments;
@@ -301,7 +301,7 @@ struct CardanGyro {
     const double H = C_1 * (z2 + df);
     const double a = A * dx2 + (C_2 - B) * y2 * z2 + y2 * H;
     const double b = B * dy3 + (A - C_2) * z2 * x2 - x2 * H;
-    const double held = regulated ? C_1 + C_2 : C_2;  // what turns with the inner ring about C
+    const double held = regulated ? C_1 + C_2 : C_2;  // turns with the inner ring about C
     const double cc = held * dz2 + (B_2 - A_2) * x2 * y2;
     const double J = A_3 + A * c * c + held * s * s;
     const double outer = C_3_less_B_3 * y3 * z3;

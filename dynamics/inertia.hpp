@@ -206,8 +206,8 @@ class FactoredSymmetric3 {
 
 /// An inertia factored to solve  T A = P  for A: the acceleration of a free body under a force.
 ///
-/// Throws : ComputationFailed when T is singular (mass 0, point, needle); the message names what is
-///          missing
+/// Throws : ComputationFailed when T is singular (mass 0, point, needle); the message names the
+///          missing quantity
 /// Error  : angular half <= 8u |Theta| |M_S| / lambda^2, M_S the torque about the centre of mass,
 ///          lambda the least moment of inertia about it
 template <class S = double>

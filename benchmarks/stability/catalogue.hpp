@@ -10,10 +10,10 @@ namespace stability {
 
 /// The outcome of a run.
 enum class Verdict {
-  accurate,  ///< within the tolerance, as it says
-  reported,  ///< off by more than the tolerance, but not by more than it says
+  accurate,  ///< within the tolerance, as reported
+  reported,  ///< error above the tolerance, but within the estimate
   refused,   ///< a clear error: what, where, and until when all was well
-  failed     ///< a silently wrong number, no answer in time, a crash, or an error that says nothing
+  failed     ///< a silently wrong number, no answer in time, a crash, or an empty error message
 };
 
 [[nodiscard]] constexpr const char* name(Verdict verdict) {
@@ -32,7 +32,7 @@ struct Row {
   std::string method;
   Verdict verdict = Verdict::failed;
   double error = NAN;     ///< true, by the measure of RunReport::error_estimate
-  double estimate = NAN;  ///< what the run says of it, or the bound it is held to
+  double estimate = NAN;  ///< estimate of the run, or a bound
   double drift = NAN;     ///< of the invariant that changed most, relative
   double steps = NAN;
   double evaluations = NAN;

@@ -115,7 +115,7 @@ void jumps_of_the_acceleration(const Recorder& out) {
   const double jump = 0.7314;
   const AnyGuide guide{[=](double t) {
     FrameMotion<Guide, Inertial> m;
-    if (t >= jump) m.dV.value.moment = {0, 0, 9.81};  // place and velocity do not matter here
+    if (t >= jump) m.dV.value.moment = {0, 0, 9.81};  // position and velocity do not matter here
     return m;
   }};
   const Held body(InertiaTensor<Body>::about_origin(1, {0, 0, 0.5}, diagonal(1, 1, 0.6)), {0, 0, 0},

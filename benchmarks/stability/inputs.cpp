@@ -311,7 +311,7 @@ void inputs(std::vector<Case>& cases) {
       {"inputs-of-scenes", "NaN and infinities at every input of every scene", &scenes});
   cases.push_back(
       {"inputs-of-closed-forms", "NaN and infinities at the closed forms", &closed_forms});
-  cases.push_back({"inputs-of-tasks", "NaN and infinities in what is asked of solve()", &tasks});
+  cases.push_back({"inputs-of-tasks", "NaN and infinities in the options of solve()", &tasks});
 }
 
 }  // namespace stability

@@ -164,7 +164,7 @@ bool interrupted() { return stopped != 0; }
 void Recorder::send(const std::string& line) const {
   for (std::size_t done = 0; done < line.size();) {
     const ssize_t written = write(pipe_, line.data() + done, line.size() - done);
-    if (written <= 0) _exit(1);  // nobody listens any more
+    if (written <= 0) _exit(1);  // the reader is gone
     done += std::size_t(written);
   }
 }

@@ -339,7 +339,7 @@ void plane_motions(std::vector<Case>& cases) {
       {"nan-from-field", "a field that is NaN or infinite from t = 1 on", &field_that_fails});
   cases.push_back({"edge-of-domain", "a field that is NaN in steps too long", &edge_of_the_domain});
   cases.push_back({"blow-up", "a motion that ends in the infinite", &blow_up});
-  cases.push_back({"dry-friction", "a field that jumps where nobody knows", &dry_friction});
+  cases.push_back({"dry-friction", "a field that jumps at unknown times", &dry_friction});
   cases.push_back({"square-wave", "a force that jumps", &square_wave});
   cases.push_back(
       {"output-times", "outputs every 1e-12 s, 1e7 of them, 1e-300 s ahead", &output_times});

@@ -90,7 +90,7 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
     row.verdict = clear ? Verdict::refused : Verdict::failed;
     row.note = report.message + (clear ? "" : " (names no time)");
   } else if (!whole) {
-    row.note = "output times are missing and nobody says so";
+    row.note = "output times are missing without a message";
   } else {
     row.verdict = report.tolerance_kept ? Verdict::accurate : Verdict::reported;
     if (row.method == name(kreisel::Method::automatic)) row.note = "by " + report.method;

@@ -12,7 +12,7 @@ struct Promise {
   std::string method;  ///< that it chose
   double error;
   double estimate;
-  bool kept;  ///< it says that the estimate is within the tolerance
+  bool kept;  ///< the estimate is within the tolerance
 };
 
 /// The result of a run.

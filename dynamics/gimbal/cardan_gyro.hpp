@@ -141,7 +141,8 @@ struct CardanRates {
 ///             side
 template <class M, class Rotor = FreeRotor, class Parameter = double>
 class CardanGyro {
-  static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
+  static_assert(detail::is_guide<M>,
+                "the guide of a gyro must return a FrameMotion<Guide, Inertial>");
   static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, FrictionlessRotor> ||
                     std::is_same_v<Rotor, RegulatedRotor> || detail::is_driven<Rotor>,
                 "the rotor is a FreeRotor, FrictionlessRotor, DrivenRotor or RegulatedRotor");

@@ -52,7 +52,8 @@ enum class GuideMomentum {
 ///          than 0, or a speed that is not finite
 template <class M>
 class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRotor>> {
-  static_assert(detail::is_guide<M>, "the guide of a gyro says how Guide moves against Inertial");
+  static_assert(detail::is_guide<M>,
+                "the guide of a gyro must return a FrameMotion<Guide, Inertial>");
 
   using Base = GimbalOscillation<CardanGyro<M, RegulatedRotor>>;
 
@@ -133,12 +134,12 @@ class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRo
     const bool constant = kept_ != GuideMomentum::none;
     const bool first_order = kept_ == GuideMomentum::first_order;
     const std::string of_order = first_order ? "" : "of first order in alpha, beta";
-    const std::string asked = constant ? "" : "GuideMomentum::none";
+    const std::string omitted = constant ? "" : "GuideMomentum::none";
     Terms list = Base::linear_terms();
     list.add("relative", "moments of inertia of both rings", false, "they have no mass");
     list.add("relative", "A - B, which turns with phi");
     list.add("Coriolis", "u x J");
-    list.add("guide", "oJ_f + u x J_f of the rotor not inclined", constant, asked);
+    list.add("guide", "oJ_f + u x J_f of the rotor not inclined", constant, omitted);
     list.add("guide", "g_a, g_b in J_f", first_order, of_order);
     list.add("load", "torque of the drive, along the inclined axis", first_order, of_order);
     return list;

@@ -148,7 +148,7 @@ class PowerSeries {
     s.order_ = c.order_ = a.order_;
     int bends = a.order_;  // the last coefficient of a that is not 0
     while (bends > 1 && a[bends] == 0) --bends;
-    PowerSeries slope;  // h da/dt, a place higher
+    PowerSeries slope;  // h da/dt, an index higher
     for (int i = 1; i <= bends; ++i) slope[i] = i * a[i];
     for (int k = 1; k <= a.order_; ++k) {
       double s_odd = 0, s_even = 0, c_odd = 0, c_even = 0;

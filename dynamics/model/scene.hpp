@@ -10,8 +10,7 @@
 
 namespace kreisel {
 
-/// The scene computes its rates: a vector of the state's kind, or one that is written in a workspace
-/// of the scene's.
+/// The scene computes its rates: a vector of the state's type, or one in a workspace of the scene.
 template <class S>
 concept HasRates = requires(const S& scene, double t, const typename S::Vector& y) {
   { scene.rates(t, y) } -> std::convertible_to<typename S::Vector>;
@@ -56,7 +55,7 @@ concept HasDualRates = requires {
   scene.rates(t, y);
 };
 
-/// conserved(t, state): pairs of name and value of what the motion keeps.
+/// conserved(t, state): name and value of each conserved quantity.
 template <class S>
 concept HasConserved = requires(const S& scene, double t, const typename S::State& state) {
   { scene.conserved(t, state)[0].second } -> std::convertible_to<double>;
@@ -74,14 +73,14 @@ concept HasClosedForm = requires(const S& scene, double t, const typename S::Sta
   closed_form(scene, t, state)->at(t);
 };
 
-/// may_be_stiff(): whether something in the scene can make it stiff.
+/// may_be_stiff(): true if a part of the scene can make it stiff.
 template <class S>
 concept HasStiffness = requires(const S& scene) {
   { scene.may_be_stiff() } -> std::convertible_to<bool>;
 };
 
-/// perturbed_by_ulps(): the scene with parameters off by a last digit, if the motion depends so
-/// much on them.
+/// perturbed_by_ulps(): the scene with parameters perturbed by a unit in the last place, if the
+/// motion is sensitive to them.
 template <class S>
 concept HasPerturbation = requires(const S& scene) {
   scene.perturbed_by_ulps();
@@ -104,10 +103,10 @@ struct SceneHook {
   const char* name;
   bool recognised;
   const char* used_by;
-  const char* without;  ///< what happens where the scene does not have it
+  const char* without;  ///< consequence for a scene without it
 };
 
-/// The optional hooks of a scene, each with whether the library recognises it.
+/// The optional hooks of a scene, each marked if the library recognises it.
 template <Scene S>
 [[nodiscard]] constexpr std::array<SceneHook, 8> check_scene() {
   return {{

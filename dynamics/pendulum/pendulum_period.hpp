@@ -204,7 +204,7 @@ template <class S>
     if (at_low < S(0)) break;
   }
   if (!(at_low < S(0))) {
-    if (kinetic == S(0)) fail_at_separatrix(barrier);  // what is left there is rounding
+    if (kinetic == S(0)) fail_at_separatrix(barrier);  // the rest is rounding
     return {};
   }
   // Starts at the turning point of a spring with the stiffness at 0. From far away Newton's

@@ -51,9 +51,10 @@ struct FixedPointBodyState {
 ///          along a line through O', all mass in O')
 template <class M, class... Loads>
 class FixedPointBody {
-  static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
+  static_assert(detail::is_guide<M>,
+                "the guide of a body must return a FrameMotion<Guide, Inertial>");
   static_assert(detail::are_loads<Loads...>,
-                "a load takes a LoadContext and returns a Force<Body>");
+                "a load must take a LoadContext and return a Force<Body>");
 
  public:
   using S = double;

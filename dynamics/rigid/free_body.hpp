@@ -44,9 +44,10 @@ struct FreeBodyState {
 /// Throws : InvalidInput if the inertia is invalid, ComputationFailed if it is singular
 template <class M, class... Loads>
 class FreeBody {
-  static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
+  static_assert(detail::is_guide<M>,
+                "the guide of a body must return a FrameMotion<Guide, Inertial>");
   static_assert(detail::are_loads<Loads...>,
-                "a load takes a LoadContext and returns a Force<Body>");
+                "a load must take a LoadContext and return a Force<Body>");
 
  public:
   using S = double;

@@ -68,7 +68,8 @@ template <class S>
 ///          computed once
 template <class M>
 class SmallOscillations {
-  static_assert(detail::is_guide<M>, "the guide of a body says how Guide moves against Inertial");
+  static_assert(detail::is_guide<M>,
+                "the guide of a body must return a FrameMotion<Guide, Inertial>");
 
  public:
   using S = double;
