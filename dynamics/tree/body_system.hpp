@@ -36,7 +36,7 @@ namespace kreisel {
 ///          where a motion of a joint meets no inertia, naming body and direction
 template <class M>
 class BodySystem {
-  static_assert(detail::is_guide<M>, "the guide of a system says how Guide moves against Inertial");
+  static_assert(detail::is_guide<M>, "the guide of a system must return a FrameMotion<Guide, Inertial>");
 
  public:
   using S = double;

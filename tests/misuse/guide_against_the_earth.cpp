@@ -1,6 +1,6 @@
 // The guide's motion is known against the earth; taken as one against the inertial frame it would
 // silently leave out the earth's rotation.
-// refused: the guide of a body says how Guide moves against Inertial
+// refused: the guide of a body must return a FrameMotion<Guide, Inertial>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
 

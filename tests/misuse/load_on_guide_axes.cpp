@@ -1,5 +1,5 @@
 // A user's load written in the guide: on other axes, its torque about another point than the body's.
-// refused: a load takes a LoadContext and returns a Force<Body>
+// refused: a load must take a LoadContext and return a Force<Body>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/rigid/free_body.hpp>
 
