@@ -28,22 +28,22 @@
 
 namespace kreisel {
 
-/// Which members of an ensemble are computed, and by whom.
+/// The members of an ensemble to compute, and the threads to use.
 struct Sampling {
   std::size_t count = 0;   ///< of members
   std::size_t first = 0;   ///< the index of the first; a multiple of the lanes of a pack
   std::uint64_t seed = 1;  ///< of the random numbers of all members
   int threads = 0;         ///< 0: as many as the machine runs at once
 
-  /// Whether a finer run beside each tells its error; without it the estimates are NaN, each run is
-  /// held to a tenth of the tolerance in every step, and the finer runs are saved.
+  /// If true, a finer companion run of each member measures its error. If false, estimates are NaN,
+  /// each step is held to a tenth of the tolerance, and the companion runs are saved.
   bool estimates_errors = true;
 
-  /// Called with the share done, in (0, 1], never by two threads at once; false cancels.
+  /// Called with the completed share, in (0, 1], never by two threads at once; false cancels.
   std::function<bool(double share)> progress = nullptr;
 };
 
-/// A member of an ensemble that has a scene of its own.
+/// A member of an ensemble with a scene of its own.
 template <class Scene>
 struct Member {
   Scene scene;
@@ -52,11 +52,11 @@ struct Member {
 template <class Scene>
 Member(Scene, typename Scene::State) -> Member<Scene>;
 
-/// The members' motions in the order of their indices, and what they have cost together.
+/// The members' motions in the order of their indices, and their total cost.
 ///
-/// A member's status is `failed`, with the reason, where it could not be made or its run stopped,
-/// and `cancelled` where it was not computed to the end. Its effort is that of the pack it ran in;
-/// invariants are not watched.
+/// A member's status is `failed`, with the reason, if it could not be made or its run stopped. It
+/// is `cancelled` if it was not computed to the end. Its effort is that of its pack; invariants are
+/// not monitored.
 template <class State>
 struct Ensemble {
   std::vector<Trajectory<State>> members;
@@ -67,7 +67,7 @@ struct Ensemble {
 
 namespace detail {
 
-/// Goes on until the last step covers t; says whether nobody asked to stop.
+/// Continues until the last step covers t; returns false if a stop was requested.
 template <class Run>
 [[nodiscard]] bool go_on(Run& run, double t, double end, const std::atomic<bool>& stop) {
   while (!run.covers(t)) {
@@ -90,7 +90,8 @@ class GrownRoundingOfMembers {
         shaken_(std::move(shaken)),
         distance_(std::size_t(lanes_of<N>), {scene, smallest}) {}
 
-  /// At t, times being asked for in turn; 0 where steps so coarse come to an end, or are to stop.
+  /// The growth at t; times must be given in order. 0 if the coarse steps fail or a stop is
+  /// requested.
   [[nodiscard]] Values at(double t, double end, const std::atomic<bool>& stop) {
     Values grown{};
     if (gave_up_) return grown;
@@ -103,7 +104,7 @@ class GrownRoundingOfMembers {
         gave_up_ = gave_up_ || !std::isfinite(off);
         grown[k] = gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
       }
-    } catch (...) {  // what a load or a guide throws there is no fault of the answer
+    } catch (...) {  // an exception of a load or a guide here does not affect the answer
       gave_up_ = true;
     }
     return grown;
@@ -121,10 +122,10 @@ class GrownRoundingOfMembers {
   bool gave_up_ = false;
 };
 
-/// Members side by side through all output times, each beside a finer one, as solve() does with
-/// one; those that are nullptr fill a pack up.
+/// Integrates members side by side through all output times, each with a finer companion run, as
+/// solve() does for one scene. Null members fill a pack.
 ///
-/// Throws : ComputationFailed where one of them stops; outputs before that are kept
+/// Throws : ComputationFailed if one of the members stops; earlier outputs are kept
 template <class N, class Scene>
 void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
             const SolveOptions& options, bool estimates_errors, const std::atomic<bool>& stop,
@@ -132,13 +133,13 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
   const AdaptiveRuns runs(options);
   const double end = options.output_times.back();
   struct Beside {
-    double end_of_a_step;  ///< lest a short run be one and the same step in all
+    double end_of_a_step;  ///< so that a short run is not one and the same step in all runs
     PackedAdvance<Scene, N> steps;
   };
   double setting = runs.first();
   Missed<double> missed{setting};
-  std::array<double, std::size_t(lanes_of<N>)> grown_to{};  // by rounding, in any try
-  CheapSteps cheap;                                         // that tell it
+  std::array<double, std::size_t(lanes_of<N>)> grown_to{};  // by rounding, in any run
+  CheapSteps cheap;                                         // that estimate the growth
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
@@ -157,7 +158,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
     };
     if (estimates_errors) put_beside(1.0 / 2, runs.finer(setting), digits_off(options));
     if (estimates_errors && last_try) {
-      // Where rounding is all that is left, two runs may agree by chance.
+      // If only rounding is left, two runs may agree by chance.
       put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(options));
       put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(options));
     }
@@ -275,7 +276,7 @@ class GroupOfOneScene {
   std::array<State, std::size_t(lanes_of<N>)> starts_;
 };
 
-/// Whether scenes of this kind can become one of packs.
+/// True if scenes of this type can be combined into a scene of packs.
 template <class Scene, class N>
 inline constexpr bool lies_side_by_side = false;
 template <class Scene, class N>
@@ -325,7 +326,7 @@ void fail(Trajectory<State>& member, const std::exception& error) {
   member.report.message = error.what();
 }
 
-/// Members of an ensemble from `index` on, as many as N has lanes and the ensemble still has.
+/// Members of an ensemble from `index` on: at most one for each lane of N.
 template <class N, class Group, class Make>
 void run_group(Group group, const Make& make, std::size_t index, const SolveOptions& options,
                const Sampling& sampling, const std::atomic<bool>& stop,
@@ -354,7 +355,7 @@ void run_group(Group group, const Make& make, std::size_t index, const SolveOpti
         follow<N>(scene, starts, options, sampling.estimates_errors, stop, made);
       });
     } catch (const std::exception&) {
-      return false;  // alone it will tell whom it was
+      return false;  // a single rerun reports the reason
     }
   };
   if (!all_together()) {
@@ -379,12 +380,14 @@ void run_group(Group group, const Make& make, std::size_t index, const SolveOpti
 inline void check(const Sampling& sampling, const SolveOptions& options, int lanes) {
   check(options);
   if (options.method != Method::automatic && options.method != Method::verner98) {
-    refuse_task("an ensemble runs by verner98, not by ", name(options.method));
+    refuse_task("options.method = ", name(options.method), ": an ensemble needs verner98");
   }
-  if (options.progress) refuse_task("an ensemble tells its progress by Sampling::progress");
-  if (sampling.threads < 0) refuse_task("threads = ", sampling.threads, " must be 0 or above");
+  if (options.progress)
+    refuse_task("options.progress is not used by an ensemble: set sampling.progress");
+  if (sampling.threads < 0)
+    refuse_task("sampling.threads = ", sampling.threads, " must be 0 or above");
   if (sampling.first % static_cast<std::size_t>(lanes) != 0) {
-    refuse_task("the first member, ", sampling.first, ", begins no pack of ", lanes);
+    refuse_task("sampling.first = ", sampling.first, " must be a multiple of ", lanes);
   }
 }
 
@@ -416,25 +419,25 @@ template <class N, class Group, class Make>
 
 }  // namespace detail
 
-/// Many motions of one scene, from starts that are drawn at random or made from the index: a
-/// Monte-Carlo run.
+/// Many motions of one scene (Monte Carlo), with starts drawn at random or made from the index.
 ///
 ///   const auto result = ensemble(top, {.count = 10000}, [](std::size_t, MemberRandom& random) {
 ///     return EulerTop::State{.angular_velocity = {random.normal(0, 0.01), 0, 100}};
 ///   }, {.output_times = {60}});
 ///
-/// Members run side by side, as many as a pack has lanes, where the scene's rates calculate with
-/// packs: index / lanes says with whom. Results are therefore the same to the last bit for any
-/// number of threads and for any ranges of indices the ensemble is divided into; another width of
-/// packs changes them within the tolerance. A pack that one of its members stops is run again one
-/// by one, so that a member fails for reasons of its own only.
+/// Members run side by side, one for each lane of a pack, if the scene's rates accept packs.
+/// Members with the same index / lanes share a pack. Results are therefore equal to the last bit
+/// for any number of threads and any division into ranges of indices. Another width of packs
+/// changes the results within the tolerance. If one member stops its pack, the members run again
+/// one by one, so that each fails only for a reason of its own.
 ///
-/// Steps are explicit (ExplicitRungeKutta): stiff members take many, and fail at options.max_evaluations.
+/// Steps are explicit (ExplicitRungeKutta): stiff members take many steps and fail at
+/// options.max_evaluations.
 ///
 /// N      : the pack; or double, for members one by one
-/// make   : callable (index, MemberRandom&) -> State, from several threads at once; what it throws
+/// make   : callable (index, MemberRandom&) -> State, from several threads at once; its exception
 ///          makes the member fail
-/// Error  : of each member as options.tolerance asks, estimated as solve() does
+/// Error  : of each member within options.tolerance, estimated as in solve()
 /// Throws : InvalidInput if the options or the sampling are invalid; what sampling.progress throws
 template <class N = Pack, class Scene, class Make>
 [[nodiscard]] Ensemble<typename Scene::State> ensemble(const Scene& scene, const Sampling& sampling,
@@ -445,11 +448,11 @@ template <class N = Pack, class Scene, class Make>
                                      sampling);
 }
 
-/// The same with members that each have a scene of its own: other moments of inertia, other loads.
+/// The same with a scene for each member, for example with other moments of inertia or other loads.
 ///
-/// They share packs too where the scene can lie side by side with others of its kind: EulerTop; and
-/// CardanGyro in a frame at rest, with a free or regulated rotor, if all of a pack are symmetric or
-/// none is and all have one friction of the rotor. Others run one by one.
+/// Scenes share packs if their type allows it. EulerTop does. CardanGyro does in a frame at rest
+/// with a free or regulated rotor. All gyros of a pack must then be symmetric, or none, with the
+/// same friction of the rotor. Other scenes run one by one.
 ///
 /// make   : callable (index, MemberRandom&) -> Member<Scene>
 template <class N = Pack, class Make>

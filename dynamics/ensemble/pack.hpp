@@ -11,23 +11,23 @@
 
 namespace kreisel {
 
-/// Several numbers side by side, one a lane, that the processor calculates with at once: the number
-/// type of a scene that moves for as many members of an ensemble. Eigen takes it as a scalar.
+/// Several numbers side by side, one in each lane, for SIMD arithmetic. With this number type a
+/// scene moves for several members of an ensemble at once. Eigen accepts it as a scalar.
 ///
-/// Comparisons give a mask, one bool a lane, so code that branches on a number does not compile for
-/// packs before it says what it means: detail::any, detail::all or detail::select.
+/// Comparisons give a mask with one bool for each lane. Code that branches on a number does not
+/// compile for packs; detail::any, detail::all or detail::select state the intention.
 ///
-/// Operations are always put where they are called: as functions of their own, which g++ makes of
-/// them in large programs, they pass packs through memory, and that takes longer than they do.
+/// Operations are always inlined. As separate functions, which g++ makes of them in large programs,
+/// they pass packs through memory, and that costs more than the operations.
 ///
-/// Error : sine and cosine <= 1.2 * 2^-53 up to arguments of 1e9, root and the four operations as
+/// Error  : sine and cosine <= 1.2 * 2^-53 up to arguments of 1e9, root and the four operations as
 ///         those of double
 template <class Abi = std::experimental::simd_abi::native<double>>
 class BasicPack {
  public:
   using Numbers = std::experimental::simd<double, Abi>;
 
-  /// A bool a lane.
+  /// One bool for each lane.
   class Mask {
    public:
     using Bools = typename Numbers::mask_type;
@@ -45,7 +45,7 @@ class BasicPack {
     requires std::is_same_v<Bool, bool>
     operator Bool() const {
       static_assert(!std::is_same_v<Bool, bool>,
-                    "this code branches on a number, of which a pack has one a lane: say any(), "
+                    "this code branches on a number, but a pack has several: use any(), "
                     "all() or select() (motor/lanes.hpp), or run the members one by one: "
                     "ensemble<double>(...)");
       return false;
@@ -58,7 +58,7 @@ class BasicPack {
   static constexpr int lanes = static_cast<int>(Numbers::size());
 
   BasicPack() = default;
-  BasicPack(double x) : x_(x) {}  ///< in all lanes
+  BasicPack(double x) : x_(x) {}  ///< the same number in all lanes
   BasicPack(const Numbers& x) : x_(x) {}
 
   [[nodiscard]] const Numbers& numbers() const { return x_; }
@@ -130,14 +130,14 @@ class BasicPack {
     BasicPack cosine;
   };
 
-  /// Both at once: whoever asks for sine and cosine of one angle pays for them together.
+  /// Sine and cosine of an angle. Computing both together costs little more than one.
   ///
-  /// Of what is left of the angle less quarter turns, by polynomials for |x| <= pi/4, the best there
-  /// are of degrees 13 and 14: 2^-56 off.
+  /// Works on the angle reduced by quarter turns, |x| <= pi/4. The minimax polynomials of degrees
+  /// 13 and 14 err by 2^-56.
   [[nodiscard, gnu::always_inline]] static OnCircle on_circle(const BasicPack& angle) {
     constexpr double furthest = 1e9;
     constexpr double quarters_a_radian = 0.6366197723675814;
-    // pi/2 = a + b + c; a and b so short that their products with `quarters` are exact.
+    // pi/2 = a + b + c. a and b have so few digits that their products with `quarters` are exact.
     constexpr double a = 0x1.921fb4p0;
     constexpr double b = 0x1.4442dp-24;
     constexpr double c = 0x1.8469898cc517p-48;
@@ -155,7 +155,7 @@ class BasicPack {
     const BasicPack nearly = 1 - half;
     const BasicPack sine = x + x * z * of_sine;
     const BasicPack cosine = nearly + (((1 - nearly) - half) + zz * of_cosine);
-    // Of the four quarters, -2 to 1, odd ones swap both.
+    // The quarter, -2 to 1. Odd quarters swap sine and cosine.
     const BasicPack quarter = quarters - 4 * whole(0.25 * quarters + 0.125);
     const Mask odd = quarter * quarter == 1;
     const BasicPack up = select(odd, cosine, sine);
@@ -165,7 +165,7 @@ class BasicPack {
     return all(abs(angle) <= furthest) ? result : one_by_one(angle);
   }
 
-  /// Also where an angle is infinite or not a number.
+  /// Also for angles that are infinite or NaN.
   [[nodiscard, gnu::noinline, gnu::cold]] static OnCircle one_by_one(const BasicPack& angle) {
     OnCircle result;
     for (int i = 0; i < lanes; ++i) {

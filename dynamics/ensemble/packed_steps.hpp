@@ -13,7 +13,7 @@ namespace kreisel {
 
 namespace detail {
 
-/// Whether a scene's rates calculate with packs.
+/// True if a scene's rates accept packs.
 template <class Scene, class N>
 inline constexpr bool takes_packs = false;
 template <class Scene, class N>
@@ -26,14 +26,14 @@ requires(is_pack<N>&& int(Scene::Vector::RowsAtCompileTime) >
 
 }  // namespace detail
 
-/// As many motions of a scene as N has lanes, integrated step by step with common steps: the one
-/// that errs the most in proportion to its own size sets their length, so that each is held to the
-/// accuracy that it would be held to alone. What one of them is stopped by stops them all.
+/// As many motions of a scene as N has lanes, integrated with common steps. The member with the
+/// greatest relative error sets the step length, so that each member keeps the accuracy of a single
+/// run. A failure of one member stops all.
 ///
 /// N      : a pack; or double, for one motion of any scene
-/// Cost   : no memory is asked for while steps go on
-/// Throws : as Integrator does; ComputationFailed also where rounding in one's field keeps the accuracy
-///          from being met, which alone it would be forgiven for
+/// Cost   : steps allocate no memory
+/// Throws : as Integrator; also ComputationFailed if rounding in the field of one member prevents
+///          the accuracy, which is tolerated in a single run
 template <class Scene, class N = Pack>
 class PackedAdvance {
   static constexpr int components = int(Scene::Vector::RowsAtCompileTime);
@@ -50,15 +50,15 @@ class PackedAdvance {
   /// The states at the time `end`, before or after the present one.
   States to(double end) { return apart(steps_.advance_to(end)); }
 
-  /// One step towards `end`, whether a time lies within it, and the states there.
+  /// One step towards `end`, a test whether a time lies within it, and the states there.
   void step_towards(double end) { steps_.step_towards(end); }
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
   [[nodiscard]] States at(double time) { return apart(steps_.at(time)); }
 
-  /// Announces times at which the scene's guide or loads jump.
+  /// Sets the times at which the scene's guide or loads are discontinuous.
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
-  /// Of all together, who take the same steps.
+  /// The effort of all members together, which share their steps.
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double noise() const { return steps_.noise(); }
 

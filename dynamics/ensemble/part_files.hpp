@@ -20,20 +20,20 @@ struct MemberRange {
   std::size_t count;
 };
 
-/// The results of an ensemble, a row of text for each member, in parts that each have a file: what
-/// is there when a program ends, or one of several dies, need not be computed again. Several
-/// programs may write different parts of one folder.
+/// The results of an ensemble, one row of text for each member, in parts with a file each. If a
+/// program ends early, the existing parts need not be computed again. Several programs may write
+/// different parts of one folder.
 ///
-/// A file says of which ensemble it is and appears whole or not at all.
+/// A file names its ensemble and appears whole or not at all.
 class PartFiles {
  public:
-  /// How many members a part has: whole packs of any width.
+  /// Number of members in a part: whole packs of any width.
   static constexpr std::size_t members = 256;
   static_assert(members % Pack::lanes == 0);
 
-  /// `what` names seed, scene, options and all else that the rows depend on, in one line.
+  /// `what` is one line that names seed, scene, options and all other inputs of the rows.
   ///
-  /// Throws : InvalidInput where the folder cannot be made
+  /// Throws : InvalidInput if the folder cannot be made
   PartFiles(std::filesystem::path folder, std::string what, std::size_t count)
       : folder_(std::move(folder)), what_(std::move(what)), count_(count) {
     std::error_code error;
@@ -58,7 +58,7 @@ class PartFiles {
     return parts;
   }
 
-  /// Throws : ComputationFailed, InvalidInput where the file cannot be written
+  /// Throws : ComputationFailed or InvalidInput if the file cannot be written
   void write(std::size_t part, const std::vector<std::string>& rows) const {
     AtomicFile file(place(part));
     file.stream() << heading() << '\n';
@@ -66,18 +66,18 @@ class PartFiles {
     file.commit();
   }
 
-  /// Throws : InvalidInput for a file that cannot be read or is of another ensemble
+  /// Throws : InvalidInput if the file cannot be read or belongs to another ensemble
   [[nodiscard]] std::vector<std::string> read(std::size_t part) const {
     std::ifstream file(place(part));
     std::string line;
     if (!std::getline(file, line)) throw InvalidInput(place(part).string() + ": cannot be read");
     if (line != heading()) {
-      throw InvalidInput(place(part).string() + ": is of another ensemble: " + line);
+      throw InvalidInput(place(part).string() + ": belongs to another ensemble: " + line);
     }
     std::vector<std::string> rows;
     while (std::getline(file, line)) rows.push_back(line);
     if (file.bad() || rows.size() != range(part).count) {
-      throw InvalidInput(place(part).string() + ": has not a row for each member");
+      throw InvalidInput(place(part).string() + ": must have one row for each member");
     }
     return rows;
   }

@@ -8,8 +8,8 @@
 
 namespace kreisel {
 
-/// The random numbers of one member of an ensemble: a function of the seed, the member's index and
-/// how many were taken before, and of nothing else. No two members share any.
+/// The random numbers of one member of an ensemble. They depend only on the seed, the member's
+/// index and the count of numbers taken before. No two members share a sequence.
 ///
 /// Source : Philox4x32-10: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, Parallel random
 ///          numbers: as easy as 1, 2, 3, SC11 (2011); key: the seed, counter: the block and the

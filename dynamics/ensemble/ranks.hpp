@@ -7,19 +7,19 @@
 
 namespace kreisel {
 
-/// The processes of an MPI program, and a counter at rank 0 from which each takes what to do next:
-/// whoever is free takes it, rank 0 does its share too and need not answer.
+/// The processes of an MPI program, with a counter at rank 0 from which each takes its next task.
+/// Rank 0 computes too and need not answer the others.
 ///
-/// One object in a program, as long as it lives. Made and used by one thread.
+/// One object in a program, for its whole life. Used by one thread.
 ///
-/// Throws : ComputationFailed where MPI cannot be started
+/// Throws : ComputationFailed if MPI cannot be started
 class Ranks {
  public:
   Ranks(int& argc, char**& argv) {
     int level = 0;
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level) != MPI_SUCCESS ||
         level < MPI_THREAD_FUNNELED) {
-      throw ComputationFailed("MPI: does not start for a program with threads");
+      throw ComputationFailed("MPI: cannot be started for a program with threads");
     }
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
@@ -43,7 +43,7 @@ class Ranks {
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
 
-  /// 0, 1, 2, ...: each number goes to one rank.
+  /// 0, 1, 2, ...: each number goes to one rank only.
   [[nodiscard]] std::size_t next() {
     const unsigned long long one = 1;
     unsigned long long taken = 0;
@@ -53,10 +53,10 @@ class Ranks {
     return static_cast<std::size_t>(taken);
   }
 
-  /// Ends all ranks, which would wait for this one in vain.
+  /// Ends all ranks, which would otherwise wait for this one.
   void give_up(int status) { MPI_Abort(MPI_COMM_WORLD, status); }
 
-  /// Returns when all ranks have called it.
+  /// Returns after all ranks have called it.
   void wait_for_all() { MPI_Barrier(MPI_COMM_WORLD); }
 
  private:

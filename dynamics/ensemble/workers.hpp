@@ -12,11 +12,12 @@
 
 namespace kreisel::detail {
 
-/// Does `work(i, stop)` for i from 0 to count - 1 on so many threads, the caller's among them (0: as
-/// many as the machine runs at once); whoever is free takes the next. Says whether all was done.
+/// Calls `work(i, stop)` for i from 0 to count - 1 on the given number of threads, including the
+/// caller's. 0 threads: as many as the hardware runs at once. A free thread takes the next i.
+/// Returns true if all calls were made.
 ///
-/// progress : called with the share done after each, never by two threads at once; false, or an
-///            exception of work or progress, lets `stop` become true and nothing more begin
+/// progress : called with the completed share, never by two threads at once. If it returns false,
+///            or if work or progress throws, `stop` becomes true and no further call begins
 /// Throws   : the first exception of work or progress, after all threads have ended
 template <class Work>
 bool parallel_for(std::size_t count, int threads, const std::function<bool(double)>& progress,
@@ -51,7 +52,7 @@ bool parallel_for(std::size_t count, int threads, const std::function<bool(doubl
     try {
       while (others.size() + 1 < std::min(wanted, count)) others.emplace_back(take_turns);
     } catch (const std::system_error&) {
-      // The machine gives no more: fewer do the same.
+      // The system grants no more threads: fewer do the same work.
     }
     take_turns();
   }

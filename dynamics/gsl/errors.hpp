@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// While it lives, GSL returns its error codes instead of ending the program. GSL keeps one handler
+/// Scope in which GSL returns its error codes instead of ending the program. GSL has one handler
 /// for all threads.
 class GslErrorsReturned {
  public:

@@ -16,7 +16,7 @@ namespace kreisel::exact {
 
 namespace detail {
 
-/// Throws : ComputationFailed with GSL's words
+/// Throws : ComputationFailed with GSL's message
 inline void require_success(int status, const char* what) {
   if (status == GSL_SUCCESS) return;
   throw ComputationFailed(std::string(what) + ": " + gsl_strerror(status));
@@ -45,7 +45,7 @@ class PlainPendulum {
     if (!(omega > 0 && std::isfinite(omega))) {
       detail::refuse("omega", omega, "rad/s must be a finite number above 0");
     }
-    // K(k) = R_F(0, 1 - k^2, 1): from cos^2, not from 1 - sin^2, so that it is right near pi.
+    // K(k) = R_F(0, 1 - k^2, 1), with cos^2 in place of 1 - sin^2: this form is accurate near pi.
     const kreisel::detail::GslErrorsReturned guard;
     gsl_sf_result quarter;
     detail::require_success(
@@ -64,7 +64,7 @@ class PlainPendulum {
   ///
   /// Error : of angle and rate/omega, within one period: <= 16u (amplitude to 2), 64u (to 3), GSL's
   ///         own; later 2u |omega t| more              (tests/dynamics/gsl/pendulum.cpp)
-  /// Throws: InvalidInput for a time that is not finite
+  /// Throws : InvalidInput for a time that is not finite
   [[nodiscard]] State at(double time) const {
     if (!std::isfinite(time)) detail::refuse("time", time, "s must be finite");
     const kreisel::detail::GslErrorsReturned guard;

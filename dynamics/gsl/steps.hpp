@@ -21,7 +21,7 @@
 namespace kreisel {
 
 /// GSL's adaptive steppers. msbdf and bsimp need a Jacobian and are for stiff fields: bsimp as a
-/// rule, msbdf where 1e-4 will do.
+/// rule, msbdf if 1e-4 is enough.
 enum class GslMethod { rkf45, rk8pd, msadams, msbdf, bsimp };
 
 namespace detail {
@@ -34,11 +34,11 @@ namespace detail {
     case GslMethod::msbdf: return gsl_odeiv2_step_msbdf;
     case GslMethod::bsimp: return gsl_odeiv2_step_bsimp;
   }
-  refuse_steps("no such GslMethod: ", static_cast<int>(method));
+  refuse_steps("unknown GslMethod: ", static_cast<int>(method));
 }
 
-/// What Accuracy allows, as an error control for GSL: its own knows no blocks, and no size but the
-/// present one.
+/// GSL error control with the error bounds of Accuracy. GSL's own control has no blocks and uses
+/// the present size only.
 class GslControl {
  public:
   template <std::size_t n>
@@ -49,14 +49,14 @@ class GslControl {
     for (const int size : blocks) blocks_[used_++] = {static_cast<std::size_t>(size), 0};
   }
 
-  /// To be called with every state that stands.
+  /// Must be called with every accepted state.
   void note_size(const double* y) {
     for (std::size_t b = 0; b < used_; y += blocks_[b++].components) {
       blocks_[b].size = std::max(blocks_[b].size, norm(y, blocks_[b]));
     }
   }
 
-  /// The largest ratio of v to what a block's error may be.
+  /// The largest ratio of v to the error allowed for its block.
   [[nodiscard]] double ratio(const double* v) const {
     double worst = 0;
     for (std::size_t b = 0; b < used_; v += blocks_[b++].components) {
@@ -115,13 +115,13 @@ class GslControl {
 
 }  // namespace detail
 
-/// GSL's steppers behind the interface of ExplicitRungeKutta, for comparison and for stiff fields.
+/// GSL's steppers with the interface of ExplicitRungeKutta, for comparison and for stiff fields.
 ///
-/// GSL returns success with a NaN in the state. Here a field that is not finite makes GSL try a
-/// shorter step; where none helps, the last good time and state stay readable. What the field
-/// throws passes through unharmed. Neither state nor time is compensated. The accuracy is that of a
-/// step by GSL's own estimate, which msadams, msbdf and, at moderate stiffness, bsimp put too low:
-/// by 100 at times.
+/// GSL returns success with a NaN in the state. This class makes GSL try a shorter step if the
+/// field is not finite. If no step succeeds, the last accepted time and state stay readable.
+/// Exceptions of the field pass through. Neither state nor time is compensated. The accuracy is
+/// that of one step by GSL's own estimate. The estimates of msadams, msbdf and, at moderate
+/// stiffness, bsimp are too low, sometimes by a factor of 100.
 ///
 /// Source : GSL 2.7 reference manual, ordinary differential equations
 /// Field  : callable (double t, Vector y) -> Vector
@@ -158,12 +158,12 @@ class GslSteps {
                            " needs a Jacobian: forward_jacobian(field) makes one");
     }
     control_.note_size(y_.data());
-    // msadams and msbdf ask their driver for the control, and for nothing else.
+    // msadams and msbdf read only the control from their driver.
     driver_.c = &gsl_control_;
     gsl_odeiv2_step_set_driver(step_.get(), &driver_);
   }
 
-  // GSL keeps pointers to it.
+  // GSL keeps pointers to this object.
   GslSteps(const GslSteps&) = delete;
   GslSteps& operator=(const GslSteps&) = delete;
 
@@ -171,7 +171,7 @@ class GslSteps {
   [[nodiscard]] const Vector& y() const { return y_; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
-  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(double end) {
     if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
     if (end == t_) return y_;
@@ -188,7 +188,7 @@ class GslSteps {
  private:
   static constexpr int dimension = Vector::RowsAtCompileTime;
 
-  /// The steppers' memory of the steps before.
+  /// Clears the steppers' memory of earlier steps.
   void forget() {
     gsl_odeiv2_step_reset(step_.get());
     gsl_odeiv2_evolve_reset(evolve_.get());
@@ -206,7 +206,7 @@ class GslSteps {
       length_ = 0;
       if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
       detail::stop_integration(t_, "GSL ", gsl_odeiv2_step_name(step_.get()),
-                               " finds no step short enough (", gsl_strerror(status), ')');
+                               " does not accept any step (", gsl_strerror(status), ')');
     }
     t_ = t;
     y_ = y;
@@ -214,7 +214,7 @@ class GslSteps {
     effort_.steps += 1;
   }
 
-  /// A hundredth of the time in which a block changes by its own size, as ExplicitRungeKutta does.
+  /// A hundredth of the time in which a block changes by its own size, as in ExplicitRungeKutta.
   [[nodiscard]] double first_length() {
     effort_.evaluations += 1;
     const Vector rate = field_(t_, y_);
@@ -223,17 +223,17 @@ class GslSteps {
     return worst > 0 ? 0.01 / worst : 1.0;
   }
 
-  /// C's frames lie between the field and us: no exception may cross them.
+  /// No exception may cross GSL's C frames, which lie between the field and the caller.
   template <class Call>
   [[nodiscard]] int guarded(const Call& call) {
     try {
       if (effort_.evaluations > accuracy_.max_evaluations) {
         detail::stop_integration(t_, accuracy_.max_evaluations, " evaluations are spent");
       }
-      return call() ? GSL_SUCCESS : GSL_ERANGE;  // GSL answers the latter with a shorter step
+      return call() ? GSL_SUCCESS : GSL_ERANGE;  // GSL answers ERANGE with a shorter step
     } catch (...) {
       thrown_ = std::current_exception();
-      return GSL_EBADFUNC;  // and this one by giving up
+      return GSL_EBADFUNC;  // and gives up at EBADFUNC
     }
   }
 
@@ -268,7 +268,7 @@ class GslSteps {
   Accuracy accuracy_;
   double t_;
   Vector y_;
-  double length_ = 0;  ///< of the next step; 0 asks for a first one
+  double length_ = 0;  ///< of the next step; 0: a first length is computed
   IntegrationStatistics effort_;
   std::exception_ptr thrown_;
   detail::GslControl control_;

@@ -8,13 +8,13 @@
 
 namespace kreisel {
 
-/// The gravitation of the WGS84 ellipsoid (closed form) at the body's centre of mass, wherever it
-/// is.
+/// The gravitation of the WGS84 ellipsoid (closed form) at the body's centre of mass, at any
+/// height.
 ///
-/// Inertial is the frame at the earth's centre, z to the pole, as earth_frame() has it; how far the
-/// earth has turned does not matter to a body of revolution. The centrifugal part of gravity is not
-/// in it: that is the guide's motion. The field's gradient over the body is left out (see
-/// OblateGravitation).
+/// Inertial is the frame at the earth's centre with z to the pole, as in earth_frame(). The earth's
+/// rotation angle does not matter, because the ellipsoid is a body of revolution. The centrifugal
+/// part of gravity is not included: it comes from the guide's motion. The field's gradient over the
+/// body is left out (see OblateGravitation).
 ///
 /// Error  : in dual numbers the field's gradient is a difference: 2e-12 of it
 struct EarthGravitation {

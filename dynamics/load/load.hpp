@@ -12,7 +12,7 @@
 
 namespace kreisel {
 
-/// Where a body is and how it moves at one moment: what a load may depend on.
+/// Pose and motion of a body at one time: the arguments that a load may depend on.
 template <class S = double>
 struct LoadContext {
   S t = S(0);
@@ -21,7 +21,7 @@ struct LoadContext {
   FrameMotion<Guide, Inertial, S> guide = {};  ///< F and oF, at the guide's origin
   InertiaTensor<Body, S> inertia = {};
 
-  /// A vector on the axes of A, on the body's axes.
+  /// A vector given on the axes of A, on the body's axes.
   template <class A>
   [[nodiscard]] Vector3<S> on_body_axes(const Vector3<S>& v) const {
     const auto guide_to_body = X.value.rotation.transpose();
@@ -32,7 +32,7 @@ struct LoadContext {
     }
   }
 
-  /// The place of a point of the body in the frame A.
+  /// The position of a point of the body in the frame A.
   template <class A>
   [[nodiscard]] Vector3<S> place(const Vector3<S>& p_Body) const {
     if constexpr (std::is_same_v<A, Body>) return p_Body;
@@ -50,18 +50,18 @@ struct LoadContext {
   }
 };
 
-/// What acts on a body: called with a situation it gives force and torque about the body's origin,
-/// on body axes. A user's lambda is one. A load that has a potential says so by a member
-/// potential(situation), which the read-outs add up; one that does not look at LoadContext::guide by
-/// a static member ignores_guide = true, which spares scenes to work the guide out. A static member
-/// kind is its name in terms().
+/// A load: a callable that takes a LoadContext and returns force and torque about the body's
+/// origin, on body axes. A user's lambda is a load. A load with a potential declares it by a member
+/// potential(context), which the outputs add up. A load that does not read LoadContext::guide
+/// declares a static member ignores_guide = true: scenes then do not compute the guide. A static
+/// member kind is the load's name in terms().
 ///
-/// Energy is listed as an invariant only if each load has a member keeps_energy() that returns true:
-/// on a guide at rest the load then does no work but that of its potential(), which does not depend
-/// on the time. A load without that member counts as one that changes the energy.
+/// Energy is listed as an invariant only if each load has a member keeps_energy() that returns
+/// true. On a guide at rest the work of such a load is that of its potential(), which does not
+/// depend on time. A load without this member counts as one that changes the energy.
 ///
-/// Those here are called with situations in any numbers: what they do is differentiated by dual
-/// ones.
+/// The loads of this header accept contexts in any number type. Dual numbers differentiate their
+/// forces.
 template <class L, class S = double>
 concept Load = requires(const L& load, const LoadContext<S>& s) {
   { load(s) } -> std::same_as<Force<Body, S>>;
@@ -69,7 +69,7 @@ concept Load = requires(const L& load, const LoadContext<S>& s) {
 
 namespace detail {
 
-// Asked by name, a concept would be explained over twenty lines.
+// A named concept would make the compiler's message twenty lines long.
 template <class M>
 inline constexpr bool is_guide = GuideMotion<M>;
 template <class... Loads>
@@ -77,11 +77,10 @@ inline constexpr bool are_loads = (Load<Loads> && ...);
 
 }  // namespace detail
 
-/// Weight in a field of gravity that is uniform on the axes of A.
+/// Weight in a gravity field that is uniform on the axes of A.
 ///
-/// A = Guide: the field turns with the guide, as the plumb line of a laboratory on the earth does
-/// when g is the EFFECTIVE gravity and the guide's own motion is left out. A = Inertial:
-/// gravitation.
+/// A = Guide: the field turns with the guide. An example is a laboratory on the earth, if g is the
+/// EFFECTIVE gravity and the guide's own motion is left out. A = Inertial: gravitation.
 ///
 /// Units  : m/s^2
 template <class A, class S = double>
@@ -109,7 +108,7 @@ struct UniformGravity {
   }
 };
 
-/// A force at a point of the body and a torque about the body's origin, constant on the axes of A.
+/// A force at a point of the body, and a torque, both constant on the axes of A.
 ///
 /// Units  : N, N m, metre (point: body axes)
 template <class A, class S = double>
@@ -129,7 +128,7 @@ struct ConstantLoad {
   }
 };
 
-/// Drag of the surroundings that move with the guide:  force -k v', torque -d u'.
+/// Drag of a medium that moves with the guide: force -k v', torque -d u'.
 ///
 /// Units  : N s/m, N m s
 template <class S = double>
@@ -138,7 +137,7 @@ struct ViscousDrag {
   static constexpr bool ignores_guide = true;
 
   S torque_per_rate = S(0);     ///< d
-  S force_per_velocity = S(0);  ///< k, acting at the body's origin
+  S force_per_velocity = S(0);  ///< k, at the body's origin
 
   template <class N>
   [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
@@ -147,8 +146,8 @@ struct ViscousDrag {
   }
 };
 
-/// A coil spring, with a damper in line, between a point of the guide and a point of the body. It
-/// hinges freely at both ends and may be stretched to nothing only where its rest length is 0.
+/// A coil spring with a damper in line, between a point of the guide and a point of the body. Both
+/// ends are hinged. Its length may become 0 only if its rest length is 0.
 ///
 /// Units  : metre, N/m, N s/m
 /// Throws : ComputationFailed where both ends meet and a rest length above 0 leaves no direction
@@ -186,8 +185,8 @@ struct Spring {
   }
 };
 
-/// A rubber mount: restoring force in all directions between a point of the body and the point of
-/// the guide where it sits unloaded; matrices on guide axes.
+/// A rubber mount: a restoring force in all directions between a point of the body and a point of
+/// the guide. The mount is unloaded if both points meet. Its matrices are on guide axes.
 ///
 /// Units  : metre, N/m, N s/m, N
 template <class S = double>
@@ -212,8 +211,9 @@ struct ElasticMount {
     return {{f, end.cross(f)}};
   }
 
-  /// A stiffness that is not symmetric has no potential. Rounding passes: K = R D R^t in double is
-  /// symmetric up to 12u of its norm, which is at most three times its greatest element.
+  /// A stiffness that is not symmetric has no potential. Rounding is tolerated: K = R D R^t in
+  /// double is symmetric up to 12u of its norm. The norm is at most three times the greatest
+  /// element.
   [[nodiscard]] bool keeps_energy() const {
     using std::abs;
     S greatest(0);

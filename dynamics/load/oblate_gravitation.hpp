@@ -6,7 +6,7 @@
 
 namespace kreisel {
 
-/// The gravitation of a planet with its flattening's first term, at the body's centre of mass.
+/// The gravitation of a planet at the body's centre of mass, with the first term of the flattening.
 ///
 ///   g = -(GM / r^2) [ (1 + k (1 - 5 s^2)) e_r + 2 k s e_z ],   k = (3/2) J2 (R / r)^2,  s = z / r
 ///

@@ -13,26 +13,27 @@
 
 namespace kreisel {
 
-/// How exact an integration is to be.
+/// Accuracy and limits of an integration.
 struct Accuracy {
-  /// Bound of the error made in one step, relative to each block of the state; 1e-16 to 1e-2. ExplicitRungeKutta
-  /// and TaylorSteps go down to 1e-20: what a method errs by adds up, what is rounded hardly does.
+  /// Bound of the error made in one step, relative to each block of the state; 1e-16 to 1e-2.
+  /// ExplicitRungeKutta and TaylorSteps accept values down to 1e-20: truncation errors add up over
+  /// the steps, rounding errors hardly do.
   double relative = 1e-14;
 
-  /// A block smaller than this (in its SI unit) counts as being so large. Set it to the size of the
-  /// signal where that is smaller.
+  /// Smallest size of a block for relative errors, in the block's SI unit. Set it to the size of
+  /// the signal if that is smaller.
   double absolute_scale = 1e-3;
 
-  /// Evaluations of the field after which the integration gives up.
+  /// The integration gives up after so many evaluations of the field.
   double max_evaluations = 1e8;
 
-  /// By how many of its last digits the change in each step is made wrong, up or down at random
-  /// (ExplicitRungeKutta, TaylorSteps). Beside a run that is not shaken, one that is tells what rounding
-  /// grows to.
+  /// Perturbation of the change in each step, in units of its last digit, up or down at random
+  /// (ExplicitRungeKutta, TaylorSteps). The difference to an unperturbed run shows the growth of
+  /// rounding.
   double shaken = 0;
 };
 
-/// What an integration has cost so far.
+/// Cost of an integration so far.
 struct IntegrationStatistics {
   double steps = 0;
   double rejected = 0;
@@ -42,7 +43,7 @@ struct IntegrationStatistics {
 
 namespace detail {
 
-/// Accuracy::relative of methods that have no iterations of their own to end.
+/// Smallest Accuracy::relative of methods without inner iterations.
 inline constexpr double least_over_long_ways = 1e-20;
 
 inline void check(const Accuracy& accuracy, double least = 1e-16) {
@@ -61,8 +62,8 @@ inline void check(const Accuracy& accuracy, double least = 1e-16) {
   }
 }
 
-/// |v| of the components from `begin` on, also where their squares would leave the range; of each
-/// lane, if v holds those of packs.
+/// |v| of the components from `begin` on, also if their squares overflow or underflow;
+/// for packs lane by lane.
 template <class Vector>
 [[nodiscard]] typename Vector::Scalar norm(const Vector& v, int begin, int components) {
   using std::abs;
@@ -70,7 +71,7 @@ template <class Vector>
   using Number = typename Vector::Scalar;
   using Limits = std::numeric_limits<ScalarOf<Number>>;
   if (components == 1) return abs(v[begin]);
-  Number sum(0);  // a loop, because g++ 12 sees v.segment().norm() read past the end of v
+  Number sum(0);  // a loop: g++ 12 warns that v.segment().norm() reads past the end of v
   for (int i = begin; i < begin + components; ++i) sum += v[i] * v[i];
   const Number smallest(Limits::min() / Limits::epsilon());
   const Number most(Limits::max());
@@ -87,10 +88,10 @@ template <class Vector>
   return select(largest > Number(0) && largest <= most, Number(largest * sqrt(sum)), largest);
 }
 
-/// The parts of a state that share unit and size, and how large each has been so far: what an error
-/// in it is measured by.
+/// The blocks of a state (parts that share unit and size) and the greatest size of each so far.
+/// Errors are measured relative to these sizes.
 ///
-/// Vector : of numbers, or of packs: then each lane is measured by its own sizes, and the worst counts
+/// Vector : of numbers, or of packs: each lane then has its own sizes, and the worst lane counts
 template <class Vector>
 class BlockSizes {
   using Number = typename Vector::Scalar;
@@ -98,7 +99,7 @@ class BlockSizes {
  public:
   using Scalar = ScalarOf<Number>;
 
-  /// Without any blocks all of y is one.
+  /// Without blocks the whole of y is one block.
   BlockSizes(std::span<const int> blocks, const Scalar& smallest, const Vector& y)
       : smallest_(smallest) {
     const int all = static_cast<int>(y.size());
@@ -112,20 +113,20 @@ class BlockSizes {
     note(y);
   }
 
-  /// To be called with every state that stands.
+  /// Must be called with every accepted state.
   void note(const Vector& y) {
     for (Block& block : blocks_) block.size = larger(block.size, norm(y, block));
   }
 
-  /// Takes over the sizes that blocks have had before.
+  /// Takes over the sizes of an earlier integration.
   void know(std::span<const double> sizes) {
     for (std::size_t i = 0; i < std::min(sizes.size(), blocks_.size()); ++i) {
       blocks_[i].size = larger(blocks_[i].size, Number(Scalar(sizes[i])));
     }
   }
 
-  /// The greatest size of each block so far, at least the smallest that counts; of packs the greatest
-  /// lane's.
+  /// The greatest size of each block so far, at least absolute_scale. In packs the greatest lane
+  /// counts.
   [[nodiscard]] std::vector<Scalar> sizes() const {
     std::vector<Scalar> result;
     for (const Block& block : blocks_) result.push_back(greatest_lane(scale(block)));
@@ -144,8 +145,9 @@ class BlockSizes {
     for (Block& block : blocks_) checkpoint(block.size, block.noise, block.wander);
   }
 
-  /// What rounding of the state leaves uncertain of its rate. Each step makes an error of that times
-  /// its length; `squares` is the sum of those lengths squared since this was noted last.
+  /// Records the uncertainty of the rate due to rounding of the state. The error of a step is this
+  /// uncertainty times the step's length. `squares` is the sum of squared step lengths since the
+  /// last call.
   void note_noise(const Vector& rate, const Scalar& squares) {
     for (Block& block : blocks_) {
       block.wander += squares * block.noise * block.noise;
@@ -153,7 +155,7 @@ class BlockSizes {
     }
   }
 
-  /// How far noise has led a block off by now, a random walk in proportion to its size.
+  /// Deviation of a block due to rounding so far: a random walk, relative to the block's size.
   [[nodiscard]] Scalar wander(const Scalar& squares) const {
     using std::sqrt;
     Number worst(0);
@@ -165,9 +167,9 @@ class BlockSizes {
     return greatest_lane(worst);
   }
 
-  /// The largest of the blocks' |error|, each in proportion to its size, which is |change| where
-  /// the step has made that. What `span` of noise in the rate makes is no error of the step. The
-  /// worst lane decides. A NaN stays.
+  /// The largest |error| of all blocks, relative to the block's size or to |change| if the step
+  /// changed the block by more. Rounding of the rate over `span` is not counted. The worst lane
+  /// decides. A NaN stays.
   template <class Error, class Change>
   [[nodiscard]] Scalar relative(const Error& error, const Change& change,
                                 const Scalar& span = Scalar(0)) const {
@@ -182,7 +184,7 @@ class BlockSizes {
     return greatest_lane(worst);
   }
 
-  /// A hundredth of the time in which a block changes by its own size, if it has one already.
+  /// A hundredth of the time in which a block changes by its own size, without blocks of size 0.
   [[nodiscard]] Scalar first_step(const Vector& rate) const {
     Number all_rates(0);
     for (const Block& block : blocks_) {
@@ -194,8 +196,8 @@ class BlockSizes {
     return fastest > Scalar(0) ? Scalar(Scalar(0.01) / fastest) : Scalar(1);
   }
 
-  /// The time in which a rate that changes by `bend` within h leads a block off its way by as much
-  /// as the block or its way are long. Infinite where no rate changes.
+  /// The time in which the curvature of the path deviates a block by its own size or by its path
+  /// length. `bend` is the change of the rate within h. Infinite if no rate changes.
   [[nodiscard]] Scalar bending_time(const Vector& rate, const Vector& bend, const Scalar& h) const {
     using std::sqrt;
     Number shortest(std::numeric_limits<Scalar>::infinity());
@@ -222,7 +224,7 @@ class BlockSizes {
     return detail::norm(v, block.begin, block.components);
   }
 
-  /// As std::max: of a NaN behind nothing stays.
+  /// Like std::max, but a NaN in either argument stays.
   [[nodiscard]] static Number larger(const Number& a, const Number& b) {
     return select(a < b, b, a);
   }

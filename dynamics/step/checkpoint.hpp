@@ -13,19 +13,19 @@
 
 namespace kreisel::detail {
 
-/// The numbers from which steps go on as if they had not stopped. Steps pass theirs to it in one
-/// order, whether it takes them down or sets them.
+/// The numbers that integration needs to continue as if it had not stopped. Steppers pass their
+/// members in one fixed order, both for saving and for restoring.
 class Checkpoint {
  public:
-  /// Takes down.
+  /// Saves.
   Checkpoint() = default;
 
-  /// Sets.
+  /// Restores.
   explicit Checkpoint(std::vector<double> numbers) : numbers_(std::move(numbers)), sets_(true) {}
 
   [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
 
-  /// Throws : InvalidInput where these are the numbers of other steps
+  /// Throws : InvalidInput if the numbers belong to a different stepper
   template <class... Values>
   void operator()(Values&... values) {
     (pass(values), ...);
@@ -35,7 +35,7 @@ class Checkpoint {
 
  private:
   static void require(bool fits) {
-    if (!fits) throw InvalidInput("the checkpoint is not of this run");
+    if (!fits) throw InvalidInput("the checkpoint belongs to a different run");
   }
 
   void pass(double& x) {

@@ -2,8 +2,8 @@
 
 namespace kreisel::detail {
 
-/// A sum and what rounding has taken from it (Kahan, Neumaier): over many steps the sum's error
-/// stays one rounding instead of growing with their number.
+/// A compensated sum: the value and its rounding error (Kahan, Neumaier). Over many steps the sum's
+/// error stays one rounding.
 template <class T>
 struct Compensated {
   T value;
@@ -16,8 +16,8 @@ struct Compensated {
     value = sum;
   }
 
-  /// Becomes from + increment, like add() but without a T for the time being: a vector of a size
-  /// known at run time only would ask for memory.
+  /// Sets this to from + increment. Unlike add() it makes no temporary T: a vector of dynamic size
+  /// would allocate memory.
   void set_sum(const Compensated& from, const T& increment) {
     rest = increment + from.rest;
     value = from.value + rest;

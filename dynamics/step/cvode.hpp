@@ -24,9 +24,9 @@
 
 namespace kreisel {
 
-/// CVODE's multistep methods of variable order: adams, of orders 1 to 12, by fixed-point iterations,
-/// where nothing is stiff and the field is dear; bdf, of orders 1 to 5, by Newton's method with a dense
-/// matrix, for stiff fields.
+/// CVODE's multistep methods of variable order. adams: orders 1 to 12, fixed-point iterations, for
+/// fields that are not stiff and expensive to evaluate. bdf: orders 1 to 5, Newton's method with a
+/// dense matrix, for stiff fields.
 enum class CvodeMethod { adams, bdf };
 
 namespace detail {
@@ -50,7 +50,7 @@ using Sundials = std::unique_ptr<std::remove_pointer_t<Pointer>, SundialsFree>;
 }
 
 [[nodiscard]] inline std::string cvode_flag(int flag) {
-  char* const name = CVodeGetReturnFlagName(flag);  // ours to free
+  char* const name = CVodeGetReturnFlagName(flag);  // freed here
   std::string text = name;
   std::free(name);
   return text;
@@ -58,17 +58,17 @@ using Sundials = std::unique_ptr<std::remove_pointer_t<Pointer>, SundialsFree>;
 
 }  // namespace detail
 
-/// SUNDIALS' CVODE behind the interface of ExplicitRungeKutta, for comparison, and for stiff fields of many
-/// components.
+/// SUNDIALS' CVODE with the interface of ExplicitRungeKutta, for comparison and for stiff fields of
+/// many components.
 ///
-/// A field that is not finite makes CVODE try a shorter step; where none helps, the last good time and
-/// state stay readable. What the field throws passes through unharmed. Neither state nor time is
-/// compensated. The accuracy is that of a step by CVODE's own estimate, as root mean square over the
-/// components; errors add up to 10 to 1000 times as much.
+/// CVODE tries a shorter step if the field is not finite. If no step succeeds, the last accepted
+/// time and state stay readable. Exceptions of the field pass through. Neither state nor time is
+/// compensated. The accuracy is that of one step by CVODE's own estimate, a root mean square over
+/// the components. The errors add up to 10 to 1000 times as much.
 ///
 /// Vector : Eigen::Matrix<double, n, 1>; n may be Eigen::Dynamic
 /// Field  : as ExplicitRungeKutta takes it
-/// J      : callable (double t, Vector y) -> Jacobian<n>, for bdf; without one CVODE takes differences
+/// J      : callable (double t, Vector y) -> Jacobian<n>, for bdf; default: CVODE's differences
 /// Blocks : as ExplicitRungeKutta
 /// Source : A. C. Hindmarsh et al., SUNDIALS, ACM TOMS 31 (2005) 363; its manual, release 6
 /// Cost   : about two evaluations a step, and some microseconds besides
@@ -103,15 +103,15 @@ class CvodeSteps {
     require(cvode_ != nullptr, "has no memory");
     put_state();
     require(CVodeInit(cvode_.get(), &call_field, t, state_.get()) == CV_SUCCESS &&
-                CVodeSetErrFile(cvode_.get(), nullptr) == CV_SUCCESS &&  // what it says is thrown
+                CVodeSetErrFile(cvode_.get(), nullptr) == CV_SUCCESS &&  // its message is thrown
                 CVodeSetUserData(cvode_.get(), this) == CV_SUCCESS &&
                 CVodeWFtolerances(cvode_.get(), &set_weights) == CV_SUCCESS &&
                 CVodeSetMaxNumSteps(cvode_.get(), -1) == CV_SUCCESS,
-            "refuses the task");
+            "does not accept the accuracy");
     method == CvodeMethod::adams ? iterate() : solve_by_newton();
   }
 
-  // CVODE keeps pointers to it.
+  // CVODE keeps pointers to this object.
   CvodeSteps(const CvodeSteps&) = delete;
   CvodeSteps& operator=(const CvodeSteps&) = delete;
 
@@ -119,13 +119,13 @@ class CvodeSteps {
   [[nodiscard]] const Vector& y() const { return y_; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
-  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(double end) {
     while (end != t_) step_towards(end);
     return y_;
   }
 
-  /// One step towards `end`, not past it.
+  /// One step towards `end`, not beyond `end`.
   void step_towards(double end) {
     if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
     if (end == t_) return;
@@ -134,33 +134,33 @@ class CvodeSteps {
     direction_ = std::copysign(1.0, end - t_);
     begin_ = t_;
     double t = t_;
-    require(CVodeSetStopTime(cvode_.get(), end) == CV_SUCCESS, "refuses the end");
+    require(CVodeSetStopTime(cvode_.get(), end) == CV_SUCCESS, "does not accept the end time");
     const int flag = CVode(cvode_.get(), end, state_.get(), &t, CV_ONE_STEP);
     note_effort();
     const bool finds_none = flag < 0 || !detail::finite(map(N_VGetArrayPointer(state_.get())));
-    // CVODE itself goes on for ever.
+    // CVODE itself never stops.
     const bool stands_still =
         t != end && std::abs(t - t_) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
     if (finds_none || stands_still) {
       broken_ = true;
       if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
-      detail::stop_integration(t_, "CVODE finds no step short enough (",
-                               finds_none ? detail::cvode_flag(flag) : "time does not move on",
-                               ')');
+      detail::stop_integration(
+          t_, "no step of CVODE succeeds (",
+          finds_none ? detail::cvode_flag(flag) : "the step is too short to advance time", ')');
     }
     t_ = t;
     y_ = map(N_VGetArrayPointer(state_.get()));
     effort_.steps += 1;
   }
 
-  /// Whether a time lies within the last step.
+  /// True if a time lies within the last step.
   [[nodiscard]] bool covers(double time) const {
     return time >= std::min(begin_, t_) && time <= std::max(begin_, t_);
   }
 
   /// The state at a time within the last step, by CVODE's own polynomial.
   ///
-  /// Throws : InvalidInput for a time outside of it
+  /// Throws : InvalidInput for a time outside the last step
   [[nodiscard]] Vector at(double time) {
     if (!covers(time)) {
       detail::refuse_steps("t = ", time, " s lies outside the last step, [", begin_, ", ", t_,
@@ -169,7 +169,7 @@ class CvodeSteps {
     if (time == t_) return y_;
     const detail::Sundials<N_Vector> there(N_VNew_Serial(count(), context_.get()));
     require(there && CVodeGetDky(cvode_.get(), time, 0, there.get()) == CV_SUCCESS,
-            "knows no state within its last step");
+            "has no state within its last step");
     return map(N_VGetArrayPointer(there.get()));
   }
 
@@ -200,19 +200,20 @@ class CvodeSteps {
         solver_ && CVodeSetLinearSolver(cvode_.get(), solver_.get(), matrix_.get()) == CV_SUCCESS,
         "has no linear solver");
     if constexpr (!std::is_same_v<J, NoJacobian>) {
-      require(CVodeSetJacFn(cvode_.get(), &call_jacobian) == CV_SUCCESS, "refuses the Jacobian");
+      require(CVodeSetJacFn(cvode_.get(), &call_jacobian) == CV_SUCCESS,
+              "does not accept the Jacobian");
     }
   }
 
-  /// From the present state, without memory of the steps before.
+  /// Restarts at the present state and clears the memory of earlier steps.
   void begin_again() {
     put_state();
-    require(CVodeReInit(cvode_.get(), t_, state_.get()) == CV_SUCCESS, "does not begin again");
+    require(CVodeReInit(cvode_.get(), t_, state_.get()) == CV_SUCCESS, "does not restart");
     before_ = effort_;
     broken_ = false;
   }
 
-  /// CVODE counts from where it began.
+  /// CVODE counts from its last restart.
   void note_effort() {
     long int rejected = 0;
     CVodeGetNumErrTestFails(cvode_.get(), &rejected);
@@ -223,7 +224,7 @@ class CvodeSteps {
     effort_.jacobians = before_.jacobians + static_cast<double>(jacobians);
   }
 
-  /// C's frames lie between the field and us: no exception may cross them.
+  /// No exception may cross CVODE's C frames, which lie between the field and the caller.
   template <class Call>
   [[nodiscard]] int guarded(const Call& call) {
     constexpr int try_shorter = 1;
@@ -261,7 +262,8 @@ class CvodeSteps {
     });
   }
 
-  /// One over what each component may err by, as Accuracy has it; called with every state that stands.
+  /// Sets the weights: one over the error that Accuracy allows in each component. Called with every
+  /// accepted state.
   static int set_weights(N_Vector y, N_Vector weights, void* self) {
     auto& steps = *static_cast<CvodeSteps*>(self);
     steps.sizes_.note(steps.map(N_VGetArrayPointer(y)));
@@ -285,7 +287,7 @@ class CvodeSteps {
   double direction_ = 1;
   bool broken_ = false;
   IntegrationStatistics effort_;
-  IntegrationStatistics before_;  ///< when CVODE began
+  IntegrationStatistics before_;  ///< at CVODE's last restart
   std::exception_ptr thrown_;
   detail::BlockSizes<Vector> sizes_;
   detail::Sundials<SUNContext> context_;

@@ -9,15 +9,15 @@
 
 namespace kreisel {
 
-/// Which way through zero counts.
+/// Direction of a zero crossing.
 enum class Crossing { any, rising, falling };
 
-/// Integrates until g(t, y) changes its sign, or to `end`. Returns the time of the crossing, at
-/// which the integration then stands and may go on; nothing when `end` is reached first.
+/// Integrates until g(t, y) changes its sign, or to `end`. Returns the time of the crossing, where
+/// the integration then stands and may continue. Returns nothing if `end` is reached first.
 ///
-/// The integration stands just behind the crossing, where g has its new sign: the next call finds
-/// the next one, and a zero of g at the start does not count. A g that touches zero without
-/// crossing is no event, nor are two crossings within a sixteenth of a step.
+/// The integration stands just behind the crossing, where g has its new sign. The next call
+/// therefore finds the next crossing, and a zero of g at the start does not count. A g that touches
+/// zero without crossing is no event. Two crossings within a sixteenth of a step are not found.
 ///
 /// Steps  : has step_towards, t, y, at and back_to, as ExplicitRungeKutta
 /// Error  : of the time 4 units in its last place beside that of the trajectory
@@ -56,19 +56,19 @@ template <class Steps, class Function>
           i == samples ? steps.t() : Scalar(from + length * Scalar(i) / Scalar(samples));
       const Scalar g_right = value(right);
       if (!counts(g_left, g_right)) {
-        if (g_right != Scalar(0)) {  // an exact zero waits for the sign behind it
+        if (g_right != Scalar(0)) {  // after an exact zero the next sign decides
           left = right;
           g_left = g_right;
         }
         continue;
       }
-      // Illinois: false position that halves the weight of an end which stays twice.
+      // Illinois method: false position that halves the weight of an end that stays twice.
       Scalar a = left, ga = g_left, b = right, gb = g_right;
       const Scalar close =
           Scalar(4) * std::numeric_limits<Scalar>::epsilon() * std::max(std::abs(a), std::abs(b));
       for (int k = 0; k < 200 && std::abs(b - a) > close; ++k) {
         Scalar c = k % 3 == 2 ? Scalar((a + b) / 2) : Scalar(b - gb * (b - a) / (gb - ga));
-        // Not onto an end: it would stay there for ever.
+        // Away from the ends: an iteration that reaches an end would not leave it.
         const Scalar margin = std::copysign(close / Scalar(2), b - a);
         c = b > a ? std::clamp(c, Scalar(a + margin), Scalar(b - margin))
                   : std::clamp(c, Scalar(b - margin), Scalar(a + margin));

@@ -21,19 +21,19 @@ namespace kreisel {
 
 /// Explicit Runge-Kutta integration of  y' = field(t, y)  with adaptive steps.
 ///
-/// State and time are added up with compensation, and weights make up for the rounding of the
-/// others, so that rounding does not grow with the number of steps, nor to one side. A step whose
-/// result is not finite is rejected and shortened like one that errs too much, so a field that only
-/// exists in a region is not left; the last good time and state stay readable.
+/// State and time are summed with compensation, and the weights are corrected for the rounding of
+/// their digits. Rounding then neither grows with the number of steps nor drifts to one side. A
+/// step with a result that is not finite is rejected and shortened, like one with too large an
+/// error. A field that exists only in a region is therefore not left. The last accepted time and
+/// state stay readable.
 ///
-/// Output between the ends of a step is of the method's full order and does not disturb the steps:
-/// at() reads a polynomial, which takes ten evaluations for the first output in a step and none for
-/// more.
+/// Output between the ends of a step has the method's full order and does not change the steps.
+/// at() evaluates a polynomial. The first output in a step costs ten evaluations, further ones cost
+/// none.
 ///
-/// Vector : Eigen::Matrix<S, n, 1>; n may be Eigen::Dynamic, and then all memory is asked for when
-///          the steps are made, none while they go on. Or Eigen::Matrix<Pack, n, 1>, for as many
-///          solutions as a pack has lanes, which share time and steps, both double: the solution that
-///          errs the most in proportion to its own size decides
+/// Vector : Eigen::Matrix<S, n, 1>; n may be Eigen::Dynamic, and then the constructor allocates all
+///          memory, the steps none. Or Eigen::Matrix<Pack, n, 1>: one solution for each lane. Time
+///          and step are then double and common to all, by the greatest relative error
 /// Field  : callable (S t, Vector y) -> Vector, or (S t, Vector y, Vector& rate), which writes into
 ///          a rate that has its size already
 /// Blocks : how many components, in turn, share a unit and a size, e.g. {4, 3} for a quaternion and
@@ -69,28 +69,27 @@ class ExplicitRungeKutta {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
-  /// Whether the last 20 steps that were looked at, every eighth, were as short as they were
-  /// because the field is stiff, not because the solution bends: then RadauSteps is the better
-  /// choice.
+  /// True if stiffness, not curvature of the solution, has limited the last 20 examined steps
+  /// (every eighth). RadauSteps is then the better choice.
   ///
   /// Source : Hairer, Wanner, Solving Ordinary Differential Equations II, IV.2: the greatest rate
   ///          of the field, from two stages at the same time, against what the method is stable for
   [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
-  /// Takes over the sizes that blocks have had before, which errors are measured by.
+  /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
   void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
 
-  /// Times at which the field jumps (a thrust that sets in, a guide that is jerked), in any order.
-  /// Steps end there exactly and see the field of their own side only.
+  /// Times at which the field is discontinuous (start of a thrust, jerk of a guide), in any order.
+  /// Steps end there exactly and evaluate the field only on their own side.
   void stop_at(std::vector<Scalar> jumps) { jumps_ = std::move(jumps); }
 
-  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(const Scalar& end) {
     while (end != t()) step_towards(end);
     return y();
   }
 
-  /// One step towards `end`, not past it.
+  /// One step towards `end`, not beyond `end`.
   void step_towards(const Scalar& end) {
     using std::abs;
     if (!std::isfinite(static_cast<double>(end)))
@@ -108,14 +107,14 @@ class ExplicitRungeKutta {
       if (!attempt(last ? left : std::copysign(step_, left))) continue;
       if (last) {
         time_ = {goal, Scalar(0)};
-        step_ = std::max(step_, wanted);  // it was the goal, not the error, that made it short
+        step_ = std::max(step_, wanted);  // the goal, not the error, made it short
       }
       return;
     }
   }
 
-  /// A first step of length h, or to `end` if that is nearer; false, and no step, where it does not
-  /// stand.
+  /// A first step of length h, or to `end` if that is nearer. Returns false and takes no step if
+  /// the step is rejected.
   [[nodiscard]] bool try_first_step(const Scalar& h, const Scalar& end) {
     const Scalar goal = detail::next_stop(t(), end, jumps_);
     begin_step(goal);
@@ -124,7 +123,8 @@ class ExplicitRungeKutta {
     return attempt(std::abs(left) <= h ? left : std::copysign(h, left));
   }
 
-  /// The step that another run of the same field has made last, whatever this one errs by in it.
+  /// Takes the last step of another run of the same field, with the same length and without an
+  /// error test.
   ///
   /// Throws : ComputationFailed if the field has no rate at a point of that step
   void follow(const ExplicitRungeKutta& leader) {
@@ -132,12 +132,12 @@ class ExplicitRungeKutta {
     last_stage_time_ = leader.last_stage_time_;
     begin_step(last_stage_time_);
     if (!attempt(h, true)) {
-      detail::stop_integration(t(), "a step that another run has made leads out of the field");
+      detail::stop_integration(t(), "the step of the leading run leaves the region of the field");
     }
     time_ = leader.time_;
   }
 
-  /// Whether a time lies within the last step.
+  /// True if a time lies within the last step.
   [[nodiscard]] bool covers(const Scalar& time) const {
     const Scalar& from = before_.time.value;
     return time >= std::min(from, t()) && time <= std::max(from, t());
@@ -145,14 +145,14 @@ class ExplicitRungeKutta {
 
   /// The state at a time within the last step.
   ///
-  /// Throws : InvalidInput for a time outside of it
+  /// Throws : InvalidInput for a time outside the last step
   [[nodiscard]] Vector at(const Scalar& time) {
     Vector result;
     at(time, result);
     return result;
   }
 
-  /// The same, written in place.
+  /// As above, written to `result`.
   void at(const Scalar& time, Vector& result) {
     const Scalar& from = before_.time.value;
     if (!covers(time)) {
@@ -180,11 +180,11 @@ class ExplicitRungeKutta {
     before_.rate.setZero();
   }
 
-  /// What rounding of the state has made of it, by way of its rates: in proportion to size, as
-  /// sampled now and then.
+  /// Error of the state due to rounding of its rates, relative to size; sampled at intervals.
   [[nodiscard]] Scalar noise() const { return Scalar(0.5) * sizes_.wander(squares_); }
 
-  /// What the steps go on from, outputs within the last step included.
+  /// Saves or restores all members from which the steps continue, with outputs within the last
+  /// step.
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
     checkpoint(time_, state_, step_, steps_taken_, squares_, log_worst_before_, rejected_.step,
@@ -200,7 +200,7 @@ class ExplicitRungeKutta {
   template <class T>
   using Compensated = detail::Compensated<T>;
 
-  /// Where a step began, and the field there.
+  /// Start of a step: time, state, and the field there.
   struct Begin {
     Compensated<Scalar> time;
     Compensated<Vector> state;
@@ -208,7 +208,7 @@ class ExplicitRungeKutta {
     Scalar length = Scalar(0);
   };
 
-  /// The last try at this step, if it did not stand.
+  /// The last rejected try at this step.
   struct Rejected {
     Scalar step = Scalar(0);
     Scalar worst = Scalar(0);
@@ -232,7 +232,7 @@ class ExplicitRungeKutta {
 
   void fill_stage(std::size_t k, const Scalar& t, const Vector& y) { fill_stage_here(k, t, y); }
 
-  /// The same without a call.
+  /// As above, but inlined.
   [[gnu::always_inline]] void fill_stage_here(std::size_t k, const Scalar& t, const Vector& y) {
     if constexpr (Memory::fixed) {
       effort_.evaluations += 1;
@@ -242,7 +242,7 @@ class ExplicitRungeKutta {
     }
   }
 
-  /// Where a row of coefficients is not 0.
+  /// The indices of the coefficients of a row that are not 0.
   template <const auto& row>
   static constexpr auto occupied = [] {
     constexpr auto count =
@@ -255,8 +255,8 @@ class ExplicitRungeKutta {
     return places;
   }();
 
-  /// sum of c_j k_j over the stages by what part() takes of each, without what is 0; without the last
-  /// term or with it.
+  /// sum of c_j k_j over the stages, for part() of each stage, without zero terms. Optionally
+  /// without the last term.
   template <const auto& row, std::size_t without_last = 0, class Part>
   [[nodiscard, gnu::always_inline]] auto combined(const Part& part) const {
     constexpr auto& places = occupied<row>;
@@ -264,7 +264,7 @@ class ExplicitRungeKutta {
                          std::make_index_sequence<places.size() - without_last - 1>());
   }
 
-  /// The same, added to a sum from the row's term number `first` on.
+  /// As above, added to a sum, from the row's term number `first` on.
   template <const auto& row, std::size_t first, class Sum, class Part, std::size_t... k>
   [[nodiscard, gnu::always_inline]] auto added(const Sum& sum, const Part& part,
                                                std::index_sequence<k...> /*terms*/) const {
@@ -276,9 +276,9 @@ class ExplicitRungeKutta {
   template <std::size_t i>
   static constexpr auto row = Tableau::a[i];
 
-  /// Weights of the first and the last stage that make up for what rounding of the coefficients
-  /// takes from the conditions  sum_i b_i = 1  and  sum_ij b_i a_ij = 1/2.  It would be 1e-16 to the
-  /// same side in each step, with which energies drift as time and phases as its square.
+  /// Corrections of the first and the last weight for the rounding of the coefficients. They fulfil
+  /// the conditions sum_i b_i = 1 and sum_ij b_i a_ij = 1/2. Without them each step errs by 1e-16
+  /// to the same side: energies drift in proportion to time, phases in proportion to its square.
   struct Rest {
     Scalar first;
     Scalar last;
@@ -298,7 +298,8 @@ class ExplicitRungeKutta {
     return Rest{static_cast<Scalar>(missing - last), static_cast<Scalar>(last)};
   }();
 
-  /// sum of b_j k_j. The rest of the weights comes first: at the end it would be rounded away.
+  /// sum of b_j k_j. The corrections of the weights come first: at the end they would be rounded
+  /// away.
   template <class Part>
   [[nodiscard, gnu::always_inline]] auto mean_rate(const Part& part) const {
     return added<Tableau::b, 0>(rest_of_weights.first * part(stage_[0]) +
@@ -306,7 +307,8 @@ class ExplicitRungeKutta {
                                 part, std::make_index_sequence<occupied<Tableau::b>.size()>());
   }
 
-  /// The time of a stage in a step from `time` on, not past where the step sees the field.
+  /// The time of a stage in a step from `time` on, limited to the side of a discontinuity on which
+  /// the step lies.
   [[nodiscard]] Scalar stage_time(const Compensated<Scalar>& time, const Scalar& h,
                                   long double node) const {
     const Scalar stage_time = time.value + (static_cast<Scalar>(node) * h + time.rest);
@@ -320,8 +322,8 @@ class ExplicitRungeKutta {
     const auto fill = [&]<std::size_t k>() {
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
-      alignas(detail::Vec4d) alignas(Vector) typename Memory::Passing point = stage_.point();
-      // Only the last stage is waited for.
+      alignas(detail::Four) alignas(Vector) typename Memory::Passing point = stage_.point();
+      // Only the last stage depends on its predecessors.
       Memory::put(
           point, [&](const auto& part) __attribute__((always_inline)) {
             if constexpr (occupied<row<k>>.size() == 1) {
@@ -341,13 +343,13 @@ class ExplicitRungeKutta {
     (fill.template operator()<i + 1>(), ...);
   }
 
-  /// The part of the time in which the rates change that a method of this order takes at a time, if
-  /// that is longer than what the rates themselves suggest; felt out by steps of Euler's, each a
-  /// hundred times as long as the one before. What merely runs on, like the angle of a fast rotor on
-  /// which nothing depends, is no reason for a short step.
+  /// First step length from the curvature: a fixed part of the time in which the rates change. It
+  /// counts if it is longer than the length that the rates suggest. It is found by Euler steps,
+  /// each a hundred times as long as the one before. A uniform motion, like the angle of a fast
+  /// rotor on which nothing depends, does not shorten the step.
   ///
-  /// Source : h = (0.01/d)^(1/order), d the second derivative in units of what is allowed: E. Hairer,
-  ///          S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, II.4
+  /// Source : h = (0.01/d)^(1/order), d the second derivative in units of the allowed error:
+  ///          E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, II.4
   [[nodiscard]] Scalar first_step(const Scalar& goal) {
     using std::abs;
     using std::pow;
@@ -370,7 +372,7 @@ class ExplicitRungeKutta {
     }
   }
 
-  /// The field where a step towards `goal` begins.
+  /// Evaluates the field at the start of a step towards `goal`.
   void begin_step(const Scalar& goal) {
     fill_stage(0, detail::on_this_side(t(), goal, jumps_), y());
     before_.time = time_;
@@ -379,9 +381,9 @@ class ExplicitRungeKutta {
     polynomial_known_ = false;
   }
 
-  /// One step of length h; says whether it stood. Sets the length of the next.
+  /// One step of length h; returns true if it is accepted. Sets the length of the next step.
   ///
-  /// follows : another run: then it stands, whatever its error
+  /// follows : the step repeats that of another run and is accepted whatever its error
   bool attempt(const Scalar& h, bool follows = false) {
     using std::abs;
     using std::exp;
@@ -406,7 +408,7 @@ class ExplicitRungeKutta {
     typename Memory::Passing error = stage_.error();
     Memory::put(change, [&](const auto& part) { return h * mean_rate(part); });
     Memory::put(error, [&](const auto& part) { return h * combined<Tableau::difference>(part); });
-    // In units of what is allowed.
+    // In units of the allowed error.
     const Scalar worst = sizes_.relative(error, change, Scalar(4) * abs(h)) / allowed_;
     const bool finite = isfinite(static_cast<double>(worst)) && detail::finite(change);
     if (!finite || (worst > Scalar(1) && !follows)) {
@@ -433,7 +435,8 @@ class ExplicitRungeKutta {
     using std::exp;
     using std::log;
     using std::max;
-    // PI: the next step answers this one's error and, a little, its change since the step before.
+    // PI controller: the next length depends on this step's error and, weakly, on its change since
+    // the last step.
     constexpr Scalar little = Scalar(0.04);
     const Scalar log_worst = log(max(worst, Scalar(1e-12)));
     const Scalar aim =
@@ -443,7 +446,7 @@ class ExplicitRungeKutta {
     log_worst_before_ = max(log_worst, Scalar(-9.21));
   }
 
-  /// The state at the end of a step that stands.
+  /// Accepts the state at the end of a step.
   void take(const Scalar& h, typename Memory::Passing change) {
     effort_.steps += 1;
     detail::shake(change, accuracy_.shaken, effort_.steps, static_cast<double>(h));
@@ -465,9 +468,10 @@ class ExplicitRungeKutta {
     short_steps_ = at_the_limit ? short_steps_ + 1 : 0;
   }
 
-  /// What does not fall with the step is rounding in the field, which no shorter step makes good: a
-  /// rate held to 1e-17 may well be a difference of terms that rounding has left only 1e-16 of.
-  /// After three steps that were rejected in vain so much is allowed, up to 1e-12.
+  /// Raises the allowed error if the error does not fall with the step. Such an error is rounding
+  /// in the field, which no shorter step reduces. An example is a rate held to 1e-17 that is a
+  /// difference of terms with rounding of 1e-16. After three rejections without success the error
+  /// of the step is allowed, up to 1e-12.
   void heed_rounding(const Scalar& h, const Scalar& worst) {
     using std::pow;
     const bool in_vain =
@@ -475,7 +479,8 @@ class ExplicitRungeKutta {
     rejected_ = {h, worst, in_vain ? rejected_.in_vain + 1 : 0};
     if (rejected_.in_vain < 2) return;
     if constexpr (detail::is_pack<Number>) {
-      detail::stop_integration(t(), "rounding in the field of one solution would loosen them all");
+      detail::stop_integration(t(),
+                               "rounding in the field of one member prevents the accuracy of all");
     }
     const Scalar most = std::max(Scalar(1e-12), Scalar(accuracy_.relative));
     allowed_ = std::min(most, Scalar(2) * worst * allowed_);
@@ -483,8 +488,8 @@ class ExplicitRungeKutta {
     rejected_ = {};
   }
 
-  /// How the rate at the step's begin answers a change of the state in its last digits. A stiff
-  /// spring far from its zero makes so much of them that steps would shrink to no avail.
+  /// Records the change of the rate for a change of the state in its last digits. A stiff spring
+  /// far from its zero amplifies these so much that steps would shrink in vain.
   void note_noise() {
     typename Memory::Passing moved = stage_.point();
     typename Memory::Passing rate = stage_.error();
@@ -512,7 +517,7 @@ class ExplicitRungeKutta {
     }
   }
 
-  /// The part of the step at which a stage stands that the polynomial meets.
+  /// The node, as a part of the step, of the polynomial's i-th interpolated stage.
   static constexpr long double met(std::size_t i) {
     const std::size_t stage = Tableau::met[i];
     return stage == 0 ? 0 : Tableau::later_node[stage - Tableau::stages];
@@ -520,7 +525,8 @@ class ExplicitRungeKutta {
 
   static constexpr std::size_t coefficients = Tableau::met.size() + 2;
 
-  /// By row the powers from 1 on of  N_m(x) = int_0^x prod_{i<m} (s - x_i) ds,  x_i of met() and 0.
+  /// Row m: the powers from 1 on of N_m(x) = int_0^x prod_{i<m} (s - x_i) ds, with x_i of met() and
+  /// 0.
   static constexpr auto newton = [] {
     std::array<std::array<long double, coefficients>, coefficients> N{};
     std::array<long double, coefficients + 1> product{1};
@@ -541,8 +547,9 @@ class ExplicitRungeKutta {
     return sum;
   }
 
-  /// The polynomial through the last step,  y = y0 + sum_m power_m N_m(x):  by Newton's divided
-  /// differences of rates, the ninth power of all stages, and the state at the step's end.
+  /// Fits the polynomial through the last step, y = y0 + sum_m power_m N_m(x). Its coefficients
+  /// come from Newton's divided differences of rates, the ninth power from all stages, and the
+  /// state at the step's end.
   void fit_polynomial() {
     fill_later_stages();
     constexpr std::size_t rates = Tableau::met.size();
@@ -577,15 +584,15 @@ class ExplicitRungeKutta {
   Compensated<Scalar> time_;
   Compensated<Vector> state_;
   Scalar step_ = Scalar(0);
-  unsigned steps_taken_ = 0;  ///< or what is left of their number
-  Scalar squares_{0};         ///< of steps, summed since noise was looked at
+  unsigned steps_taken_ = 0;  ///< modulo its range
+  Scalar squares_{0};         ///< of step lengths, since the last rounding sample
   Scalar log_worst_before_ = Scalar(0);
   Rejected rejected_;
-  Scalar allowed_;  ///< accuracy_.relative, or what rounding leaves of it
+  Scalar allowed_;  ///< accuracy_.relative, or the rounding level if that is higher
   Memory stage_;
   detail::BlockSizes<Vector> sizes_;
   std::vector<Scalar> jumps_;
-  Scalar last_stage_time_ = Scalar(0);  ///< none is later, on the way of the step
+  Scalar last_stage_time_ = Scalar(0);  ///< upper limit of stage times on the side of the step
   Begin before_;
   bool polynomial_known_ = false;
   int short_steps_ = 0;

@@ -9,8 +9,8 @@
 
 namespace kreisel::detail {
 
-/// Sizes and products of real and complex numbers without the care for infinities that the standard
-/// takes with complex ones: what is not finite stays so.
+/// Sizes and products of real and complex numbers, without the standard's special treatment of
+/// infinite complex numbers. Values that are not finite stay not finite.
 [[nodiscard]] inline double size(double a) { return std::abs(a); }
 [[nodiscard]] inline double size(const std::complex<double>& a) {
   return std::abs(a.real()) + std::abs(a.imag());
@@ -21,21 +21,20 @@ namespace kreisel::detail {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-/// The factors L U of a square matrix whose rows are exchanged for the largest pivots, for systems
-/// of the few components that a scene has.
+/// LU factorisation of a square matrix with row pivoting, for systems as small as a scene's state.
 ///
-/// Plain loops: at six complex components they take half the time of Eigen's factors of a size
-/// known at run time, at 200 no more (benchmarks/kernels.cpp), and they hardly cost in compiling.
+/// Plain loops. With six complex components they take half the time of Eigen's factors of dynamic
+/// size, with 200 the same time (benchmarks/kernels.cpp). They compile fast.
 template <class Number>
 class Factors {
  public:
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
   using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
 
-  /// The matrix to be factorised, until compute() puts its factors there.
+  /// The matrix to be factorised; compute() overwrites it with its factors.
   Matrix matrix;
 
-  /// A singular matrix gives solutions that are not finite.
+  /// A singular matrix leads to solutions that are not finite.
   void compute() {
     const Eigen::Index n = matrix.rows();
     exchanges_.resize(static_cast<std::size_t>(n));
@@ -52,7 +51,7 @@ class Factors {
     }
   }
 
-  /// Puts the solution in place of the right-hand side.
+  /// Overwrites the right-hand side with the solution.
   void solve(Vector& x) const {
     const Eigen::Index n = matrix.rows();
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -66,7 +65,7 @@ class Factors {
   }
 
  private:
-  /// Takes `factor` times the rows begin ... end of column k from those of a column.
+  /// Subtracts `factor` times the rows begin ... end of column k from those of a column.
   void subtract(Eigen::Index begin, Eigen::Index end, Eigen::Index k, Number factor,
                 Number* column) const {
     const Number* const from = &matrix(0, k);

@@ -11,10 +11,10 @@
 
 namespace kreisel {
 
-/// What the splitting needs of a body: how it moves free of torque, and what an impulse does to it.
+/// The flow of a body free of torque, and its change by an impulse, for splitting methods.
 ///
-/// start(q, w) makes a State of attitude and angular velocity, drift(state, time) moves it without
-/// torque, kick(state, impulse) adds the integral of a torque on body axes.
+/// start(q, w) makes a State of attitude and angular velocity. drift(state, time) moves it without
+/// torque. kick(state, impulse) adds the integral of a torque on body axes.
 template <class F>
 concept FreeFlow = requires(const F flow, typename F::State& state, const Eigen::Quaterniond& q,
                             const Vector3<double>& v, long double time) {
@@ -27,7 +27,7 @@ concept FreeFlow = requires(const F flow, typename F::State& state, const Eigen:
 
 namespace detail {
 
-/// Of one angle.
+/// Sine and cosine of one angle.
 struct SineCosine {
   double sine;
   double cosine;
@@ -52,7 +52,7 @@ struct SineCosine {
   SineCosine(double s, double c) : sine(s), cosine(c) {}
 };
 
-/// q <- q + q change, compensated. The norm is left alone, as motor/attitude.hpp explains.
+/// q <- q + q change, compensated. The norm is not corrected; motor/attitude.hpp gives the reason.
 inline void turn_by(Compensated<Eigen::Vector4d>& q, double scalar, const Vector3<double>& vector) {
   const Eigen::Quaterniond change(scalar, vector.x(), vector.y(), vector.z());
   q.add((Eigen::Quaterniond(q.value) * change).coeffs());
@@ -67,13 +67,13 @@ inline void require_start(const Eigen::Quaterniond& q, const Vector3<double>& w)
 
 }  // namespace detail
 
-/// The symmetric body free of torque, in axes that leave its excess of spin behind.
+/// The symmetric body free of torque, in axes that do not turn with its excess spin.
 ///
 ///   sigma' = (A - C)/A w_z,   L~ = Rz(sigma) (A w_x, A w_y, C w_z) = const,   q~' = q~ L~/(2A),
 ///   q = q~ exp(sigma e_z / 2)
 ///
-/// Nothing but q~ and sigma moves, q~ by a rotation about a fixed axis: w_z stays to the last bit,
-/// L~ too, and no step resolves the spin, whose angle sigma is summed up to 64 bits.
+/// Only q~ and sigma change, q~ by a rotation about a fixed axis. w_z and L~ stay exact to the last
+/// bit. No step resolves the spin: its angle sigma is summed with 64 bits.
 ///
 /// Source : F. Klein, A. Sommerfeld, Theorie des Kreisels, ch. I, regular precession
 /// Frame  : body z is the axis of symmetry
@@ -81,7 +81,7 @@ inline void require_start(const Eigen::Quaterniond& q, const Vector3<double>& w)
 /// Error  : a drift of any length <= 5e-15 rad, a short one less in proportion; besides 2^-64 of
 ///          the angles turned through                      (tests/dynamics/step/splitting.cpp)
 /// Cost   : drift and kick together 100 ns (g++ 12 -O2, EPYC)
-/// Throws : InvalidInput where no body has these moments or one is 0
+/// Throws : InvalidInput if no body has these moments or one is 0
 class SymmetricFreeFlow {
  public:
   struct State {
@@ -91,7 +91,7 @@ class SymmetricFreeFlow {
     detail::SineCosine half_spin;                           ///< of sigma/2
   };
 
-  /// A across, C along body z.
+  /// A: transverse, C: axial moment of inertia.
   SymmetricFreeFlow(double A, double C)
       : moments_(A, A, C),
         axial_(static_cast<long double>(C) / static_cast<long double>(A)),

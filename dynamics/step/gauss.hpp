@@ -16,7 +16,7 @@
 
 namespace kreisel {
 
-/// Gauss collocation in s stages, of order 2 s.
+/// Coefficients of Gauss collocation in s stages, order 2 s.
 ///
 /// With x = 2 c - 1 at the nodes c, the zeros of Legendre's P_s, and P_-1 = -1,
 ///
@@ -33,11 +33,12 @@ struct GaussCoefficients {
   Row node{};
   Row weight{};
 
-  /// a_ij/b_j. What keeps quadratic invariants is  a_ij/b_j + a_ji/b_i = 1,  not the digits:
-  /// whoever rounds these again takes those below the diagonal and gets the others from the sum.
+  /// a_ij/b_j. The condition a_ij/b_j + a_ji/b_i = 1 keeps quadratic invariants, whatever the
+  /// digits. To round again, round the elements below the diagonal and compute the others from the
+  /// sum.
   std::array<Row, s> ratio{};
 
-  /// b_i l_j(1 + c_i)/b_j: the stages of the next step, extrapolated.
+  /// b_i l_j(1 + c_i)/b_j: extrapolates to the stages of the next step.
   std::array<Row, s> ahead{};
 
   GaussCoefficients() {
@@ -56,7 +57,7 @@ struct GaussCoefficients {
         ratio[i][j] = (P[i][1] + 1) / 2;
         ahead[i][j] = 1;
         for (std::size_t k = 1; k < s; ++k) {
-          // P_s vanishes here, and what is left of it would only disturb the sum.
+          // P_s vanishes here, and its rounding residue would only disturb the sum.
           const long double upper = k + 1 < s ? P[i][k + 1] : 0;
           ratio[i][j] += P[j][k] * (upper - P[i][k - 1]) / 2;
           ahead[i][j] += static_cast<long double>(2 * k + 1) * P[j][k] * P_next[i][k];
@@ -93,26 +94,26 @@ struct GaussCoefficients {
 ///
 ///   Y_i = y + sum_j (a_ij/b_j) Z_j,   Z_i = h b_i field(t + c_i h, Y_i),   y <- y + sum_i Z_i
 ///
-/// is symmetric and symplectic, and rounding must not undo that: it would make energy drift with
-/// time where it could walk at random. Therefore the ratios a_ij/b_j are rounded to numbers that
-/// still fulfil a_ij/b_j + a_ji/b_i = 1 exactly, h b_i carries 64 bits, the stages are iterated
-/// until rounding stops them, not a tolerance, and state and time are added up with compensation.
-/// The first guess is the last step's collocation polynomial, continued; each stage takes the
-/// others as they are by then, which saves iterations and, as measured, a drift.
+/// is symmetric and symplectic. Rounding must not destroy that: energy would drift with time
+/// instead of a random walk. Therefore the ratios a_ij/b_j are rounded to numbers that still fulfil
+/// a_ij/b_j + a_ji/b_i = 1 exactly, and h b_i has 64 bits. The stages are iterated until rounding,
+/// not a tolerance, stops them. State and time are summed with compensation. The first guess is the
+/// continued collocation polynomial of the last step. Each stage uses the newest values of the
+/// others, which saves iterations and, as measured, reduces the drift.
 ///
 /// Source : Hairer, McLachlan, Razakarivony, Achieving Brouwer's law with implicit Runge-Kutta
 ///          methods, BIT 48 (2008) 231; the ratios: Antonana, Makazaga, Murua, Numerical Algorithms
 ///          76 (2017) 861
 /// Field  : as ExplicitRungeKutta takes it; smooth, not stiff
-/// Vector : as ExplicitRungeKutta; of a size known at run time only, steps ask for memory
-/// Blocks : as ExplicitRungeKutta; their sizes, those below `smallest` apart, say what of the stages' last
-///          change may be rounding, and what noise is in proportion to
+/// Vector : as ExplicitRungeKutta; steps allocate memory if its size is dynamic
+/// Blocks : as ExplicitRungeKutta; their sizes, at least `smallest`, are the reference for rounding
+///          of the stages and for rounding_level()
 /// Error  : pendulum of 0.1 rad, 6 to 12 steps a period, RMS of 6: after 1e4 periods energy 2e-14
 ///          relative, phase 1.5e-12 rad; after 1e5, 7e-14 and 2e-11: as sqrt(t) and t
 /// Cost   : 10 to 14 iterations of `stages` evaluations a step
 /// Limits : coefficients and steps have 64 bits, in wider scalars too
-/// Throws : InvalidInput for a step or a start that is none; ComputationFailed naming the time
-///          where the stages do not converge: the last good time and state stay readable
+/// Throws : InvalidInput for an invalid step or start; ComputationFailed naming the time at which
+///          the stages do not converge: the last accepted time and state stay readable
 template <class Vector, class Field, int stages = 8>
 class GaussIRK {
  public:
@@ -154,24 +155,22 @@ class GaussIRK {
   /// The greatest size of each block so far.
   [[nodiscard]] std::vector<Scalar> sizes() const { return sizes_.sizes(); }
 
-  /// What rounding of the state has made of it, by way of its rates: in proportion to size, as
-  /// sampled now and then.
+  /// Error of the state due to rounding of its rates, relative to size; sampled at intervals.
   [[nodiscard]] Scalar noise() const {
-    // Each stage rounds by itself: sqrt(sum b^2) of half a last digit.
+    // Each stage rounds independently: sqrt(sum b^2) of half a last digit.
     return Scalar(0.2) * sizes_.wander(squares_);
   }
 
-  /// Evaluations after which the integration gives up.
+  /// Limit of the evaluations, after which the integration gives up.
   void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
 
-  /// Steps no longer than this from here on.
+  /// Upper limit of the step length from here on.
   void take_steps_of(double step) {
     detail::require_step(step);
     step_ = step;
   }
 
-  /// Integrates to `end`, which is hit exactly, in equal steps no longer than the one asked for;
-  /// forwards or backwards.
+  /// Integrates to `end` exactly, in equal steps no longer than the limit, forwards or backwards.
   const Vector& advance_to(const Scalar& end) {
     const detail::EqualSteps steps(time_, end, step_);
     if (end == t()) return y();
@@ -195,7 +194,7 @@ class GaussIRK {
     return y();
   }
 
-  /// What the steps go on from.
+  /// Saves or restores the members from which the steps continue.
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
     checkpoint(step_, h_, time_, state_, stage_, continues_, sizes_, squares_, steps_taken_,
@@ -206,7 +205,7 @@ class GaussIRK {
   using Stages = Eigen::Matrix<Scalar, Vector::RowsAtCompileTime, stages>;
   using Square = Eigen::Matrix<Scalar, stages, stages>;
 
-  /// A step has failed if this many iterations have not brought the stages to rest.
+  /// A step has failed if the stages have not converged after this many iterations.
   static constexpr int most_iterations = 100;
 
   [[nodiscard]] static const GaussCoefficients<stages>& coefficients() {
@@ -227,7 +226,7 @@ class GaussIRK {
       weight_rest_[i] = static_cast<Scalar>(exact - static_cast<long double>(weight_[i]));
       node_[i] = static_cast<Scalar>(length * coefficients().node[i]);
     }
-    // The old stages serve as a guess for steps of nearly the old length only.
+    // The old stages are a guess only for steps of nearly the same length.
     if (!(std::abs(h - h_) < Scalar(0.1) * std::abs(h_))) continues_ = false;
     h_ = h;
   }
@@ -246,10 +245,10 @@ class GaussIRK {
             evaluate(t() + (node_[at] + time_.rest), point);
         const Vector z = weight_[at] * f + weight_rest_[at] * f;
         change = change.cwiseMax((z - stage_.col(i)).cwiseAbs());
-        stage_.col(i) = z;  // the stages after this one take the new value already
+        stage_.col(i) = z;  // the next stages use the new value already
       }
       if (!detail::finite(stage_)) break;
-      // Rounding makes no halves any more; but a slow start must not be taken for it.
+      // Changes that no longer halve are rounding. A slow start must not be taken for rounding.
       const bool shrinks = (change.array() < least.array() / Scalar(2)).any();
       if (!shrinks && at_rest(change)) {
         continues_ = true;
@@ -281,8 +280,8 @@ class GaussIRK {
     for (int i = 0; i < stages; ++i) stage_.col(i) = weight_[static_cast<std::size_t>(i)] * f;
   }
 
-  /// True if no block changes by more than rounding: of what it is now, or of the greatest size that it
-  /// has had, whose parts cancel where a motion has died out.
+  /// True if no block changes by more than rounding, of its present size or of its greatest size so
+  /// far. The latter matters for a motion that has died out, whose parts cancel.
   [[nodiscard]] bool at_rest(const Vector& change) const {
     constexpr Scalar rounding = 64 * std::numeric_limits<Scalar>::epsilon();
     Vector greatest(y().size());
@@ -308,17 +307,17 @@ class GaussIRK {
   Scalar h_ = Scalar(0);
   detail::Compensated<Scalar> time_;
   detail::Compensated<Vector> state_;
-  Square ratio_;  ///< transposed, as is the next: a column is what one stage takes of the others
+  Square ratio_;  ///< transposed, as is the next: column j holds what stage j takes of the others
   Square ahead_;
   std::array<Scalar, stages> weight_ = {};  ///< h b
   std::array<Scalar, stages> weight_rest_ = {};
   std::array<Scalar, stages> node_ = {};  ///< h c
   Stages stage_;                          ///< Z
-  bool continues_ = false;                ///< whether Z is that of the step before
+  bool continues_ = false;                ///< true if Z is that of the step before
   std::vector<int> block_sizes_;
   detail::BlockSizes<Vector> sizes_;
-  Scalar squares_{0};         ///< of steps, summed since noise was looked at
-  unsigned steps_taken_ = 0;  ///< or what is left of their number
+  Scalar squares_{0};         ///< of step lengths, since the last rounding sample
+  unsigned steps_taken_ = 0;  ///< modulo its range
   double most_evaluations_ = std::numeric_limits<double>::infinity();
   IntegrationStatistics effort_;
 };

@@ -8,7 +8,7 @@ namespace kreisel {
 
 namespace detail {
 
-/// The vector field of a scene, as a stepper calls it.
+/// The vector field of a scene as a callable for steppers.
 template <class Scene>
 struct SceneField {
   const Scene* scene;
@@ -19,7 +19,7 @@ struct SceneField {
   }
 };
 
-/// Of a scene that computes in a workspace.
+/// The field of a scene that computes in a workspace.
 template <class Scene>
 requires requires(const Scene& scene) { scene.workspace(); }
 struct SceneField<Scene> {
@@ -32,7 +32,7 @@ struct SceneField<Scene> {
   }
 };
 
-/// The scene's class knows its blocks, or only the scene itself does.
+/// The blocks of a scene: a static member of its class or a member of the object.
 template <class Scene>
 [[nodiscard]] auto blocks_of(const Scene& scene) {
   if constexpr (requires { scene.blocks(); }) {
@@ -65,14 +65,14 @@ class Integrator {
   /// The state at the time `end`, before or after the present one.
   State to(double end) { return scene_->from_vector(steps_.advance_to(end)); }
 
-  /// The state at a time on the way to `end`, not before the last one asked for; the steps go on as
-  /// if nobody had asked.
+  /// The state at a time on the way to `end`, not before the last requested time. The output does
+  /// not change the steps.
   State on_the_way(double time, double end) {
     while (!covers(time)) step_towards(end);
     return at(time);
   }
 
-  /// One step towards `end`, whether a time lies within it, and the state there.
+  /// One step towards `end`, a test whether a time lies within it, and the state there.
   void step_towards(double end) { steps_.step_towards(end); }
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
   [[nodiscard]] State at(double time) { return scene_->from_vector(steps_.at(time)); }
@@ -80,10 +80,10 @@ class Integrator {
   /// True if the field has proved stiff; see ExplicitRungeKutta::stiff().
   [[nodiscard]] bool stiff() const { return steps_.stiff(); }
 
-  /// Announces times at which the scene's guide or loads jump.
+  /// Sets the times at which the scene's guide or loads are discontinuous.
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
-  /// What the steps go on from.
+  /// Saves or restores the members from which the steps continue.
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
     checkpoint(steps_);

@@ -19,11 +19,11 @@ struct Jacobian {
   Eigen::Matrix<double, n, 1> of_time;   ///< df_i/dt
 };
 
-/// Stands for the Jacobian where a method needs none.
+/// Placeholder for the Jacobian of methods that need none.
 struct NoJacobian {};
 
-/// (t, y) -> Jacobian of a field that is a template on the number type, by forward differentiation:
-/// exact, and one evaluation of the field in dual numbers.
+/// (t, y) -> Jacobian of a field that is a template on the number type, by forward differentiation.
+/// The result is exact and costs one evaluation of the field in dual numbers.
 ///
 ///   const auto jacobian = forward_jacobian<2>([](const auto& t, const auto& y) { ... });
 ///
@@ -47,7 +47,7 @@ template <int n, class Field>
   };
 }
 
-/// (t, y) -> Jacobian of any field, by differences: for fields that know no dual numbers.
+/// (t, y) -> Jacobian of any field, by differences, for fields that do not accept dual numbers.
 ///
 /// Field  : as ExplicitRungeKutta takes it; n may be Eigen::Dynamic
 /// Error  : of of_state some 1e-8 of each column: good enough for the iterations of RadauSteps.
@@ -57,7 +57,7 @@ template <int n, class Field>
 [[nodiscard]] auto difference_jacobian(Field field) {
   using Vector = Eigen::Matrix<double, n, 1>;
   return [field = std::move(field)](double t, const Vector& y) {
-    Field own = field;  // which may write into a workspace
+    Field own = field;  // the field may write into a workspace
     const double little = std::sqrt(std::numeric_limits<double>::epsilon());
     const double size = std::max(y.template lpNorm<Eigen::Infinity>(), 1e-3);
     const Vector f = detail::rate_of(own, t, y);

@@ -12,7 +12,7 @@
 
 namespace kreisel::detail {
 
-/// Of  shift - J.
+/// Factors of shift - J.
 template <class Number>
 void factorise_shifted(const Eigen::MatrixXd& J, const Number& shift, Factors<Number>& factors) {
   const Eigen::Index n = J.rows();
@@ -140,8 +140,8 @@ RadauIntegrator::RadauIntegrator(const RadauCoefficients& coefficients, double t
   check(accuracy);
   if (!std::isfinite(t)) refuse_steps("the start time is not finite");
   if (!finite(y)) refuse_steps("the state at the start is not finite");
-  // The estimate is of order s + 1 where the step is of order 2 s: it is held against as much
-  // more as that makes.
+  // The estimate has order s + 1, the step order 2 s. The limit of the estimate is raised
+  // accordingly.
   const double order_of_estimate = stages() + 1.0;
   allowed_ = std::max(0.3 * std::pow(accuracy.relative, order_of_estimate / (2 * stages())),
                       accuracy.relative);
@@ -166,7 +166,7 @@ void RadauIntegrator::note_spectrum() {
   constexpr int steps_between = 4;
   const double fastest_before = fastest_;
   const Eigen::VectorXcd found = eigenvalues(tangent_);
-  // Twice the same eigenvalue 0 comes out as +- the square root of rounding.
+  // A double eigenvalue 0 is computed as +- the square root of rounding.
   const double rounding =
       64 * std::numeric_limits<double>::epsilon() * tangent_.cwiseAbs().maxCoeff();
   rates_of_field_.resize(2, found.size());
@@ -184,8 +184,8 @@ void RadauIntegrator::note_spectrum() {
 }
 
 double RadauIntegrator::limited(double step) const {
-  // A motion too small for the estimate has to grow as it should: a step of 3 time constants errs by
-  // 2e-9 of it.
+  // A motion too small for the estimate must still grow correctly: a step of 3 time constants errs
+  // by 2e-9 of the motion.
   const double limit = growth_ > 0 ? 3 / growth_ : step;
   return std::min({step, limit, barrier_.steps > 0 ? barrier_.length : step});
 }
@@ -299,9 +299,10 @@ bool RadauIntegrator::solve_stages(StiffField& field, const Compensated<double>&
                                    const Compensated<Eigen::VectorXd>& state, double h) {
   constexpr int most_iterations = 12;
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
-  // What is left errs to the same side in every step: it has to stay below what rounding makes.
+  // The remaining error of the iteration has the same sign in every step. It must stay below
+  // rounding.
   const double enough = std::max(accuracy_.relative / 20, rounding / 64);
-  // Rounding in a stiff field ends the descent before rounding of the state would.
+  // Rounding in a stiff field ends the descent before rounding of the state does.
   const double stalled = 1e3 * std::max(accuracy_.relative / 20, rounding);
   double change_before = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
@@ -401,9 +402,9 @@ bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool a
     step_ = std::abs(h) / 4;
     return false;
   }
-  // The estimate is of lower order and held against more than is allowed, which a motion of less than
-  // that can hide behind, if the steps do not resolve it: one that is left at the next output has to be
-  // as small as the accuracy.
+  // The estimate has a lower order and therefore a higher limit. An unresolved motion smaller than
+  // that limit is invisible to the estimate. If such a motion persists until the next output, it
+  // must be as small as the accuracy.
   double worst = estimate(h);
   const Unresolved fast = unresolved(std::abs(h), std::abs(output - t()));
   const bool is_new = fast.fastest > 0 && quiet_ == 0;

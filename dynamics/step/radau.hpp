@@ -22,7 +22,7 @@ namespace kreisel {
 
 namespace detail {
 
-/// A field and its Jacobian as RadauIntegrator asks for them. Results have their size already.
+/// The field and its Jacobian as RadauIntegrator calls them. Results have their size already.
 class StiffField {
  public:
   virtual ~StiffField() = default;
@@ -31,7 +31,7 @@ class StiffField {
   virtual void jacobian(double t, const Eigen::VectorXd& y, Eigen::MatrixXd& result) = 0;
 };
 
-/// Of states of the kind that the field takes.
+/// StiffField for states of the type that the field accepts.
 template <class Vector, class Field, class J>
 class StiffFieldOf final : public StiffField {
  public:
@@ -61,32 +61,34 @@ class StiffFieldOf final : public StiffField {
  private:
   Field field_;
   J jacobian_;
-  Vector rate_;  ///< of a size known at run time only, lest each call ask for memory
+  Vector rate_;  ///< a member, because a vector of dynamic size would allocate in each call
 };
 
-/// The stages Z of a Radau step and Newton's method for them. Plain loops, as in
+/// The stages Z of a Radau step and Newton's method for them. Plain loops, as in Factors: they
+/// compile in a tenth of the time of Eigen's products.
 /// Factors: they take the compiler a tenth of what Eigen's products do.
 class RadauStages {
  public:
-  /// The coefficients have to outlive it.
+  /// The coefficients must outlive this object.
   RadauStages(const RadauCoefficients& coefficients, int components);
 
   Eigen::MatrixXd value;  ///< Z, a column each
 
-  /// For the Jacobian of the field and a step of length h.
+  /// Factorises for the Jacobian of the field and a step of length h.
   void factorise(const Eigen::MatrixXd& J, double h);
 
-  /// The first guess for a step from the collocation polynomial of the one before: in the latter's
-  /// own time, 0 to 1, the new step begins at 1 + begin and is `length` long.
+  /// Sets the first guess from the collocation polynomial of the step before. In that step's own
+  /// time, 0 to 1, the new step begins at 1 + begin and has the given length.
   void guess(double begin, double length);
 
-  /// One iteration for  Z = h (A (x) 1) f,  f the field's rates at the stages; returns its change.
+  /// One iteration for Z = h (A (x) 1) f, with the field's rates f at the stages; returns its
+  /// change.
   const Eigen::MatrixXd& correct(const Eigen::MatrixXd& f, double h);
 
   /// sum_i weight_i Z_i
   [[nodiscard]] Eigen::VectorXd sum(const Eigen::VectorXd& weight) const;
 
-  /// By the real factor, in place: what the error estimate takes.
+  /// Solves with the real factor, in place, for the error estimate.
   void solve(Eigen::VectorXd& rate) const;
 
  private:
@@ -102,11 +104,11 @@ class RadauStages {
   std::vector<Factors<std::complex<double>>> complex_;
 };
 
-/// The steps of RadauSteps. They know sizes only at run time and of the field what they are given at
-/// each call, so that a program compiles them once for all its scenes.
+/// The step control of RadauSteps. Sizes are run-time values and the field is an argument, so that
+/// a program compiles this class once for all its scenes.
 class KREISEL_API RadauIntegrator {
  public:
-  /// The coefficients have to outlive it.
+  /// The coefficients must outlive this object.
   RadauIntegrator(const RadauCoefficients& coefficients, double t, const Eigen::VectorXd& y,
                   const Accuracy& accuracy, std::span<const int> blocks);
 
@@ -114,25 +116,26 @@ class KREISEL_API RadauIntegrator {
   [[nodiscard]] const Eigen::VectorXd& y() const { return state_.value; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
-  /// Takes over the sizes that blocks have had before, which errors are measured by.
+  /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
   void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
 
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
 
-  /// One step towards `end`, not past it.
+  /// One step towards `end`, not beyond `end`.
   ///
-  /// output : the next time at which the state is wanted: what has died out by then need not be
+  /// output : the next output time: motions that have decayed by then need not be
   ///          resolved
   void step_towards(StiffField& field, double end, double output);
 
-  /// The same, if a first step of length h stands; else nothing changes and false is returned.
+  /// The same, if a first step of length h is accepted. Otherwise nothing changes and the result is
+  /// false.
   [[nodiscard]] bool try_first_step(StiffField& field, double h, double end, double output);
 
-  /// The limit of a step's estimate, relative to sizes. It is above the accuracy, for the estimate is of
-  /// lower order than the step.
+  /// The limit of a step's error estimate, relative to sizes. It is above the accuracy, because the
+  /// estimate has a lower order than the step.
   [[nodiscard]] double allowed() const { return allowed_; }
 
-  /// The greatest rate of the field times the length of the last step.
+  /// Modulus of the dominant eigenvalue times the length of the last step.
   [[nodiscard]] double fastest_times_step() const { return fastest_ * std::abs(h_before_); }
 
   [[nodiscard]] bool covers(double time) const;
@@ -155,15 +158,15 @@ class KREISEL_API RadauIntegrator {
     Compensated<Eigen::VectorXd> state;
   };
 
-  /// The last try at a step that did not stand, while t is within it.
+  /// The last rejected try at a step, valid while t is within that step.
   struct Rejected {
     double end = 0;
-    double step = 0;  ///< 0 if there is none
+    double step = 0;  ///< 0: none
     double worst = 0;
   };
 
-  /// The longest step that resolves the fastest living motion: for how many steps it is kept to, and
-  /// for how many it will be the next time.
+  /// The longest step that resolves the fastest motion that is still excited. Also the number of
+  /// steps for which it holds, now and the next time.
   struct Barrier {
     double length = 0;
     int steps = 0;
@@ -177,42 +180,43 @@ class KREISEL_API RadauIntegrator {
 
   [[nodiscard]] int stages() const { return static_cast<int>(coefficients_->node.size()); }
 
-  /// Begins a step: the field, its Jacobian and, now and then, its spectrum.
+  /// Begins a step: evaluates the field, its Jacobian and, at intervals, the spectrum.
   void begin_step(StiffField& field, double goal);
   void note_spectrum();
 
-  /// The step length, kept so short that growing motions are resolved.
+  /// The step length, limited so that growing motions are resolved.
   [[nodiscard]] double limited(double step) const;
 
-  /// Motions that a step does not resolve: the greatest of their rates, and what part of the slowest
-  /// to die is left at the next output. 0 if there are none.
+  /// Motions that a step does not resolve: their greatest rate, and the remaining part of the
+  /// slowest to decay at the next output. 0 if there are none.
   struct Unresolved {
     double fastest = 0;
     double remains = 0;
   };
 
-  /// Of a step of length h, an output `left` ahead; those that have died out by then do not count.
+  /// The unresolved motions for a step of length h and an output at the distance `left`. Motions
+  /// that have decayed by then do not count.
   [[nodiscard]] Unresolved unresolved(double h, double left) const;
 
-  /// The estimated error of a step of length h whose stages are known, in units of allowed_.
+  /// The estimated error of a step of length h with known stages, in units of allowed_.
   [[nodiscard]] double estimate(double h);
 
-  /// The same without what a stiff field makes of a start off its slow motion, which is not the
-  /// step's error where it dies out.
+  /// As above, without the response of a stiff field to a start off its slow motion. If that
+  /// response decays, it is no error of the step.
   [[nodiscard]] double filtered_estimate(StiffField& field);
 
-  /// The same estimate without what rounding makes of it, which would never fall to the accuracy.
+  /// As above, without the contribution of rounding, which would never fall to the accuracy.
   [[nodiscard]] double estimate_beyond_rounding();
 
-  /// Sets the length of the next step after one of length h that erred by so much, by the controller
-  /// of Gustafsson.
+  /// Sets the length of the next step from the length h and the error of this one, by Gustafsson's
+  /// controller.
   void set_next_step(double h, double worst, bool again);
 
-  /// Shortens the next step after one of length h that erred by so much.
+  /// Shortens the next step after a rejected one of length h with the given error.
   void reject(double h, double worst, double most, double fastest);
 
   void evaluate(StiffField& field, double t, const Eigen::VectorXd& y, double* result);
-  /// The rate of the point that a step tries; whether there is one.
+  /// Evaluates the field at a trial point; returns false if the field is undefined there.
   [[nodiscard]] bool try_rate(StiffField& field, double at, double* result);
   void note_jacobian(StiffField& field);
 
@@ -220,18 +224,18 @@ class KREISEL_API RadauIntegrator {
   [[nodiscard]] bool solve_stages(StiffField& field, const Compensated<double>& time,
                                   const Compensated<Eigen::VectorXd>& state, double h);
 
-  /// Whether the error of a step, where a longer one was rejected before, has fallen with the length
-  /// no faster than a jump of the field lets it: then the estimate is the error, not far above it.
+  /// True if the field may be discontinuous within the step: since a longer rejected step the error
+  /// has fallen no faster than a discontinuity allows. The estimate then equals the error.
   [[nodiscard]] bool jumps_within(double h, double worst) const;
 
-  /// What is allowed where the estimate is the error, in units of allowed_.
+  /// The allowed error in units of allowed_, for steps whose estimate equals the error.
   [[nodiscard]] double least_allowed() const;
 
-  /// One step of length h; says whether it stood. Sets the length of the next.
+  /// One step of length h; returns true if it is accepted. Sets the length of the next step.
   bool attempt(StiffField& field, double h, double output, bool again);
 
-  /// A random walk: each stage is off by half a last digit, of which the mean over the stages stays.
-  /// What is damped within a step forgets what was.
+  /// Adds the rounding of this step to a random walk. Each stage is off by half a last digit, and
+  /// the mean over the stages stays. Motions that are damped within a step carry no rounding on.
   void note_noise();
 
   const RadauCoefficients* coefficients_;
@@ -242,17 +246,17 @@ class KREISEL_API RadauIntegrator {
   Compensated<Eigen::VectorXd> state_;
   Begin before_;
   std::vector<double> jumps_;
-  double start_time_ = 0;       ///< no stage is earlier
-  double last_stage_time_ = 0;  ///< or later
+  double start_time_ = 0;       ///< lower limit of stage times
+  double last_stage_time_ = 0;  ///< upper limit of stage times
   double step_ = 0;
-  double h_before_ = 0;  ///< of the step that the stages belong to; 0 if there is none
+  double h_before_ = 0;  ///< of the step to which the stages belong; 0: none
   double worst_before_ = 1;
   Rejected rejected_;
   Eigen::VectorXd rate_;
   RadauStages stages_;
-  Eigen::VectorXd noise_;  ///< of the state, squared
+  Eigen::VectorXd noise_;  ///< rounding level of the state, squared
   Eigen::MatrixXd rates_;  ///< at the stages
-  // Lest each step ask for memory.
+  // A member, so that steps allocate no memory.
   Eigen::MatrixXd kept_;
   Eigen::VectorXd point_;
   Eigen::VectorXd change_;
@@ -264,14 +268,14 @@ class KREISEL_API RadauIntegrator {
   double fastest_ = 0;              ///< the greatest modulus of them
   double growth_ = 0;               ///< the greatest real part, beyond rounding
   int steps_to_spectrum_ = 0;       ///< until the eigenvalues are computed anew
-  double looked_at_ = 0;            ///< length of the step for which they were
-  int quiet_ = 0;                   ///< steps for which nothing unresolved is taken to live
+  double looked_at_ = 0;            ///< length of the step at which they were computed
+  int quiet_ = 0;                   ///< steps for which unresolved motions count as decayed
   Barrier barrier_;
   IntegrationStatistics effort_;
   TrialFailure<double> failure_;
 };
 
-/// Of so many stages, made once.
+/// Coefficients for a number of stages, computed once.
 template <int stages>
 [[nodiscard]] const RadauCoefficients& radau_coefficients() {
   static const RadauCoefficients coefficients(stages);
@@ -282,17 +286,17 @@ template <int stages>
 
 /// Implicit integration of a stiff  y' = field(t, y)  with adaptive steps, by Radau IIA.
 ///
-/// A step is as long as what is slow allows: how hard a damped bearing is does not matter, from
-/// 1e3 to 1e12 N m/rad. A growing motion is resolved. An oscillation that is faster than the steps and
-/// does not die out before the next output is resolved too, if it is greater than the accuracy, and
-/// ExplicitRungeKutta does that at less cost; a smaller one is damped.
+/// The slow motions determine the step length. The stiffness of a damped bearing does not matter,
+/// from 1e3 to 1e12 N m/rad. A growing motion is resolved. An oscillation faster than the steps
+/// that persists until the next output is resolved if it is greater than the accuracy.
+/// ExplicitRungeKutta does that at less cost. A smaller oscillation is damped.
 ///
-/// Interface and meaning of the arguments as ExplicitRungeKutta; output within a step is of full order
-/// and takes a part of the step anew. Steps ask for memory.
+/// Interface and arguments as in ExplicitRungeKutta. Output within a step has full order and
+/// repeats a part of the step. Steps allocate memory.
 ///
 /// J      : callable (t, y) -> Jacobian<n>; forward_jacobian() or difference_jacobian() makes one.
 ///          It serves the iteration only: an error in it costs time, not digits
-/// Error  : of a step, as asked for; where the solution rests on a stiff spring whose own end moves,
+/// Error  : of a step, the accuracy; if the solution rests on a stiff spring whose own end moves,
 ///          the order falls to s + 1, and a step at accuracy a errs by up to a^((s + 1)/2s)
 /// Source : as RadauCoefficients; error estimate and controller of Gustafsson: IV.8 there
 /// Cost   : a step takes a Jacobian, (s + 1)/2 factorisations of the field's size and two to four
@@ -316,27 +320,27 @@ class RadauSteps {
   [[nodiscard]] const Vector& y() const { return y_; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
 
-  /// Times at which the field jumps, in any order. Steps end there exactly.
+  /// Times at which the field is discontinuous, in any order. Steps end there exactly.
   void stop_at(std::vector<double> jumps) { steps_.stop_at(std::move(jumps)); }
 
-  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(double end) {
     while (end != t()) step_towards(end);
     return y();
   }
 
-  /// One step towards `end`, not past it.
+  /// One step towards `end`, not beyond `end`.
   void step_towards(double end) {
     steps_.step_towards(field_, end, end);
     y_ = steps_.y();
   }
 
-  /// Whether a time lies within the last step.
+  /// True if a time lies within the last step.
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
 
   /// The state at a time within the last step.
   ///
-  /// Throws : InvalidInput for a time outside of it
+  /// Throws : InvalidInput for a time outside the last step
   [[nodiscard]] Vector at(double time) { return steps_.at(field_, time); }
 
   /// Goes back to a time within the last step and continues from there.
@@ -345,10 +349,11 @@ class RadauSteps {
     y_ = steps_.y();
   }
 
-  /// What rounding of the state has made of it, by way of its rates: in proportion to size.
+  /// Error of the state due to rounding of its rates, relative to size.
   [[nodiscard]] double noise() const { return steps_.noise(); }
 
-  /// What the steps go on from, outputs within the last step included.
+  /// Saves or restores all members from which the steps continue, with outputs within the last
+  /// step.
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
     steps_.pass(checkpoint);

@@ -30,7 +30,7 @@ using Reals = std::vector<Real>;
   return {P, before};
 }
 
-/// The zeros of  P_s - P_s-1,  moved from [-1, 1] to [0, 1]; the last is 1.
+/// The zeros of P_s - P_s-1, mapped from [-1, 1] to [0, 1]; the last is 1.
 [[nodiscard]] inline Reals nodes(std::size_t s) {
   Reals c(s, Real(1));
   for (std::size_t i = 0; i + 1 < s; ++i) {
@@ -49,9 +49,9 @@ using Reals = std::vector<Real>;
   return c;
 }
 
-/// The derivatives at x, the 0th first, of  (x - root_1) ... (x - root_count).
+/// The derivatives at x, from the 0th on, of (x - root_1) ... (x - root_count).
 [[nodiscard]] inline Reals derivatives(const Reals& roots, std::size_t count, Real x) {
-  Reals p{1};  // in powers of what is added to x
+  Reals p{1};  // in powers of the increment of x
   for (std::size_t i = 0; i < count; ++i) {
     p.insert(p.begin(), Real(0));
     for (std::size_t k = 0; k + 1 < p.size(); ++k) p[k] += (x - roots[i]) * p[k + 1];
@@ -61,14 +61,14 @@ using Reals = std::vector<Real>;
   return p;
 }
 
-/// sum_k derivative_k lambda^(n - k),  n the last k
+/// sum_k derivative_k lambda^(n - k), with n the last k
 [[nodiscard]] inline Complex homogeneous(const Reals& derivative, const Complex& lambda) {
   Complex sum = 0;
   for (const Real d : derivative) sum = sum * lambda + d;
   return sum;
 }
 
-/// The zeros of homogeneous(derivative, lambda), by Durand and Kerner.
+/// The zeros of homogeneous(derivative, lambda), by the method of Durand and Kerner.
 [[nodiscard]] inline std::vector<Complex> zeros(const Reals& derivative) {
   const std::size_t s = derivative.size() - 1;
   std::vector<Complex> z(s);
@@ -104,7 +104,8 @@ RadauCoefficients::RadauCoefficients(int stages)
     node[at(i)] = static_cast<double>(c[i]);
   }
 
-  // Of Lagrange's polynomials through 0 and the nodes, 1/(c_j prod (c_j - c_i)) each.
+  // Barycentric weights of Lagrange's polynomials through 0 and the nodes: 1/(c_j prod (c_j -
+  // c_i)).
   Reals barycentric(s);
   for (std::size_t j = 0; j < s; ++j) {
     barycentric[j] = 1 / c[j];
@@ -112,7 +113,7 @@ RadauCoefficients::RadauCoefficients(int stages)
       if (i != j) barycentric[j] /= c[j] - c[i];
     }
   }
-  std::vector<Reals> slope(s, Reals(s));  // of the j-th at c_i: A^-1
+  std::vector<Reals> slope(s, Reals(s));  // derivative of the j-th at c_i: A^-1
   for (std::size_t i = 0; i < s; ++i) {
     slope[i][i] = 1 / c[i];
     for (std::size_t j = 0; j < s; ++j) {
@@ -151,10 +152,10 @@ RadauCoefficients::RadauCoefficients(int stages)
     }
   }
 
-  // A second formula of order s that takes f(y) with the weight 1/real eigenvalue.
+  // A second formula of order s, which gives f(y) the weight 1/real eigenvalue.
   Reals second = weight;
   for (std::size_t j = 0; j < s; ++j) {
-    Real at_0 = 1;  // of Lagrange's polynomial through the nodes alone
+    Real at_0 = 1;  // value of Lagrange's polynomial through the nodes alone
     for (std::size_t i = 0; i < s; ++i) {
       if (i != j) at_0 *= c[i] / (c[i] - c[j]);
     }

@@ -16,7 +16,7 @@
 #include <motor/error.hpp>
 #include <motor/lanes.hpp>
 
-/// What the steppers share.
+/// Functions shared by the steppers.
 namespace kreisel::detail {
 
 template <class... Words>
@@ -36,12 +36,12 @@ template <class Failure = ComputationFailed, class S, class... Words>
   throw Failure(text.str());
 }
 
-/// Keeps the exception that a field throws at a point that a step only tries. A shorter step may avoid
-/// that point; if no step does, the exception is the reason to stop.
+/// Keeps the exception that a field throws at a trial point. A shorter step may avoid that point.
+/// If no step does, the exception is the reason to stop.
 template <class S>
 class TrialFailure {
  public:
-  /// Whether a step from t finds rates at all points that it asks for.
+  /// True if a step from t finds rates at all its points.
   template <class Ask>
   [[nodiscard]] bool is_spared(const S& t, const Ask& ask) {
     try {
@@ -54,7 +54,7 @@ class TrialFailure {
     }
   }
 
-  /// Throws it again, if it was met from t on.
+  /// Rethrows the exception if it was thrown at t or later.
   void tell(const S& t) const {
     if (last_ && t == t_) std::rethrow_exception(last_);
   }
@@ -78,7 +78,7 @@ inline void require_step(double step) {
   }
 }
 
-/// `end`, or the first jump on the way from t to it.
+/// `end`, or the first discontinuity between t and `end`.
 template <class S>
 [[nodiscard]] S next_stop(const S& t, const S& end, const std::vector<S>& jumps) {
   S next = end;
@@ -89,19 +89,19 @@ template <class S>
   return next;
 }
 
-/// True if a step of length h is the last one of the way that is `left`, up to 256 roundings of h.
+/// True if a step of length h is the last one of the distance `left`, up to 256 roundings of h.
 template <class S>
 [[nodiscard]] bool is_last(const S& h, const S& left) {
   using std::abs;
   return abs(left) <= abs(h) * (S(1) + S(256) * std::numeric_limits<S>::epsilon());
 }
 
-/// Whether a field writes its rate into a vector that has its size already.
+/// True if a field writes its rate into a vector that has its size already.
 template <class Field, class S, class Vector>
 inline constexpr bool writes_in_place =
     std::is_invocable_v<Field&, const S&, const Vector&, Vector&>;
 
-/// The rate that a field gives, whichever way it is called.
+/// The rate of a field, for both ways to call it.
 template <class Field, class S, class Vector>
 void call(Field& field, const S& t, const Vector& y, Vector& rate) {
   if constexpr (writes_in_place<Field, S, Vector>) {
@@ -111,7 +111,7 @@ void call(Field& field, const S& t, const Vector& y, Vector& rate) {
   }
 }
 
-/// The same as a new vector. What a field returns is that vector, wherever the caller puts it.
+/// As above, as a new vector. The field constructs the result in place, without a copy.
 template <class Field, class S, class Vector>
 [[nodiscard]] Vector rate_of(Field& field, const S& t, const Vector& y) {
   if constexpr (writes_in_place<Field, S, Vector>) {
@@ -123,7 +123,7 @@ template <class Field, class S, class Vector>
   }
 }
 
-/// A state as a vector of another kind.
+/// A state, converted to another vector type.
 template <class To, class From>
 [[nodiscard]] To vector_of(const From& y) {
   const auto components = static_cast<std::ptrdiff_t>(y.size());
@@ -132,7 +132,7 @@ template <class To, class From>
   return result;
 }
 
-/// A time just on this side of t where the field jumps at t, as seen from `side`; else t.
+/// The nearest time on the given side of t if the field is discontinuous at t; else t.
 template <class S>
 [[nodiscard]] S on_this_side(const S& t, const S& side, const std::vector<S>& jumps) {
   using std::nextafter;
@@ -140,7 +140,7 @@ template <class S>
   return jumps_here ? S(nextafter(t, side)) : t;
 }
 
-/// Moves the components of a state by so much in the last digit, up and down in turn.
+/// Moves the components of a state by a number of units in the last digit, up and down in turn.
 template <class Vector>
 void move_last_digits(Vector& y, double by) {
   using Number = typename Vector::Scalar;
@@ -152,9 +152,9 @@ void move_last_digits(Vector& y, double by) {
   }
 }
 
-/// Makes the change in a step wrong by so many of its last digits, each component up or down at
-/// random. The same step of the same length goes the same way again, another one does not: runs of
-/// other accuracy are shaken otherwise.
+/// Perturbs the change in a step by a number of units in the last digit, each component up or down
+/// at random. A repeated step of the same length is perturbed in the same way, another step
+/// differently. Runs of different accuracy are therefore perturbed differently.
 ///
 /// Source : the random bits: G. Steele, D. Lea, C. Flood, Fast splittable pseudorandom number
 ///          generators, OOPSLA 2014 (SplitMix64)
@@ -175,8 +175,8 @@ void shake(Vector& change, double digits, double step, double length) {
   }
 }
 
-/// `count` steps of one length, never above the one asked for. The length is kept to 64 bits: over
-/// many steps its rounding is an error of time that grows with them.
+/// `count` steps of equal length, at most the requested one. The length has 64 bits: over many
+/// steps its rounding is an error of time that grows with their number.
 struct EqualSteps {
   double count;
   long double length;
@@ -187,7 +187,7 @@ struct EqualSteps {
     const long double left =
         (static_cast<long double>(end) - static_cast<long double>(time.value)) -
         static_cast<long double>(time.rest);
-    // Ends given as a multiple of the step take that many, whatever rounding says.
+    // An end at a multiple of the step takes exactly that many steps, despite rounding.
     count = std::max(1.0, std::ceil(static_cast<double>(std::abs(left)) / step * (1 - 1e-12)));
     length = left / static_cast<long double>(count);
     const double moved = std::abs(static_cast<double>(length));

@@ -16,7 +16,7 @@
 namespace kreisel {
 
 /// A torque on body axes that depends on time and attitude alone. It must not depend on the
-/// quaternion's norm, which is 1 up to 1e-7 if it started so.
+/// quaternion's norm, which is 1 up to 1e-7 if the start was normalised.
 template <class T>
 concept AttitudeTorque = requires(const T torque, double t, const Eigen::Quaterniond& q) {
   { torque(t, q) } -> std::convertible_to<Vector3<double>>;
@@ -31,8 +31,8 @@ struct Strang {
   static constexpr std::array<long double, 1> kick = {1.0L};
 };
 
-/// Error  O(e h^8 + e^2 h^6 + e^3 h^4)  for a torque that is e times weaker than what the body's
-/// spin commands; order 4 for one that is not weak.
+/// Error O(e h^8 + e^2 h^6 + e^3 h^4) for a torque e times weaker than that of the spin; order 4
+/// for other torques.
 ///
 /// Source : S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, New families of
 ///          symplectic splitting methods for numerical integration in dynamical astronomy, Appl.
@@ -85,22 +85,23 @@ struct KahanLi8 {
   }();
 };
 
-/// A rigid body under a torque that depends on its attitude: exact free motion, broken by kicks.
+/// A rigid body under a torque that depends on its attitude: exact free motion, interrupted by
+/// kicks.
 ///
 ///   Theta w' + w x Theta w = torque(t, q)
 ///
-/// Fixed steps, symmetric in time. They need resolve the torque as the body meets it, not the spin.
-/// Steps that meet share their drift.
+/// Fixed steps, symmetric in time. They must resolve the torque as seen from the body, not the
+/// spin. Consecutive steps share a drift.
 ///
-/// Flow   : SymmetricFreeFlow, or one of yours. A body with three moments has elliptic functions to
-///          evaluate at each drift, and ExplicitRungeKutta is faster on it
+/// Flow   : SymmetricFreeFlow or another FreeFlow. A body with three moments has elliptic functions
+///          to evaluate at each drift: ExplicitRungeKutta is faster there
 /// Scheme : Blanes864 for fast tops, KahanLi8 for the last digits, Strang for 1e-4
 /// Error  : top of 3000 rad/s (A = 3e-4, C = 1e-4 kg m^2, 0.049 N m) after 10 s, in rad: Blanes864
 ///          1.3e-8 and, in smaller steps, 2.2e-10; KahanLi8 8e-15
 ///          (tests/dynamics/step/splitting.cpp)
 /// Cost   : 7 drifts and kicks a step, 17 with KahanLi8, 1 with Strang
-/// Throws : InvalidInput for a step or a start that is none; ComputationFailed naming the time
-///          where the torque is not finite: the last good time and state stay readable
+/// Throws : InvalidInput for an invalid step or start; ComputationFailed naming the time at which
+///          the torque is not finite: the last accepted time and state stay readable
 template <FreeFlow Flow, AttitudeTorque Torque, class Scheme = Blanes864>
 class SplittingSteps {
  public:
@@ -117,7 +118,7 @@ class SplittingSteps {
 
   [[nodiscard]] double t() const { return time_.value; }
 
-  /// Body to inertial, of the norm that it started with, up to 1e-7.
+  /// Body to inertial, with the norm of the start, up to 1e-7.
   [[nodiscard]] Eigen::Quaterniond attitude() const { return flow_.attitude(state_); }
 
   /// On body axes.
@@ -125,17 +126,16 @@ class SplittingSteps {
 
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
-  /// Evaluations after which the integration gives up.
+  /// Limit of the evaluations, after which the integration gives up.
   void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
 
-  /// Steps no longer than this from here on.
+  /// Upper limit of the step length from here on.
   void take_steps_of(double step) {
     detail::require_step(step);
     step_ = step;
   }
 
-  /// Moves to the time `end`, which is hit exactly, in equal steps no longer than the one asked
-  /// for; forwards or backwards.
+  /// Integrates to `end` exactly, in equal steps no longer than the limit, forwards or backwards.
   void advance_to(double end) {
     const detail::EqualSteps steps(time_, end, step_);
     if (end == t()) return;
@@ -163,7 +163,7 @@ class SplittingSteps {
   }
 
  private:
-  /// All but the last drift; says whether all torques were finite.
+  /// All but the last drift; returns true if all torques were finite.
   [[nodiscard]] bool step(long double h, long double first_drift) {
     long double passed = 0;
     for (std::size_t i = 0; i < Scheme::kick.size(); ++i) {

@@ -13,20 +13,20 @@
 
 namespace kreisel::detail {
 
-/// The stages of an explicit method, and the vectors that it needs only in passing.
+/// The stages of an explicit method and its temporary vectors.
 ///
-/// Of a size known to the compiler: stages are filled up with zeros to whole fours, which are stored,
-/// read and summed up as such (Eigen would take eight at once where it can, read from two stores, and
-/// wait for them); what passes stays in registers and on the stack.
+/// Stages of fixed size, padded with zeros to multiples of four. They are stored, read and summed
+/// in groups of four. Eigen would read groups of eight from two stores where it can, and wait for
+/// both. Temporaries stay in registers and on the stack.
 template <class Vector, std::size_t stages, int components = int(Vector::RowsAtCompileTime)>
 class StageMemory {
   using Scalar = typename Vector::Scalar;
-  // Longer ones are filled by loops, which store as much at once as is read.
+  // Longer stages are filled by loops, whose stores are as wide as the reads.
   static constexpr bool by_fours = std::is_same_v<Scalar, double> && components <= 16;
 
  public:
   static constexpr bool fixed = true;
-  /// So few that to call their field as a function costs as much as what it does.
+  /// So few that a call of their field costs as much as its work.
   static constexpr bool few = components < 4;
   static constexpr int padded = few && !by_fours ? components : (components + 3) / 4 * 4;
   using Stage = Eigen::Matrix<Scalar, padded, 1>;
@@ -36,7 +36,7 @@ class StageMemory {
 
   [[nodiscard]] const Stage& operator[](std::size_t k) const { return stage_[k]; }
 
-  /// Puts what `make` returns into stage k.
+  /// Puts the result of `make` into stage k.
   template <class Make>
   [[gnu::always_inline]] void keep(std::size_t k, const Make& make) {
     alignas(few ? 1 : alignof(Vec4d)) alignas(Vector) const Vector rate = make();
@@ -51,9 +51,9 @@ class StageMemory {
   [[nodiscard]] static Vector change() { return {}; }
   [[nodiscard]] static Vector error() { return {}; }
 
-  /// result = a sum of multiples of stages and states: terms(part) sums up what part() takes of each.
-  /// By fours it stays in registers, also where the compiler has so much to inline that it calls
-  /// assignments of Eigen's as functions.
+  /// result = a sum of multiples of stages and states: terms(part) sums up part() of each. In
+  /// groups of four the sum stays in registers. That holds also if the compiler inlines so much
+  /// that it calls Eigen's assignments as functions.
   template <class Terms>
   [[gnu::always_inline]] static void put(Vector& result, const Terms& terms) {
     if constexpr (by_fours) {
@@ -63,14 +63,14 @@ class StageMemory {
     }
   }
 
-  /// The part of a stage that is the state's own.
+  /// The part of a stage that corresponds to the state.
   template <class V>
   [[nodiscard]] static auto own(const V& v) {
     return v.template head<components>();
   }
 
  private:
-  /// Four numbers of a vector, or what it has of them and zeros.
+  /// Four numbers of a vector, padded with zeros.
   template <int first, class V>
   [[nodiscard, gnu::always_inline]] static Vec4d vec4d_of(const V& v) {
     constexpr int left = int(V::RowsAtCompileTime) - first;
@@ -105,9 +105,10 @@ class StageMemory {
   std::array<Stage, stages> stage_;
 };
 
-/// Of packs. A field writes its rates where they will be read: copies are no wider than the compiler
-/// likes, and the processor waits where two of its stores make one pack. For the same reason a sum
-/// of stages is computed component by component where it is used, and never stored as a vector.
+/// Stages of packs. A field writes its rates directly to their final place. Copies are no wider
+/// than the compiler likes, and the processor waits if two of its stores make one pack. For the
+/// same reason a sum of stages is computed component by component when it is used, and never stored
+/// as a vector.
 template <class Vector, std::size_t stages, int components>
 requires is_pack<typename Vector::Scalar>
 class StageMemory<Vector, stages, components> {
@@ -144,8 +145,8 @@ class StageMemory<Vector, stages, components> {
   std::array<Vector, stages> stage_;
 };
 
-/// Of a size known at run time: all are kept from the beginning, so that no step asks for memory,
-/// and a sum of stages is computed where it is used, in one pass with what is done to it.
+/// Stages of dynamic size. All memory is allocated at the beginning, none by the steps. A sum of
+/// stages is computed when it is used, in one pass.
 template <class Vector, std::size_t stages>
 class StageMemory<Vector, stages, Eigen::Dynamic> {
  public:

@@ -17,23 +17,23 @@
 
 namespace kreisel {
 
-/// The series of a motion cannot go on where its field can: another method may.
+/// The series of a motion cannot continue although its field can: another method may.
 struct SeriesFailed : ComputationFailed {
   using ComputationFailed::ComputationFailed;
 };
 
-/// Integration of  y' = f(t, y)  by the Taylor series of the solution, with adaptive steps, for
-/// scenes whose series can be had coefficient by coefficient.
+/// Integration of y' = f(t, y) by the Taylor series of the solution, with adaptive steps, for
+/// scenes with recurrences for the coefficients.
 ///
-/// The step follows from the last coefficients. The field at the end of every step is compared with
-/// the rate of the series there, so that a step on which the series does not solve the equation is
-/// rejected and shortened. Output between the ends of a step is the series itself and costs no
+/// The step length follows from the last coefficients. At the end of every step the field is
+/// compared with the rate of the series. If the series does not solve the equation there, the step
+/// is rejected and shortened. Output between the ends of a step is the series itself and costs no
 /// evaluation.
 ///
 /// Vector : Eigen::Matrix<double, n, 1> or Eigen::VectorXd
-/// Series : series(t, h, order, c) fills the columns 1 to `order` of an n x (most_order + 1) matrix c
-///          with the coefficients of the solution in powers of (time - t)/h, from column 0, which is
-///          the state at t; Series::most_order is the greatest order it is asked for, and
+/// Series : series(t, h, order, c) fills the columns 1 to `order` of an n x (most_order + 1) matrix
+///          c with the coefficients of the solution in powers of (time - t)/h, from the state at t
+///          in column 0; Series::most_order is the greatest order that is used, and
 ///          Series::relative_order, if there, the best order over that of most
 /// Blocks : as ExplicitRungeKutta
 /// Source : order and step: A. Jorba, M. Zou, A software package for the numerical integration of
@@ -41,7 +41,7 @@ struct SeriesFailed : ComputationFailed {
 /// Error  : that of a step, relative, is about `accuracy.relative`
 /// Cost   : a series of order 9 to 24 a step, by the accuracy, and the field at the step's end; the
 ///          coefficients count as evaluations
-/// Throws : as ExplicitRungeKutta; SeriesFailed where the field is finite and the series cannot go on
+/// Throws : as ExplicitRungeKutta; SeriesFailed if only the series, not the field, cannot continue
 template <class Vector, class Series>
 class TaylorSteps {
  public:
@@ -73,19 +73,19 @@ class TaylorSteps {
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
-  /// Takes over the sizes that blocks have had before, which errors are measured by.
+  /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
   void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
 
-  /// Times at which the field jumps, in any order. Steps end there exactly.
+  /// Times at which the field is discontinuous, in any order. Steps end there exactly.
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
 
-  /// Integrates to `end`, which is hit exactly; forwards or backwards.
+  /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(double end) {
     while (end != t()) step_towards(end);
     return y();
   }
 
-  /// One step towards `end`, not past it.
+  /// One step towards `end`, not beyond `end`.
   void step_towards(double end) {
     if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
@@ -113,7 +113,7 @@ class TaylorSteps {
     time_ = leader.time_;
   }
 
-  /// Whether a time lies within the last step.
+  /// True if a time lies within the last step.
   [[nodiscard]] bool covers(double time) const {
     const double from = before_.time.value;
     return time >= std::min(from, t()) && time <= std::max(from, t());
@@ -121,7 +121,7 @@ class TaylorSteps {
 
   /// The state at a time within the last step.
   ///
-  /// Throws : InvalidInput for a time outside of it
+  /// Throws : InvalidInput for a time outside the last step
   [[nodiscard]] Vector at(double time) const {
     const double from = before_.time.value;
     if (!covers(time)) {
@@ -144,8 +144,8 @@ class TaylorSteps {
   /// The length of the last step.
   [[nodiscard]] double length() const { return std::abs(t() - before_.time.value); }
 
-  /// Whether the last step was short for a part of the motion, or for rounding, that is far smaller than
-  /// the accuracy but whose terms grow: half the series would do for all else.
+  /// True if a small, growing part of the series has shortened the last step. That part is a
+  /// motion, or rounding, far below the accuracy. Half the series would be enough for the rest.
   [[nodiscard]] bool is_short_for_little() const {
     const double part = length() / scale_;
     const int half = order_ / 2;
@@ -154,10 +154,11 @@ class TaylorSteps {
            sizes_.relative(middle, part * coefficient_.col(1)) < accuracy_.relative / 10;
   }
 
-  /// As ExplicitRungeKutta::noise().
+  /// As ExplicitRungeKutta::rounding_level().
   [[nodiscard]] double noise() const { return 0.5 * sizes_.wander(squares_); }
 
-  /// What the steps go on from, outputs within the last step included.
+  /// Saves or restores all members from which the steps continue, with outputs within the last
+  /// step.
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
     checkpoint(time_, state_, before_.time, before_.state, scale_, reach_, next_scale_, sizes_,
@@ -168,35 +169,36 @@ class TaylorSteps {
   static constexpr int most_order = Series::most_order;
   using Coefficients = Eigen::Matrix<double, Vector::RowsAtCompileTime, most_order + 1>;
 
-  /// Where a step began.
+  /// Start of a step.
   struct Begin {
     detail::Compensated<double> time;
     detail::Compensated<Vector> state;
   };
 
-  /// A try at this step whose end does not solve the equation.
+  /// A trial of this step whose end does not solve the equation.
   struct Doubted {
     double length = std::numeric_limits<double>::infinity();
     double apart = std::numeric_limits<double>::infinity();
   };
 
-  /// Somewhat above the  1 - ln(accuracy)/2  of Jorba and Zou, who count coefficients alone: a step
-  /// costs something besides.
+  /// Somewhat above the 1 - ln(accuracy)/2 of Jorba and Zou, who count coefficients only: a step
+  /// has costs besides.
   [[nodiscard]] static int order_for(double relative) {
     double best = 7.5 - 0.37 * std::log(relative);
     if constexpr (requires { Series::relative_order; }) best *= Series::relative_order;
     return std::clamp(int(std::lround(best)), 9, most_order);
   }
 
-  /// The series from here on, in a unit of time in which its coefficients stay within the range of
-  /// numbers: the last step, at most `left`, or what their own decay says where that is far from it.
+  /// Computes the series from here on, in a unit of time that keeps its coefficients within the
+  /// range of numbers. The unit is the last step, at most `left`, or follows from the coefficients'
+  /// decay if that differs by far.
   void expand(double left) {
     if (effort_.evaluations > accuracy_.max_evaluations) {
       detail::stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
     }
     coefficient_.col(0) = y();
-    constexpr double farthest = 1e4;  // to the power of 24 and squared still a number
-    constexpr int most_tries = 100;   // from 1e308 down to any rate that is a number
+    constexpr double farthest = 1e4;  // to the power of 24 and squared it is still finite
+    constexpr int most_tries = 100;   // from 1e308 down to any rate that is finite
     scale_ = next_scale_ == 0 ? first_scale() : next_scale_;
     for (int i = 0; i < most_tries; ++i) {
       scale_ = std::min(scale_, left);
@@ -212,11 +214,11 @@ class TaylorSteps {
       scale_ *= std::clamp(reach_, 1e-100, 1e100);
     }
     require_finite_field();
-    detail::stop_integration<SeriesFailed>(
-        t(), "the coefficients of the series leave the range of numbers");
+    detail::stop_integration<SeriesFailed>(t(),
+                                           "the coefficients of the series overflow or underflow");
   }
 
-  /// The time in which the state changes by itself.
+  /// The time in which the state changes by its own size.
   [[nodiscard]] double first_scale() {
     require_finite_field();
     return 100 * sizes_.first_step(probe_.col(1));
@@ -232,7 +234,8 @@ class TaylorSteps {
     }
   }
 
-  /// A step of at most `reach` towards `goal`, which is `left` away; says whether it stood.
+  /// A step of at most `reach` towards `goal` at the distance `left`; returns true if it is
+  /// accepted.
   [[nodiscard]] bool attempt(double reach, double left, double goal) {
     const bool last = detail::is_last(reach, left);
     const double h = last ? left : std::copysign(reach, left);
@@ -253,7 +256,7 @@ class TaylorSteps {
     return true;
   }
 
-  /// The state at the end of a step that stands.
+  /// Accepts the state at the end of a step.
   void take(double h, Vector increment) {
     detail::shake(increment, accuracy_.shaken, effort_.steps, h);
     state_.add(increment);
@@ -261,10 +264,10 @@ class TaylorSteps {
     effort_.steps += 1;
   }
 
-  /// Whether the series has the rate of the field at the end of a step. The difference times the
-  /// step is some `order` times the error of the step; rounding may make it 1e-11 of the state, and
-  /// what rounding makes of the field. What falls no faster than the step does is rounding too, which
-  /// no shorter step makes good; a jump in the field leaves more.
+  /// True if the series has the rate of the field at the end of a step. The difference times the
+  /// step is about `order` times the error of the step. The tolerance includes rounding: 1e-11 of
+  /// the state, and the rounding of the field. A difference that does not fall with the step is
+  /// rounding too, which no shorter step reduces. A discontinuity of the field leaves a larger one.
   [[nodiscard]] bool solves_equation(double h, double end_of_step, const Vector& increment) {
     probe_.col(0) = before_.state.value + (increment + before_.state.rest);
     effort_.evaluations += 1;
@@ -286,17 +289,18 @@ class TaylorSteps {
     return rounds;
   }
 
-  /// How far the series carries, in units of its time.
+  /// Reach of the series, in units of its time.
   [[nodiscard]] double reached_from_here() const {
     const double reach = reached(1);
-    // By a unit that is no step's length, a guess or a long rest's, the change is no measure.
+    // If the unit is no step's length, but a guess or that of a long rest, the change is no
+    // measure.
     const bool misjudged = effort_.steps == 0 || reach < 0.5;
     return misjudged ? reached(std::min(reach, 1.0)) : reach;
   }
 
-  /// To where the last two terms are what a step of about `length` may err by: two, for of an even or
-  /// odd solution one of them vanishes. Where that is much longer than the unit of time, the last
-  /// step, both may have vanished, as where only every fourth term is there.
+  /// The time at which the last two terms equal the allowed error of a step of about `length`. Two,
+  /// because one of them vanishes for an even or odd solution. Both may vanish if that time is much
+  /// longer than the unit, the last step: for example if only every fourth term exists.
   [[nodiscard]] double reached(double length) const {
     const Vector change = length * coefficient_.col(1);
     const double steepest =
@@ -312,8 +316,9 @@ class TaylorSteps {
     return std::log(sizes_.relative(coefficient_.col(k), change)) / k;
   }
 
-  /// -log of the reach: where the last two terms are smaller than the three before them let expect,
-  /// these count, by a ratio of terms that stays, not by one that falls as that of 1/k!.
+  /// -log of the reach. It follows from the last two terms if they are smaller than the three
+  /// before them predict. The ratio of terms is then taken as constant, not as falling like that of
+  /// 1/k!.
   [[nodiscard]] double looked_back(double steepest, const Vector& change) const {
     int k = order_ - 4;
     for (const double fall : falls_) {
@@ -324,14 +329,16 @@ class TaylorSteps {
     return steepest;
   }
 
-  /// What the series makes of the state in s of its units of time, from the smallest terms on.
+  /// The change of the state by the series in s of its units of time, summed from the smallest
+  /// terms on.
   [[nodiscard]] Vector change(double s) const {
     Vector sum = coefficient_.col(order_);
     for (int k = order_ - 1; k > 0; --k) sum = s * sum + coefficient_.col(k);
     return s * sum;
   }
 
-  /// How the rate at the step's begin answers a change of the state in its last digits.
+  /// Records the change of the rate at the step's begin for a change of the state in its last
+  /// digits.
   void note_noise() {
     Vector start = before_.state.value;
     detail::move_last_digits(start, 1);
@@ -348,18 +355,18 @@ class TaylorSteps {
   Accuracy accuracy_;
   int order_;
   std::array<double, 3>
-      falls_{};  ///< log of reach by the terms order - 4 ... of a series as exp(t)
+      falls_{};  ///< log of the reach by the terms from order - 4 on of a series like exp(t)
   detail::Compensated<double> time_;
   detail::Compensated<Vector> state_;
   detail::BlockSizes<Vector> sizes_;
   std::vector<double> jumps_;
   Begin before_;
   Coefficients coefficient_;  ///< of the last step, in powers of its time over scale_
-  Coefficients probe_;        ///< for the field alone, in its columns 0 and 1
+  Coefficients probe_;        ///< only for the field, in its columns 0 and 1
   double scale_ = 1;
   double reach_ = 1;  ///< of the series, in units of scale_
   double next_scale_ = 0;
-  double squares_ = 0;   ///< of steps, summed since noise was looked at
+  double squares_ = 0;   ///< of step lengths, since the last rounding sample
   double rounding_ = 0;  ///< in the difference of two rates, per second
   Doubted doubted_;
   IntegrationStatistics effort_;

@@ -8,7 +8,7 @@ namespace kreisel {
 
 namespace detail {
 
-/// A row for 26 stages of numbers for stage 1, stages 8 to 15 and those from 17 on, in turn.
+/// A row for 26 stages from the numbers for stage 1, stages 8 to 15 and those from 17 on, in turn.
 constexpr std::array<long double, 26> row_of_later_stage(
     std::initializer_list<long double> numbers) {
   std::array<long double, 26> row{};
@@ -24,10 +24,10 @@ constexpr std::array<long double, 26> row_of_later_stage(
 
 /// Verner's "most efficient" explicit Runge-Kutta pair of orders 9 and 8, 16 stages.
 ///
-/// Stages 8 to 16 take nothing from stages 2 to 5, and the weights nothing from 2 to 7: zeros here,
-/// skipped at compile time by whoever adds up the stages.
+/// Stages 8 to 16 do not use stages 2 to 5. The weights do not use 2 to 7. The sums of stages skip
+/// these zeros at compile time.
 ///
-/// Ten stages more make a polynomial of degree 9 through a step, of order 9 all along: see
+/// Ten further stages give a polynomial of degree 9 through a step, of order 9 everywhere: see
 /// ExplicitRungeKutta::at().
 ///
 /// Source : J. H. Verner, Numerically optimal Runge-Kutta pairs with interpolants, Numerical
@@ -37,7 +37,7 @@ struct Verner98 {
   static constexpr int order = 9;
   static constexpr std::size_t stages = 16;
 
-  /// Steps h are stable for  y' = -k y  up to h k = 4.47; the last two stages stand at one time.
+  /// Steps h are stable for y' = -k y up to h k = 4.47; the last two stages are at the same time.
   static constexpr double stable = 4.47;
 
   using Row = std::array<long double, stages>;
@@ -128,7 +128,7 @@ struct Verner98 {
                             0.03057013983082797397721005067920369646664L,
                             0};
 
-  /// Weights of order 8 less those of order 9: the error estimate.
+  /// Weights of order 8 minus those of order 9: the error estimate.
   static constexpr Row difference = {0.005357988290444578334669665030800840430050L,
                                      0,
                                      0,
@@ -146,7 +146,8 @@ struct Verner98 {
                                      -0.03057013983082797397721005067920369646664L,
                                      0.04834231373823958314376726739772871714902L};
 
-  /// Stages for the polynomial through a step, from the 17th on, which is the rate at its end.
+  /// Stages for the polynomial through a step, from the 17th on, which is the rate at the end of
+  /// the step.
   static constexpr std::size_t later_stages = 10;
 
   using LaterRow = std::array<long double, stages + later_stages>;
@@ -279,10 +280,10 @@ struct Verner98 {
            0.01111878504898917877407531966545730451506L}),
   }};
 
-  /// Of these stages, whose times are all different, the polynomial has the rates.
+  /// The stages, at seven different times, whose rates the polynomial interpolates.
   static constexpr std::array<std::size_t, 7> met = {0, 16, 23, 24, 22, 25, 21};
 
-  /// What the rates of all give its ninth power.
+  /// Weights of all rates in the ninth power of the polynomial.
   static constexpr LaterRow ninth = detail::row_of_later_stage(
       {368.7958613829998L, -919.2934944890587L, 542.6079835318221L, 299.3158071265785L,
        527.4637482204279L, 1334.688551172191L, 136.7917244480423L, 320.3423358787483L,

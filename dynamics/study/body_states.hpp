@@ -7,7 +7,7 @@
 
 namespace kreisel {
 
-/// The places in a BodySystem's state where a quaternion begins.
+/// The positions in a BodySystem's state at which a quaternion begins.
 [[nodiscard]] inline std::vector<int> quaternions(const BodyTree& tree) {
   std::vector<int> places;
   for (const detail::Link& link : tree.links()) {
@@ -16,9 +16,10 @@ namespace kreisel {
   return places;
 }
 
-/// What the directions are in which that state can move (study/tangent.hpp), by the bodies' names:
-/// "rotor" and "rotor'" for an angle and its rate, "root about x" and "root' about x" for an
-/// attitude, "root x" for a place, "fork 1" and "fork 2" for both angles of a universal joint.
+/// The names of the directions in which the state can move (study/tangent.hpp), from the bodies'
+/// names. Examples: "rotor" and "rotor'" for an angle and its rate, "root about x" and "root' about
+/// x" for an attitude. Further: "root x" for a position, "fork 1" and "fork 2" for both angles of a
+/// universal joint.
 [[nodiscard]] inline std::vector<std::string> direction_names(const BodyTree& tree) {
   const auto rates = static_cast<std::size_t>(tree.rates());
   std::vector<std::string> names(2 * rates);
@@ -43,13 +44,14 @@ namespace kreisel {
   return names;
 }
 
-/// Which directions of a BodySystem's state no search for a steady motion has as unknowns, as places
-/// in eta (study/tangent.hpp): first those of the coordinates, then of the rates.
+/// The directions of a BodySystem's state that are no unknowns in a search for a steady motion.
+/// They are given as positions in eta (study/tangent.hpp): first those of the coordinates, then of
+/// the rates.
 struct RuledDirections {
   std::vector<int> given;      ///< coordinates and rates of drives, locks and regulated rotors
-  std::vector<int> held;       ///< those, angles of all rotors, and speeds of free ones
-  std::vector<int> running;    ///< coordinates that go on by themselves: of rotors and drives
-  std::vector<int> attitudes;  ///< where the three angles of an attitude begin
+  std::vector<int> held;       ///< given ones, angles of all rotors, and speeds of free ones
+  std::vector<int> running;    ///< coordinates that advance uniformly: of rotors and drives
+  std::vector<int> attitudes;  ///< positions at which the three angles of an attitude begin
 
   [[nodiscard]] static RuledDirections of(const BodyTree& tree) {
     RuledDirections ruled;

@@ -10,18 +10,18 @@
 
 namespace kreisel {
 
-/// The frequencies of a gyroscopic system over a parameter, mostly the spin of its rotors.
+/// The frequencies of a gyroscopic system over a parameter, usually the spin of its rotors.
 ///
 /// Units  : rad/s
 struct CampbellDiagram {
   std::vector<double> parameter;
-  Eigen::MatrixXd frequency;  ///< a row for each mode, a column for each parameter
-  Eigen::MatrixXd damping;    ///< root.real(); 0 for what is stable without damping
+  Eigen::MatrixXd frequency;  ///< one row for each mode, one column for each parameter
+  Eigen::MatrixXd damping;    ///< root.real(); 0 for modes that are stable without damping
   std::vector<std::vector<GyroscopicMode>> modes;  ///< for each parameter, in the rows' order
 };
 
-/// A Campbell diagram: spectra of at(parameter), with the modes of one place connected to those of
-/// the next that resemble them most, |x.M y|, so that curves may cross.
+/// A Campbell diagram: spectra of at(parameter). The modes at neighbouring parameters are connected
+/// by their likeness |x.M y|, so that curves may cross.
 ///
 /// At     : callable (double parameter) -> coefficients as conservative_spectrum() takes them
 /// Error  : as conservative_spectrum(); where two curves repel each other within one step of the

@@ -6,14 +6,14 @@
 
 namespace kreisel {
 
-/// The greatest distance, component by component, of an approximate motion from the exact one that
-/// starts with it: both are run side by side from t_begin to t_end and compared at `samples` times.
+/// The greatest deviation, component by component, of an approximate motion from the exact one with
+/// the same start. Both run side by side from t_begin to t_end and are compared at `samples` times.
 ///
-/// Scene  : has exact(), exact_state(State) and approximated(exact state) beside what Integrator
-///          needs
+/// Scene  : a scene for Integrator that also has exact(), exact_state(State) and
+///          approximated(exact state)
 /// Units  : those of the scene's state
-/// Error  : that of the steps: their accuracy has to be finer than what is looked for
-/// Throws : as Integrator does
+/// Error  : that of the steps: their accuracy must be finer than the deviation
+/// Throws : as Integrator
 template <class Scene>
 [[nodiscard]] typename Scene::Vector departure(const Scene& scene,
                                                const typename Scene::State& start, double t_begin,

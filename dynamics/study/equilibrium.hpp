@@ -14,36 +14,36 @@
 
 namespace kreisel {
 
-/// What a search for an equilibrium leaves alone; places count in eta, where each quaternion is
-/// three angles (study/tangent.hpp).
+/// The parts of the state that are no unknowns of the search. Positions count in eta, where each
+/// quaternion has three angles (study/tangent.hpp).
 struct EquilibriumOptions {
-  std::vector<int> held = {};     ///< keep their value from the guess: a speed that is given
+  std::vector<int> held = {};     ///< keep their value from the guess: a given speed
   std::vector<int> running = {};  ///< may have a rate: cyclic angles of a steady motion
   std::vector<int> quaternions = {};
   int most_iterations = 60;
 };
 
-/// A state in which nothing changes, but for what runs.
+/// A state in which nothing changes, except running angles.
 template <class Vector>
 struct EquilibriumResult {
   Vector state;
-  double residual = 0;  ///< of the rates, greatest
-  double step = 0;      ///< the last one of Newton's, greatest component: the error
+  double residual = 0;  ///< of the rates, greatest component
+  double step = 0;      ///< the last Newton step, greatest component: the error
   int iterations = 0;
   int neutral = 0;  ///< directions in which the equilibrium is not isolated
 };
 
 namespace detail {
 
-/// The places among so many that are not left out.
+/// The positions below `dimension` that are not left out.
 ///
-/// Throws : InvalidInput for a place that is none
+/// Throws : InvalidInput for a position outside [0, dimension)
 [[nodiscard]] inline std::vector<int> others(int dimension, const std::vector<int>& left_out) {
   std::vector<bool> kept(static_cast<std::size_t>(dimension), true);
   for (const int i : left_out) {
     if (i < 0 || i >= dimension) {
       std::ostringstream text;
-      text << "equilibrium: there is no component " << i << " among " << dimension;
+      text << "equilibrium: component " << i << " must be in [0, " << dimension << ')';
       throw InvalidInput(text.str());
     }
     kept[static_cast<std::size_t>(i)] = false;
@@ -55,8 +55,8 @@ namespace detail {
   return places;
 }
 
-/// x at the places, 0 elsewhere. By a loop: in Eigen's assignment to places g++ 12 sees memory freed
-/// that is none.
+/// x at the positions, 0 elsewhere. A loop: g++ 12 warns about freed memory in Eigen's indexed
+/// assignment.
 [[nodiscard]] inline Eigen::VectorXd scattered(int dimension, const std::vector<int>& places,
                                                const Eigen::VectorXd& x) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dimension);
@@ -64,12 +64,12 @@ namespace detail {
   return result;
 }
 
-/// Newton's step for  f + A step = 0:  the shortest of those that come nearest to it.
+/// Newton's step for f + A step = 0: the shortest least-squares solution.
 struct NewtonStep {
   Eigen::VectorXd step;
   int rank = 0;  ///< of A
 
-  /// threshold : a pivot is 0 below so much of the greatest, times their number
+  /// threshold : a pivot counts as 0 below this part of the greatest, times their number
   NewtonStep(const Eigen::MatrixXd& A, const Eigen::VectorXd& f,
              double threshold = std::numeric_limits<double>::epsilon())
       : step(Eigen::VectorXd::Zero(A.cols())) {
@@ -80,8 +80,8 @@ struct NewtonStep {
     step = -solution.x;
   }
 
-  /// Whether it leaves no rate that rounding does not explain: a body that falls has no equilibrium
-  /// though none of its coordinates makes it fall.
+  /// True if the remaining rate is explained by rounding. A falling body has no equilibrium,
+  /// although none of its coordinates causes the fall.
   [[nodiscard]] bool suffices(const Eigen::MatrixXd& A, const Eigen::VectorXd& f,
                               double size) const {
     const Eigen::ArrayXd rounding = 1e-10 * (1 + size * A.cwiseAbs().rowwise().sum().array());
@@ -91,14 +91,15 @@ struct NewtonStep {
 
 }  // namespace detail
 
-/// Newton's method with the exact Jacobian, halving steps that lead uphill. Where equations or
-/// unknowns are redundant the shortest step is taken: the equilibrium nearest to the guess.
+/// Newton's method with the exact Jacobian; steps that lead uphill are halved. If equations or
+/// unknowns are redundant, the shortest step is taken: it leads to the equilibrium nearest to the
+/// guess.
 ///
 /// Scene  : Differentiable
 /// Error  : quadratic convergence down to rounding, `step`; linear where the Jacobian is singular
 ///          at the equilibrium only
-/// Throws : InvalidInput for places that are none; ComputationFailed with residual and state where
-///          there is no equilibrium near, as where a body falls freely, or none that the steps reach
+/// Throws : InvalidInput for invalid positions; ComputationFailed with residual and state if the
+///          steps reach no equilibrium, for example if a body falls freely
 template <class Scene>
 [[nodiscard]] EquilibriumResult<typename Scene::Vector> find_equilibrium(
     const Scene& scene, double t, const typename Scene::Vector& guess,
@@ -139,7 +140,7 @@ template <class Scene>
     const bool is_small = result.step <= 4 * std::numeric_limits<double>::epsilon() * size;
     if (result.residual == 0 || (suffices && is_small)) return result;
     if (!falls) {
-      // Rounding has the last word, if what is left of the step is nothing else.
+      // Rounding ends the search if nothing else is left of the step.
       if (suffices && result.step <= 1e-9 * size) return result;
       break;
     }

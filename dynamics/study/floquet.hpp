@@ -15,14 +15,15 @@
 
 namespace kreisel {
 
-/// What Floquet's theory says of a motion whose equations are periodic.
+/// Stability of a periodic motion by Floquet's theory.
 enum class Stability {
-  stable,    ///< bounded for ever, in the linear equations
-  unstable,  ///< some neighbours leave exponentially
-  undecided  ///< so near to the boundary that the error of the matrix hides the answer
+  stable,    ///< bounded for ever, by the linear equations
+  unstable,  ///< some neighbouring motions grow exponentially
+  undecided  ///< so near to the boundary that the matrix's error does not allow a verdict
 };
 
-/// The eigenvalues of the transition matrix over one period, by which neighbours grow in it.
+/// The eigenvalues of the transition matrix over one period: the growth factors of neighbouring
+/// motions.
 ///
 /// Source : G. Floquet, Annales de l'Ecole Normale 12 (1883) 47
 /// Error  : u |X| and that of the matrix, times the eigenvalue's condition: near a stability
@@ -34,7 +35,7 @@ template <int n>
   return detail::eigenvalues(period.matrix);
 }
 
-/// The multipliers of two degrees of freedom without damping, which come as l and 1/l:
+/// The multipliers of two degrees of freedom without damping, in pairs l and 1/l:
 ///
 ///   l^4 - a_1 l^3 + a_2 l^2 - a_1 l + 1 = 0,   z = l + 1/l,   z^2 - a_1 z + a_2 - 2 = 0
 ///
@@ -45,8 +46,8 @@ template <int n>
 ///   at_plus_one  = a_2 - 2 a_1 + 2    through +1: divergence
 ///   krein        = a_1^2 - 4 (a_2 - 2)    two pairs meet on the circle and leave it together
 ///
-/// They are computed without multipliers and are smooth in every parameter, also where multipliers
-/// have a branch point.
+/// The discriminants are computed without multipliers. They are smooth in every parameter, also at
+/// branch points of the multipliers.
 ///
 /// Source : Floquet; M. G. Krein; paper 002 (49), whose coefficients have the period pi/Omega
 /// Units  : 1
@@ -79,7 +80,7 @@ struct PairedMultipliers {
       std::ostringstream text;
       text.precision(10);
       text << "Floquet multipliers: the determinant over one period is " << det
-           << ", not 1: they do not come in pairs l, 1/l";
+           << ", not 1: the multipliers are no pairs l, 1/l";
       throw InvalidInput(text.str());
     }
     return p;
@@ -89,7 +90,7 @@ struct PairedMultipliers {
   [[nodiscard]] double at_plus_one() const { return a_2 - 2 * a_1 + 2; }
   [[nodiscard]] double krein() const { return a_1 * a_1 - 4 * (a_2 - 2); }
 
-  /// Of at_minus_one() and at_plus_one(), and of krein().
+  /// Errors of at_minus_one() and at_plus_one(), and of krein().
   [[nodiscard]] double one_error() const { return a_2_error + 2 * a_1_error; }
   [[nodiscard]] double krein_error() const { return 2 * std::abs(a_1) * a_1_error + 4 * a_2_error; }
 
@@ -98,21 +99,21 @@ struct PairedMultipliers {
       return Stability::unstable;
     }
     const bool inside = at_minus_one() > one_error() && at_plus_one() > one_error();
-    // With both products (z_1 + 2)(z_2 + 2) and (z_1 - 2)(z_2 - 2) positive both z lie on the same
-    // side of -2 and on the same side of 2.
+    // If both products (z_1 + 2)(z_2 + 2) and (z_1 - 2)(z_2 - 2) are positive, both z lie on the
+    // same side of -2 and of 2.
     if (inside && krein() > krein_error()) {
       return std::abs(a_1) < 4 ? Stability::stable : Stability::unstable;
     }
     return inside && std::abs(a_1) - a_1_error > 4 ? Stability::unstable : Stability::undecided;
   }
 
-  /// l_1, 1/l_1, l_2, 1/l_2, those outside the unit circle or on its upper half first.
+  /// l_1, 1/l_1, l_2, 1/l_2; first those outside the unit circle or on its upper half.
   ///
   /// Error  : of a_1 and a_2 times 1/(|z_1 - z_2| |l - 1/l|)
   [[nodiscard]] std::array<std::complex<double>, 4> multipliers() const {
     using Complex = std::complex<double>;
     const double D = krein();
-    // Krein's discriminant, and the one of l^2 - z l + 1 as a product, lest digits cancel.
+    // Krein's discriminant; that of l^2 - z l + 1 is a product, to avoid cancellation.
     Complex z_1, z_2;
     if (D >= 0) {
       const double larger = (a_1 + std::copysign(std::sqrt(D), a_1)) / 2;
@@ -133,7 +134,7 @@ struct PairedMultipliers {
     return {l_1, 1.0 / l_1, l_2, 1.0 / l_2};
   }
 
-  /// The greatest |l|: growth in one period; 1 where the verdict is stable.
+  /// The greatest |l|: growth in one period; 1 if the verdict is stable.
   [[nodiscard]] double growth() const {
     if (verdict() == Stability::stable) return 1;
     double most = 1;
@@ -142,7 +143,7 @@ struct PairedMultipliers {
   }
 };
 
-/// Those of a linear scene of two degrees of freedom without damping.
+/// The paired multipliers of a linear scene of two degrees of freedom without damping.
 ///
 /// Scene  : has period() in seconds and state_matrix(t), 4x4
 template <class Scene>

@@ -11,19 +11,19 @@
 
 namespace kreisel {
 
-/// How a motion depends on where it begins, in the directions eta in which its state can move
+/// Dependence of a motion on its start, in the directions eta in which its state can move
 /// (study/tangent.hpp).
 struct TangentTransition {
   Eigen::VectorXd state;   ///< y(t_end)
   Eigen::MatrixXd matrix;  ///< d eta(t_end) / d eta(t_begin)
 
-  /// Of each entry of the matrix: what steps with a hundred times the error change.
+  /// Error of each entry of the matrix: its change for steps with a hundred times the error.
   Eigen::MatrixXd error;
 };
 
 namespace detail {
 
-/// y and, behind it, the columns of the transition matrix.
+/// y, followed by the columns of the transition matrix.
 template <class Scene>
 [[nodiscard]] Eigen::VectorXd with_tangents(const Scene& scene, double t_begin,
                                             const Eigen::VectorXd& y, double t_end,
@@ -58,12 +58,12 @@ template <class Scene>
 
 }  // namespace detail
 
-/// The motion of a scene whose state has no size known when compiled, and its transition matrix
-/// from the variational equations  X' = A(t) X,  X(t_begin) = 1, with A as linearize() has it.
+/// The motion of a scene with a state of dynamic size, and its transition matrix. The latter
+/// follows from the variational equations X' = A(t) X, X(t_begin) = 1, with A of linearize().
 ///
 /// Scene  : Differentiable, with a tree() or quaternions(), and blocks()
 /// Error  : reported entry by entry
-/// Throws : as ExplicitRungeKutta and the scene's rates() do
+/// Throws : as ExplicitRungeKutta and the scene's rates()
 template <class Scene>
 [[nodiscard]] TangentTransition tangent_transition(const Scene& scene, double t_begin,
                                                    const Eigen::VectorXd& y, double t_end,
@@ -79,20 +79,20 @@ template <class Scene>
   return {fine.head(y.size()), matrix(fine), (matrix(fine) - matrix(rough)).cwiseAbs()};
 }
 
-/// A motion that repeats itself after a period, but for what runs.
+/// A motion that repeats after a period, except running angles.
 struct PeriodicMotion {
   Eigen::VectorXd start;
-  TangentTransition period;  ///< by which its neighbours grow
+  TangentTransition period;  ///< its multipliers are the growth factors of neighbouring motions
   double residual = 0;       ///< of the return, greatest component
   int iterations = 0;
 };
 
-/// Shooting: Newton's method on  y(t + period) = y(t)  with the transition matrix as its Jacobian.
-/// Where equations or unknowns are redundant the shortest step is taken.
+/// Shooting: Newton's method on y(t + period) = y(t) with the transition matrix as its Jacobian. If
+/// equations or unknowns are redundant, the shortest step is taken.
 ///
-/// search : `held` and `running` as find_equilibrium() has them; running components may advance
-/// Error  : residual, of the size of the steps' own error
-/// Throws : as tangent_transition(); ComputationFailed with what is left where no motion of this
+/// search   : `held` and `running` as find_equilibrium() has them; running components may advance
+/// Error    : residual, as large as the steps' own error
+/// Throws   : as tangent_transition(); ComputationFailed with the residual if no motion of this
 ///          period is near
 template <class Scene>
 [[nodiscard]] PeriodicMotion periodic_motion(const Scene& scene, double t, double period,
@@ -114,7 +114,7 @@ template <class Scene>
     if (motion.residual <= 1e3 * accuracy.relative * size) return motion;
     const Eigen::MatrixXd identity =
         Eigen::MatrixXd::Identity(tangent.dimension(), tangent.dimension());
-    // The matrix errs by its steps, not by rounding.
+    // The matrix has the error of its steps, which exceeds rounding.
     const detail::NewtonStep newton((motion.period.matrix - identity)(wanted, unknown), off, 1e-9);
     motion.start =
         tangent.moved(motion.start, detail::scattered(tangent.dimension(), unknown, newton.step));
@@ -122,7 +122,7 @@ template <class Scene>
   std::ostringstream text;
   text.precision(10);
   text << "periodic motion: none of the period " << period << " s reached in " << motion.iterations
-       << " steps; it misses its start by " << motion.residual;
+       << " steps; the distance from its start is " << motion.residual;
   throw ComputationFailed(text.str());
 }
 

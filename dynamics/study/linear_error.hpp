@@ -9,20 +9,20 @@
 
 namespace kreisel {
 
-/// How far the linear equations of a body lead from its exact ones.
+/// Error of a body's linear equations against its exact ones.
 ///
 /// Units  : metre, radian
 struct LinearError {
-  double displacement = 0;    ///< the greatest distance between both places
+  double displacement = 0;    ///< the greatest distance between both positions
   double angle = 0;           ///< the greatest angle between both attitudes
-  double greatest_angle = 0;  ///< of the linear motion: the errors are of its second order
+  double greatest_angle = 0;  ///< of the linear motion: the errors are of second order in it
 };
 
-/// Runs a linear scene and the exact one it approximates side by side from t_begin to t_end. The
-/// accuracy of the steps has to be finer than the error that is looked for.
+/// Runs a linear scene and its exact scene side by side from t_begin to t_end. The accuracy of the
+/// steps must be finer than the error to be measured.
 ///
 /// Scene  : has State with displacement and angles, exact() and exact_state(State)
-/// Throws : as Integrator does
+/// Throws : as Integrator
 template <class Linear>
 [[nodiscard]] LinearError linear_error(const Linear& linear, const typename Linear::State& start,
                                        double t_begin, double t_end, int samples = 200,

@@ -20,8 +20,8 @@ template <int n>
 using Duals = Eigen::AutoDiffScalar<Eigen::Matrix<double, n, 1>>;
 using Dual = Duals<1>;
 
-/// In how many directions at a time a field is differentiated. Where the state has no size known
-/// when compiled there is more to do for each evaluation than for another direction.
+/// Number of directions in which a field is differentiated at a time. With a state of dynamic size
+/// an evaluation costs more than a further direction.
 template <class Scene>
 inline constexpr int directions = Scene::Vector::RowsAtCompileTime == Eigen::Dynamic ? 4 : 1;
 
@@ -30,7 +30,7 @@ using StateOf = Eigen::Matrix<S, Scene::Vector::RowsAtCompileTime, 1>;
 
 }  // namespace detail
 
-/// A scene whose field takes dual numbers: rates(t, y) on Eigen::Matrix<S, n, 1>, n fixed or
+/// A scene whose field accepts dual numbers: rates(t, y) on Eigen::Matrix<S, n, 1>, n fixed or
 /// Eigen::Dynamic, for S = double and S = Eigen::AutoDiffScalar.
 template <class Scene>
 concept Differentiable = requires(const Scene& scene, const detail::Dual& t,
@@ -45,14 +45,14 @@ concept Differentiable = requires(const Scene& scene, const detail::Dual& t,
 ///
 /// Units  : those of the state, radian for the angles that stand for a quaternion
 template <class Observer, class In>
-struct Linearization {
-  Eigen::VectorXd state;           ///< about which
+struct Linearisation {
+  Eigen::VectorXd state;           ///< the state about which the equations are linear
   Eigen::MatrixXd A;               ///< state matrix
-  Eigen::VectorXd rate;            ///< of the state, as eta': 0 at an equilibrium
+  Eigen::VectorXd rate;            ///< of the state, in the components of eta': 0 at an equilibrium
   std::vector<std::string> names;  ///< of eta
 
-  /// The rate's own rate along the motion. 0 at an equilibrium and in a steady motion, in which
-  /// only cyclic components run; otherwise A holds for the moment only.
+  /// The rate of the rate along the motion. It is 0 at an equilibrium and in a steady motion, in
+  /// which only cyclic components run. Otherwise A holds only at that time.
   Eigen::VectorXd unsteadiness;
 };
 
@@ -61,11 +61,12 @@ namespace detail {
 /// f(t, y) and its derivatives along t and along the columns of E.
 struct Derivatives {
   Eigen::VectorXd f;
-  Eigen::VectorXd along_time;  ///< 0 where it is not asked for
+  Eigen::VectorXd along_time;  ///< 0 if not requested
   Eigen::MatrixXd along;
 };
 
-/// Without the derivative in time no other time is looked at: t may be the first that a guide has.
+/// If the derivative in time is not requested, the guide is evaluated at t only: t may be its first
+/// time.
 enum class InTime { yes, no };
 
 template <class Scene>
@@ -136,8 +137,8 @@ template <class Scene>
   return names;
 }
 
-/// Of a field given by its derivatives along E, in the coordinates eta:
-/// y' = E v, so that with the rate dE of E  A = P (f_y E - dE),  v' = P (f_t + f_y E v - dE v).
+/// The derivatives of a field along E, reduced to the coordinates eta. y' = E v and the rate dE of
+/// E give A = P (f_y E - dE), v' = P (f_t + f_y E v - dE v).
 struct Reduced {
   Eigen::VectorXd v;
   Eigen::MatrixXd A;
@@ -159,14 +160,14 @@ struct Reduced {
 
 /// The linear equations about the state y at the time t, by dual numbers: exact, no differences.
 ///
-/// Scene       : Differentiable. May offer quaternions(), the places in y where one begins, and
+/// Scene       : Differentiable. May offer quaternions(), the positions in y of quaternions, and
 ///               names, of the components of y; a BodySystem has both
-/// quaternions : those places, if the scene does not tell
+/// quaternions : those positions, if the scene does not give them
 /// Error       : that of the scene's own formulas. On a guide that takes times of type double alone
 ///               the unsteadiness errs by 2^-42 of the accelerations' fifth derivative in time
 /// Cost        : n + 1 evaluations of the field in numbers of two parts; of a BodySystem n/4 in
 ///               numbers of five
-/// Throws      : as rates() does: of a BodySystem InvalidInput where a load takes no dual numbers
+/// Throws      : as rates() does: for a BodySystem InvalidInput if a load accepts no dual numbers
 template <class Observer, class In, class Scene>
 [[nodiscard]] Linearization<Observer, In> linearize(const Scene& scene, double t,
                                                     const typename Scene::Vector& y,

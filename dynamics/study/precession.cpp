@@ -28,24 +28,25 @@ template <class... Words>
 [[noreturn]] void refuse_technical(double t, const Words&... words) {
   std::ostringstream text;
   text.precision(10);
-  text << "technical equations at t = " << t << " s: ";
+  text << "precession equations at t = " << t << " s: ";
   (text << ... << words);
   throw ComputationFailed(text.str());
 }
 
-/// The derivative at each of five places h apart of the polynomial through them, times 12 h.
+/// 12 h times the derivatives, at five points h apart, of the polynomial through them.
 inline constexpr std::array<std::array<double, 5>, 5> five_point_slopes{{{-25, 48, -36, 16, -3},
                                                                          {-3, -10, 18, -6, 1},
                                                                          {1, -8, 0, 8, -1},
                                                                          {-1, 6, -18, 10, 3},
                                                                          {3, -16, 36, -48, 25}}};
 
-/// The nutations that a motion starts with because its velocity is another than the technical one:
-/// A_f w' + way' W P w = 0 with A_f = P' A way: across, the kept directions giving way.
+/// The nutations that a motion starts with because its velocity differs from that of the precession
+/// equations. They obey A_f w' + way' W P w = 0 with A_f = P' A way: transverse, the kept
+/// directions giving way.
 struct Nutations {
   Eigen::VectorXcd roots;
   Eigen::MatrixXcd shapes;  ///< of the displacement, scaled to the start
-  Eigen::VectorXd offset;   ///< of their middle from the start
+  Eigen::VectorXd offset;   ///< of their centre from the start
   Eigen::VectorXd kick;     ///< of v
 
   Nutations(const Directions& d, const TechnicalPoint& p, const Eigen::VectorXd& mismatch)
@@ -65,14 +66,14 @@ struct Nutations {
     for (Eigen::Index k = 0; k < roots.size(); ++k) shapes.col(k) *= share[k] / roots[k];
   }
 
-  /// Amplitudes, component by component, so long after the start.
+  /// Amplitudes, component by component, at a time after the start.
   [[nodiscard]] Eigen::VectorXd amplitude(double time) const {
     if (roots.size() == 0) return Eigen::VectorXd::Zero(offset.size());
     const Eigen::VectorXd grown = (roots.real() * time).array().exp();
     return Eigen::MatrixXd(shapes.cwiseAbs()) * grown;
   }
 
-  /// The least |root| that nutations have at one point.
+  /// The least |root| of the nutations at one point.
   [[nodiscard]] static double slowest(const Directions& d, const TechnicalPoint& p) {
     if (d.P.cols() == 0) return std::numeric_limits<double>::infinity();
     return eigenvalues(state_matrix(d, p, across(d, p))).cwiseAbs().minCoeff();
@@ -107,7 +108,7 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
   };
   const auto field = [&](double t, const VectorXd& z, VectorXd& rate) {
     const Point p = point(t, z);
-    // No number: the step is made shorter.
+    // Not a number: the step is shortened.
     if (!p.determined) {
       rate.setConstant(std::numeric_limits<double>::quiet_NaN());
       return;
@@ -115,7 +116,7 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
     rate.head(n) = model.rate(t, z.head(n), p.u);
     rate.tail(kept) = p.dv;
   };
-  // What the forces at unchanged velocities gain by a displacement.
+  // The change of the forces with a displacement at constant velocities.
   const auto stiffening = [&](double t, const VectorXd& z, const Point& p, const VectorXd& e) {
     const double size = e.norm();
     VectorXd change = VectorXd::Zero(e.size());

@@ -9,12 +9,12 @@
 
 namespace kreisel {
 
-/// The equations of a system with fast rotors where they are linear in the velocities u,
+/// The forces of a system with fast rotors at one position and time, linear in the velocities u:
 ///
 ///   A u' + c(u) + (G + D) u = Q,   c(0) = 0,
 ///
-/// at one place and time: G skew, of the rotors' momenta; Q all forces at u = 0, those of the
-/// guide's motion among them.
+/// G is skew, from the rotors' momenta. Q contains all forces at u = 0, also those of the guide's
+/// motion.
 ///
 /// Source : paper 000 (11); D = -dQ/du
 struct GyroForces {
@@ -24,10 +24,10 @@ struct GyroForces {
   Eigen::VectorXd Q;
 };
 
-/// Along which directions the accelerations are kept.
+/// Directions in which the accelerations are kept.
 enum class KeptAccelerations {
-  on_kernel,  ///< of G at the start: there no gyroscopic moment holds the velocity
-  none        ///< the paper's (15); on the kernel of G only damping determines the velocity then
+  on_kernel,  ///< of G at the start: no gyroscopic moment resists the velocity there
+  none        ///< the paper's (15); only damping then determines the velocity on the kernel of G
 };
 
 struct TechnicalOptions {
@@ -35,41 +35,41 @@ struct TechnicalOptions {
   /// Singular values of G below this part of the greatest count as 0.
   double rank_tolerance = 1e-6;
   Accuracy accuracy = {.relative = 1e-12};
-  /// For the time up to which the equations are good enough. Unit of the coordinates
+  /// Defines the time up to which the equations are good enough. Unit of the coordinates
   double tolerated_error = 1e-2;
-  /// From the start on, in order: samples at these are wanted.
+  /// Times of requested samples from the start on, in order.
   std::vector<double> output_times = {};
 };
 
-/// A motion by the technical equations, at the end of a step.
+/// A sample of a motion by the precession equations, at the end of a step.
 ///
 /// Units  : those of the coordinates and their rates
 struct TechnicalSample {
   double t = 0;
-  Eigen::VectorXd place;     ///< coordinates, as the model has them
+  Eigen::VectorXd place;     ///< coordinates of the model
   Eigen::VectorXd velocity;  ///< u
-  Eigen::VectorXd drift;     ///< exact less technical motion, its nutations left out; an estimate
-  Eigen::VectorXd nutation;  ///< amplitudes of what was left out, component by component
-  double bound = 0;  ///< of the distance that both motions have had up to this time, as a norm
+  Eigen::VectorXd drift;     ///< exact minus precession motion without its nutations; an estimate
+  Eigen::VectorXd nutation;  ///< amplitudes of the neglected nutations, component by component
+  double bound = 0;          ///< of the distance of both motions up to this time, as a norm
 };
 
 struct TechnicalMotion {
   std::vector<TechnicalSample> samples;
-  /// At the times asked for, as far as the motion went; without drift and nutation, the bound that
-  /// of the step's end.
+  /// At the requested times, as far as the motion went. Drift and nutation are absent; the bound is
+  /// that of the step's end.
   std::vector<TechnicalSample> outputs;
-  int kept = 0;            ///< how many accelerations
-  double smallness = 0;    ///< of the slow motion's rates against the nutations', greatest
-  bool slow = true;        ///< false: broken off where the motion is no longer slow, smallness 1/2
-  double valid_until = 0;  ///< as long as the bound is below what is tolerated
+  int kept = 0;            ///< number of kept accelerations
+  double smallness = 0;    ///< greatest ratio of the slow motion's rates to the nutations'
+  bool slow = true;        ///< false: stopped because the motion is no longer slow, smallness 1/2
+  double valid_until = 0;  ///< time up to which the bound is below the tolerated error
   IntegrationStatistics effort;
-  double seconds = 0;  ///< of computing
+  double seconds = 0;  ///< of computing time
 };
 
-/// What technical equations have to know of a system. Places are its own; displacements e and
-/// velocities u have as many components as there are equations.
+/// Interface of a system for precession equations. Positions are in the model's own coordinates.
+/// Displacements e and velocities u have one component for each equation.
 ///
-/// Units : s, and those of the system's coordinates and rates
+/// Units  : s, and those of the system's coordinates and rates
 class TechnicalModel {
  public:
   virtual ~TechnicalModel() = default;
@@ -80,43 +80,45 @@ class TechnicalModel {
   [[nodiscard]] virtual Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
                                                       const Eigen::VectorXd& u) const = 0;
 
-  /// Of a place.
+  /// The rate of a position.
   [[nodiscard]] virtual Eigen::VectorXd rate(double /*t*/, const Eigen::VectorXd& /*place*/,
                                              const Eigen::VectorXd& u) const {
     return u;
   }
 
-  /// A place that is displaced.
+  /// A displaced position.
   [[nodiscard]] virtual Eigen::VectorXd moved(const Eigen::VectorXd& place,
                                               const Eigen::VectorXd& e) const {
     return place + e;
   }
 
-  /// What e' has besides the change of u, where u are no rates of coordinates.
+  /// The part of e' besides the change of u, if u are not rates of coordinates.
   [[nodiscard]] virtual Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
                                                       const Eigen::VectorXd& /*u*/,
                                                       const Eigen::VectorXd& e) const {
     return Eigen::VectorXd::Zero(e.size());
   }
 
-  /// Numbers of components of a place whose error is told as one, as ExplicitRungeKutta takes them.
+  /// Numbers of components of a position whose errors are measured together, as in
+  /// ExplicitRungeKutta.
   [[nodiscard]] virtual std::vector<int> blocks() const = 0;
 };
 
-/// Integrates the technical (precession) equations
+/// Integrates the precession (technical) equations
 ///
 ///   A N N' u' + (G + D) u = Q(place, t)
 ///
-/// from u(0) on, of which they keep N' u(0) alone, and says how far they lead from the exact ones.
+/// from u(0), of which only N' u(0) is kept, with a bound of their deviation from the exact
+/// equations.
 ///
-/// The bound is no crude norm of the neglected forces r = A u' + c(u) but follows what they do:
-/// the drift e of the slow motion by its own linear equations,
+/// The bound is no crude norm of the neglected forces r = A u' + c(u). It follows their effect, the
+/// drift e of the slow motion, by the linear equations of that drift:
 ///
 ///   e' = w,   (equations)'e + (G + D) w + A N N' w' = -r,
 ///
-/// begun where the nutation that the start excites has its middle, (G + D)^-1 A (u(0) - u_slow);
-/// beside it the nutation itself, each mode with its own decay or growth. The bound is both, times
-/// 1.2 + 4 `smallness` for what is of higher order.
+/// The drift starts at the centre of the excited nutation, (G + D)^-1 A (u(0) - u_slow). The
+/// nutation itself is added, each mode with its own decay or growth. The sum of both is multiplied
+/// by 1.2 + 4 `smallness` for terms of higher order.
 ///
 /// Source : paper 000 (15); errors: G^-1 A(u(0) - u_p(0)) and the integral of G^-1 r, here signed
 /// Error  : the true error lies in [0.1, 1] of the bound in >= 95 % of random cases
@@ -124,8 +126,7 @@ class TechnicalModel {
 ///          From rest it falls with the momenta L as L^-2, from the technical velocity as L^-3; as
 ///          L^-1 and L^-2 where inertia couples the kernel of G to the rest; as L^-1 where the
 ///          kernel turns away from the directions kept, which are those at the start
-/// Throws : ComputationFailed where G + D (across N) is singular at the start; and as ExplicitRungeKutta
-///          does
+/// Throws : as ExplicitRungeKutta; ComputationFailed if G + D (across N) is singular at the start
 KREISEL_API [[nodiscard]] TechnicalMotion technical_motion(const TechnicalModel& model,
                                                            double t_begin,
                                                            const Eigen::VectorXd& place,

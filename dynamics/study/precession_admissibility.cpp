@@ -16,8 +16,8 @@ namespace kreisel {
 
 namespace detail {
 
-/// Whether  A x'' + D x' + K x = 0  has real roots <= 0 only, half of which are slower than all
-/// others: so that A can be left out.
+/// True if all roots of A x'' + D x' + K x = 0 are real and <= 0, and half of them are slower than
+/// all others. A may then be left out.
 [[nodiscard]] inline bool overdamped(const Eigen::MatrixXd& A, const Eigen::MatrixXd& D,
                                      const Eigen::MatrixXd& K) {
   struct {
@@ -34,7 +34,7 @@ namespace detail {
   return sizes[half] > 2 * sizes[half - 1];
 }
 
-/// The state matrix of the technical equations on (displacement; v).
+/// The state matrix of the precession equations on (displacement; v).
 [[nodiscard]] inline Eigen::MatrixXd technical_matrix(const Directions& d, const TechnicalPoint& p,
                                                       const Eigen::MatrixXd& K) {
   const Eigen::Index n = K.rows(), kept = d.N.cols();
@@ -48,7 +48,7 @@ namespace detail {
   return T;
 }
 
-/// Whether two shapes are one.
+/// True if two shapes are parallel.
 [[nodiscard]] inline bool parallel(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
   return 1 - std::abs(a.dot(b)) / (a.norm() * b.norm()) < 1e-6;
 }

@@ -10,39 +10,40 @@
 
 namespace kreisel {
 
-/// A root of the technical equations and the exact one next to it.
+/// A root of the precession equations and the nearest exact root.
 ///
 /// Units  : rad/s
 struct SlowRoot {
   std::complex<double> technical;
   std::complex<double> exact;
-  /// technical + ds,  ds = -s^2 y.(A - A N N') x / y.(W + 2 s A N N') x;  not a number
-  /// where the root is multiple
+  /// precession + ds, ds = -s^2 y.(A - A N N') x / y.(W + 2 s A N N') x; not a number if the root
+  /// is multiple
   std::complex<double> first_order;
 };
 
-/// What there is against technical equations.
+/// Reasons against the precession equations.
 enum class Obstacle {
   none,
   not_determined,  ///< G + D is singular and no accelerations are kept
-  not_slow,        ///< a root is off by more than tolerated: the nutations are not fast
+  not_slow,        ///< a root is off by more than the tolerance: the nutations are not fast
   growing_nutation,
-  defective  ///< a multiple slow root with too few shapes, which what is neglected takes apart
+  defective  ///< a multiple slow root with too few shapes, which the neglected terms split
 };
 
-/// Whether the technical equations stand for the exact ones about a rest, by all their roots.
+/// Admissibility of the precession equations about a state of rest, by all roots.
 ///
 /// Source : paper 000, its condition corrected: det G != 0 is neither sufficient nor, with damping
 ///          or with kept accelerations, necessary; nor are roots that are all simple
 struct Admissibility {
-  KeptAccelerations kept = KeptAccelerations::none;  ///< on the kernel, if that is neither empty
-                                                     ///< nor overdamped
+  KeptAccelerations kept = KeptAccelerations::none;  ///< on the kernel, unless that is empty or
+                                                     ///< overdamped
   Eigen::VectorXd singular_values;                   ///< of G alone
   int rank = 0;
   Eigen::MatrixXd kernel;          ///< orthonormal columns
-  bool kernel_overdamped = false;  ///< damping alone rules the motion there
+  bool kernel_overdamped = false;  ///< damping alone determines the motion there
   std::vector<SlowRoot> slow;
-  std::vector<std::complex<double>> fast;  ///< exact roots that the technical equations lack
+  std::vector<std::complex<double>> fast;  ///< exact roots without a counterpart in the precession
+                                           ///< equations
   double greatest_shift = 0;               ///< of a slow root, relative
   double fast_growth = 0;  ///< of the fast roots, beyond that of the slow ones; <= 0 if none grows
   Obstacle obstacle = Obstacle::none;
@@ -56,7 +57,7 @@ struct AdmissibilityOptions {
   double tolerated_growth = 1e-9;  ///< of fast roots, of their size: rounding
 };
 
-/// Tests technical equations about a rest:  A u' + (G + D) u + K x = 0,  x' = u.
+/// Tests the precession equations about a state of rest: A u' + (G + D) u + K x = 0, x' = u.
 ///
 /// Stiffness : K, which need not be symmetric (circulatory forces)
 /// Error     : of the roots as spectrum(); "multiple" are roots that are closer than 1e-6 of their
@@ -65,7 +66,7 @@ struct AdmissibilityOptions {
 KREISEL_API [[nodiscard]] Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
                                                       const AdmissibilityOptions& options = {});
 
-/// K = -dQ/d(displacement) of a model at rest in a place, by differences.
+/// K = -dQ/d(displacement) of a model at rest in a position, by differences.
 ///
 /// Error  : of fourth order in steps of 1e-3
 KREISEL_API [[nodiscard]] Eigen::MatrixXd stiffness(const TechnicalModel& model, double t,

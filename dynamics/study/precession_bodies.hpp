@@ -14,17 +14,17 @@
 
 namespace kreisel {
 
-/// A system of bodies with fast rotors, as technical_motion() takes it. A place is the coordinates
-/// of the system, in which the rotors' angles stay what they are, and then the momenta l of the
-/// rotors; displacements and u go by the rates without the rotors', RotorMatrices::rates. An
-/// attitude is displaced by small angles on the body's axes.
+/// A system of bodies with fast rotors as a model for precession_motion(). A position consists of
+/// the system's coordinates, in which the rotors' angles are constant, and the rotors' momenta l.
+/// Displacements and u follow the rates without the rotors', RotorMatrices::rates. An attitude is
+/// displaced by small angles on the body's axes.
 ///
 /// Source : paper 000 (11)-(15); (G_R) as RotorMatrices has it
 /// Error  : of loads' damping that of a central difference over 1e-3 m/s and rad/s: none where they
 ///          are linear in the velocities
-/// Throws : InvalidInput where a joint is held or driven (make it fixed), a rotor is braked by
+/// Throws : InvalidInput if a joint is locked or driven (make it fixed), a rotor is braked by
 ///          friction, there is no rotor, or nothing but rotors can move
-/// Cost   : of each evaluation one rotor_matrices(); with loads 2n more, for their damping
+/// Cost   : one rotor_matrices() for each evaluation; with loads 2n more, for their damping
 template <class M>
 class TechnicalBodies final : public TechnicalModel {
  public:
@@ -32,10 +32,11 @@ class TechnicalBodies final : public TechnicalModel {
       : system_(std::move(system)), workspace_(system_.workspace()) {
     const BodyTree& tree = system_.tree();
     const auto refuse = [&tree](int body, const char* why) {
-      throw InvalidInput("technical equations: body '" + tree.body(body).name + "' " + why);
+      throw InvalidInput("precession equations: body '" + tree.body(body).name + "' " + why);
     };
     for (const detail::Link& link : tree.links()) {
-      if (link.body >= 0 && link.rule != JointRule::forces) refuse(link.body, "is held or driven");
+      if (link.body >= 0 && link.rule != JointRule::forces)
+        refuse(link.body, "is locked or driven");
     }
     std::vector<bool> spins(static_cast<std::size_t>(tree.rates()), false);
     for (const detail::RotorLink& rotor : tree.rotors()) {
@@ -49,16 +50,17 @@ class TechnicalBodies final : public TechnicalModel {
       if (!spins[static_cast<std::size_t>(k)]) rates_.push_back(k);
     }
     if (tree.rotors().empty()) {
-      throw InvalidInput("technical equations: there is no rotor among the bodies");
+      throw InvalidInput("precession equations: there is no rotor among the bodies");
     }
     if (rates_.empty()) {
-      throw InvalidInput("technical equations: nothing but rotors can move, so none of them turns");
+      throw InvalidInput(
+          "precession equations: nothing but rotors can move: another body must be free to move");
     }
   }
 
   [[nodiscard]] const BodySystem<M>& system() const { return system_; }
 
-  /// Place and u of a state.
+  /// Position and u of a state.
   [[nodiscard]] std::pair<Eigen::VectorXd, Eigen::VectorXd> start(double t,
                                                                   const Eigen::VectorXd& y) const {
     const BodyTree& tree = system_.tree();
@@ -68,7 +70,7 @@ class TechnicalBodies final : public TechnicalModel {
     return {place, y.tail(tree.rates())(rates_)};
   }
 
-  /// The state at a place with these velocities.
+  /// The state at a position with these velocities.
   [[nodiscard]] Eigen::VectorXd state(double t, const Eigen::VectorXd& place,
                                       const Eigen::VectorXd& u) const {
     Eigen::VectorXd y;
@@ -90,7 +92,7 @@ class TechnicalBodies final : public TechnicalModel {
       return f;
     }
     for (Eigen::Index k = 0; k < n; ++k) {
-      // Small, for what loads have of higher order in the velocities is no damping.
+      // Small, because terms of higher order in the velocities are no damping.
       const double small = 1e-3;
       const Eigen::VectorXd u = small * Eigen::VectorXd::Unit(n, k);
       f.D.col(k) = (matrices(t, place, -u).Q - matrices(t, place, u).Q) / (2 * small);
@@ -177,7 +179,7 @@ class TechnicalBodies final : public TechnicalModel {
     return matrices(t, place, u, y);
   }
 
-  /// The same; y becomes the state with these rates.
+  /// As above; y becomes the state with these rates.
   [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& place,
                                        const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
     const BodyTree& tree = system_.tree();
@@ -192,7 +194,7 @@ class TechnicalBodies final : public TechnicalModel {
       set_rate(k, l[static_cast<Eigen::Index>(k)]);
     }
     RotorMatrices m = rotor_matrices(system_, t, y, workspace_);
-    // Of a free one the momentum is absolute; what its carrier turns is less for the rate.
+    // A free rotor's momentum is absolute: its carrier's rotation is subtracted for the rate.
     const Eigen::VectorXd carried = m.l - l;
     if (carried.isZero(0)) return m;
     for (std::size_t k = 0; k < tree.rotors().size(); ++k) {

@@ -14,8 +14,9 @@
 
 namespace kreisel {
 
-/// A Cardan gyro with a fast symmetric rotor, free or regulated, as technical_motion() takes it:
-/// places and displacements are (alpha, beta), as in its state, u their rates.
+/// A Cardan gyro with a fast symmetric rotor, free or regulated, as a model for
+/// precession_motion(). Positions and displacements are (alpha, beta), as in its state; u are their
+/// rates.
 ///
 ///   G = l cos(beta) (0 1; -1 0),   l = C phi' if regulated, else p = C (phi' + e.w)
 ///
@@ -29,14 +30,14 @@ class TechnicalGimbals final : public TechnicalModel {
  public:
   using Gyro = CardanGyro<M, Rotor>;
 
-  /// At the speed that the rotor has in this state.
+  /// The rotor has the speed of this state.
   TechnicalGimbals(CardanGyro<M, Rotor> gyro, double t,
                    const typename CardanGyro<M, Rotor>::State& start)
       : gyro_(std::move(gyro)) {
     const auto& rotor = gyro_.moments().rotor;
     if (rotor.x() != rotor.y() || gyro_.rotor().friction != 0) {
       throw InvalidInput(
-          "technical equations of a Cardan gyro: the rotor is not symmetric, or it "
+          "precession equations of a Cardan gyro: the rotor is not symmetric, or it "
           "has friction");
     }
     momentum_ = regulated ? rotor.z() * start.phi_rate : gyro_.balance(t, start).rotor_momentum;

@@ -9,12 +9,11 @@
 #include <dynamics/decompositions.hpp>
 #include <dynamics/study/precession.hpp>
 
-/// The technical equations at one place, as the motion by them and their admissibility share them.
+/// The precession equations at one position, shared by the motion and the admissibility test.
 
 namespace kreisel::detail {
 
-/// Products are taken two by two, of matrices and not of expressions, each of which the compiler would
-/// have to make anew.
+/// Products of two matrices at a time: the compiler would instantiate each longer expression anew.
 [[nodiscard]] inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return A * B;
 }
@@ -37,15 +36,15 @@ struct Directions {
   }
 };
 
-/// Values at one place: u from the technical equations, and how they answer to more force.
+/// Values at one position: u from the precession equations, and its response to more force.
 struct TechnicalPoint {
   GyroForces f;
   Eigen::MatrixXd W;  ///< G + D
   Eigen::VectorXd u;
   Eigen::VectorXd dv;   ///< of v = N' u
-  Eigen::MatrixXd way;  ///< P, and how the kept directions go along: way' A N = 0
+  Eigen::MatrixXd way;  ///< P, and the response of the kept directions: way' A N = 0
   Eigen::FullPivLU<Eigen::MatrixXd> across;  ///< way' W P
-  bool determined = true;                    ///< whether it is regular
+  bool determined = true;                    ///< true if it is regular
   Eigen::LDLT<Eigen::MatrixXd> along;        ///< N' A N
 
   TechnicalPoint(const Directions& d, GyroForces forces, const Eigen::VectorXd& v)

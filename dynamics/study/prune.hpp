@@ -25,30 +25,31 @@
 
 namespace kreisel {
 
-/// What is asked of prune().
+/// Options of prune().
 struct Pruning {
-  double tolerance = 1e-6;  ///< of what all that is left out does, as RunReport::error_estimate
-  double horizon = 0;       ///< s
-  double begin = 0;         ///< s
-  std::vector<double> discontinuities = {};  ///< as SolveOptions has them
-  double absolute_scale = 1e-3;              ///< as SolveOptions has it
+  double tolerance = 1e-6;                   ///< for the total effect of all dropped terms, as
+                                             ///< RunReport::error_estimate
+  double horizon = 0;                        ///< s
+  double begin = 0;                          ///< s
+  std::vector<double> discontinuities = {};  ///< as in SolveOptions
+  double absolute_scale = 1e-3;              ///< as in SolveOptions
   double max_evaluations = 1e7;              ///< of either field in one run
 };
 
-/// A term of a scene that may be left out, and what that would do.
+/// A term of a scene that may be left out, and the effect of that.
 struct PrunedTerm {
   std::string name;
   bool kept = true;
-  double bound = 0;  ///< of the effect of leaving it out alone
+  double bound = 0;  ///< of the effect of dropping this term alone
   std::string why = {};
 };
 
-/// A scene, one of these kinds, from which terms are left out.
+/// A scene, one of these types, from which terms are dropped.
 template <class... Scenes>
 struct Pruned {
   std::variant<Scenes...> scene;
   std::vector<PrunedTerm> terms;
-  double bound = 0;        ///< of the effect of leaving out all that is dropped together
+  double bound = 0;        ///< of the total effect of all dropped terms
   double evaluations = 0;  ///< of fields, for the bounds
 };
 
@@ -71,7 +72,7 @@ inline std::ostream& operator<<(std::ostream& out, const std::vector<PrunedTerm>
 
 namespace detail {
 
-/// How far leaving something out leads a scene off its motion from one start.
+/// Deviation of a scene's motions from its exact ones, from one start, if terms are left out.
 template <class Scene>
 class PruningEffect {
   using Vector = typename Scene::Vector;
@@ -84,7 +85,7 @@ class PruningEffect {
     for (const auto& blocks : {blocks_of(scene), blocks_of(scene)}) {
       blocks_.insert(blocks_.end(), blocks.begin(), blocks.end());
     }
-    // The sizes at the start serve to find the greatest on the way.
+    // The sizes at the start are needed to find the greatest sizes on the way.
     scale_ = sizes_with(start_);
     Vector greatest = scale_;
     Steps steps = started(nullptr, rough);
@@ -96,7 +97,7 @@ class PruningEffect {
     scale_ = greatest;
   }
 
-  /// Rates: of the scene with something left out.
+  /// Rates: of the scene with a term left out.
   [[nodiscard]] double bound(const std::function<Vector(double, const Vector&)>& rates) {
     const Run fine = run(rates, exact);
     const Run coarse = run(rates, rough);
@@ -120,10 +121,10 @@ class PruningEffect {
   static constexpr double rounding = 16;
   static constexpr int samples = 32;
 
-  /// x and (y - x)/resolution over their sizes.
+  /// x and (y - x)/resolution, relative to their sizes.
   struct Field {
     const PruningEffect* effect;
-    const Rates* rates;  ///< none: y is left alone
+    const Rates* rates;  ///< null: y is left alone
 
     Pair operator()(double t, const Pair& both) const {
       const Vector x = effect->scene_part(both);
@@ -148,7 +149,7 @@ class PruningEffect {
 
   [[nodiscard]] double end() const { return options_.begin + options_.horizon; }
 
-  /// What a departure is resolved to at least; less would be rounding's.
+  /// The finest resolution of a deviation; a finer one would be lost in rounding.
   [[nodiscard]] double resolution() const { return std::max(options_.tolerance, 1e-7); }
 
   [[nodiscard]] Vector scene_part(const Pair& both) const {
@@ -158,7 +159,7 @@ class PruningEffect {
     return resolution() * both.template tail<n>().cwiseProduct(scale_);
   }
 
-  /// The size of its block for each component.
+  /// The size of the block of each component.
   [[nodiscard]] Vector sizes_with(const Vector& y) const {
     Vector sizes;
     int begin = 0;
@@ -188,7 +189,7 @@ class PruningEffect {
     };
     Steps steps = started(&rates, accuracy);
     note(steps.y());
-    // Closer at the beginning: what starts from 0 is soon small no more.
+    // Closer at the beginning: motions that start from 0 soon reach their size.
     const auto sample = [&] {
       const auto part = static_cast<double>(result.states.size() + 1) / samples;
       return part < 1 ? options_.begin + options_.horizon * part * part : end();
@@ -254,7 +255,7 @@ template <class... Kinds>
 [[nodiscard]] auto with_all_left_out(SceneKinds<Kinds...> all) {
   return all;
 }
-/// The kinds, and what comes of them when any of the quantities are left out.
+/// The possible scene types if any of the quantities are left out.
 template <class Quantity, class... Rest, class... Kinds>
 [[nodiscard]] auto with_all_left_out(SceneKinds<Kinds...> all) {
   return with_all_left_out<Rest...>((all | ... | kind_without<Quantity, Kinds>()));
@@ -289,7 +290,7 @@ class Pruner {
     for (auto& effect : effects_) {
       const double found = effect.bound([&scene](double t, const typename Scene::Vector& y) ->
                                         typename Scene::Vector { return scene.rates(t, y); });
-      // A NaN bounds nothing.
+      // A NaN is no bound.
       worst = found <= worst ? worst : std::isnan(found) ? infinite : found;
     }
     return worst;
@@ -304,7 +305,7 @@ class Pruner {
       };
       PrunedTerm term{Quantity::name, true, infinite};
       if (!std::visit(is_there, reduced<0, Scene, Quantities...>(scene_))) {
-        term = {Quantity::name, false, 0, "gone with a term above"};
+        term = {Quantity::name, false, 0, "dropped with a term above"};
       } else {
         try {
           term.bound = bound(without<Scene, Quantity>(scene_, options_));
@@ -317,8 +318,8 @@ class Pruner {
     }
   }
 
-  /// Leaves a term out, if the tolerance has room for it: its own bound among those of the others,
-  /// and what all do together, for effects add up only as far as they are linear.
+  /// Drops a term if the tolerance allows it. Two bounds must fit: the sum of its own and those of
+  /// the others, and the bound of all together. Effects add up only as far as they are linear.
   [[nodiscard]] bool fits(std::size_t place, double alone) {
     if (!(sum_ + alone <= options_.tolerance)) return false;
     chosen_.at(place) = true;
@@ -358,7 +359,7 @@ class Pruner {
   std::vector<PrunedTerm> terms_;
   Chosen chosen_{};
   std::size_t next_ = 0;
-  double sum_ = 0;  ///< of the bounds of what is chosen
+  double sum_ = 0;  ///< of the bounds of dropped terms
   double together_ = 0;
 };
 
@@ -380,53 +381,56 @@ struct PrunedQuantities {
   [[nodiscard]] static auto of(const Scene& scene, const std::vector<typename Scene::State>& starts,
                                const Pruning& options) {
     check(options);
-    if (starts.empty()) refuse_task("pruning: no motion is given by its start");
+    if (starts.empty()) refuse_task("pruning: at least one start must be given");
     return Pruner<Scene, Quantities...>(scene, starts, options).result();
   }
 };
 
 }  // namespace detail
 
-/// Leaves out of a scene what does too little within a time: the terms whose effect on the motions
-/// from these starts, all together, stays below a tolerance.
+/// Drops those terms of a scene whose total effect stays below a tolerance, over a time and for the
+/// given starts.
 ///
 ///   const auto pruned = prune(gyro, start, {.tolerance = 1e-6, .horizon = 60});
 ///   std::cout << pruned.terms;
 ///   const auto run = std::visit(
 ///       [&](const auto& scene) { return solve(scene, start, {.output_times = {60}}); }, pruned.scene);
 ///
-/// Without Quantities it tries, in this order, what the scene offers of GuideRate,
-/// GuideUnsteadiness, RotorAsymmetry, ProductsOfInertia, CentrifugalForce and RingInertia; named
-/// ones, prune<ProductsOfInertia, LoadOf<ViscousDrag<>>>(..), alone.
+/// Without Quantities it tries, in this order, those of the following that the scene offers. They
+/// are GuideRate, GuideUnsteadiness, RotorAsymmetry, ProductsOfInertia, CentrifugalForce and
+/// RingInertia. Named ones, prune<ProductsOfInertia, LoadOf<ViscousDrag<>>>(..), are tried alone.
 ///
-/// Let x be the motion of the scene, x' = f(t, x), and y that of the scene with a term left out,
-/// y' = f(t, y) - d(t, y). The departure z = y - x is no difference of two integrations but has an
-/// equation of its own, exact for any size of z, integrated beside x:
+/// Let x be the motion of the scene, x' = f(t, x), and y that of the scene with a term left out, y'
+/// = f(t, y) - d(t, y). The deviation z = y - x is not computed as a difference of two
+/// integrations. It has an equation of its own, exact for any size of z, integrated together with
+/// x:
 ///
 ///   z' = f(t, x + z) - d(t, x + z) - f(t, x),   z(begin) = 0
 ///
-/// Its steps resolve z in proportion to itself, so that they may be coarse, however small z is: they
-/// are held to 1e-7 and, for a second opinion, to 1e-5. With |..| the measure of
-/// RunReport::error_estimate (attitudes in radian, other parts against their greatest size so far)
+/// Steps resolve z relative to its own size, so that they may be coarse for small z too. They are
+/// held to 1e-7 and, for a second result, to 1e-5. Let |..| be the measure of
+/// RunReport::error_estimate: attitudes in radian, other parts relative to their greatest size so
+/// far. Then
 ///
 ///   bound = 1.3 max |z| + 2 max |z - z of the coarser steps| + rounding
 ///
-/// over the ends of steps and 32 times. A term is left out while the sum of these bounds stays below
-/// the tolerance, and where there are several so does the bound of all together.
+/// over the ends of steps and 32 times. A term is dropped while the sum of these bounds stays below
+/// the tolerance. If there are several, the bound of all together must stay below the tolerance
+/// too.
 ///
-/// Scene  : FixedPointBody, FreeBody, CardanGyro; or what has without(Quantity, begin, end) -> a scene of
-///          the same State, beside what Integrator needs
+/// Scene  : FixedPointBody, FreeBody, CardanGyro; or a scene for Integrator that also has
+///          without(Quantity, begin, end) -> a scene of the same State
 /// Units  : radian, second; parts of the state that are no attitudes: relative
-/// Error  : measured, no theorem: true effect / bound is <= 0.83 in 1050 random scenes and for 1165
+/// Error  : measured, not proved: true effect / bound is <= 0.83 in 1050 random scenes and for 1165
 ///          terms left out, tolerances of 1e-9 to 1e-2, and above 0.1 in 703 of 709
 ///          (tests/dynamics/study/prune.cpp). It holds for the motions that are given, not for
 ///          others; for an ensemble give its outermost ones
-/// Cost   : two runs of both fields for each term, and two more for each that joins others left out.
+/// Cost   : two runs of both fields for each term, and two more for each combination of terms.
 ///          In 4 scenes fields became 1.7 to 4.8 times as fast, runs of solve() 1.4 to 3 times; the
 ///          bounds cost 3 to 9 such runs and are paid for after 5 to 27: this is for ensembles and
 ///          repeated runs, never for one (benchmarks/prune_gain.cpp). RingInertia spares nothing: a
 ///          gyro adds the moments of its rings to the rotor's when it is built, and is of one type
-///          with and without; it is asked for to see how much the rings do. The steps are explicit:
+///          with and without; it shows the rings' effect. The steps are explicit:
 ///          stiff scenes take long
 /// Throws : InvalidInput for a tolerance outside [1e-15, 1e-2], a horizon below 0, no starts;
 ///          ComputationFailed where the scene's own motion fails. A term without which it fails, or
@@ -440,7 +444,7 @@ template <class... Quantities, class Scene>
                                                   ProductsOfInertia, CentrifugalForce, RingInertia>,
                          detail::PrunedQuantities<Quantities...>>;
   static_assert((detail::is_droppable<Scene, Quantities> && ...),
-                "the scene does not have a term that is to be left out");
+                "the scene does not have one of the named terms");
   return Chosen::of(scene, starts, options);
 }
 

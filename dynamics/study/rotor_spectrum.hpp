@@ -12,12 +12,12 @@
 
 namespace kreisel {
 
-/// How the state matrix of linearize() changes with the momenta of all rotors, d A / d ln(L), while
-/// the place and the forces stay: -A_eff^-1 G_R in the rows of the accelerations, and what free
-/// rotors' speeds answer to those.
+/// Derivative of the state matrix of linearize() by the momenta of all rotors, d A / d ln(L), at
+/// constant position and forces. It is -A_eff^-1 G_R in the rows of the accelerations, together
+/// with the response of free rotors' speeds.
 ///
-/// Joints that are held or driven do not give way.
-/// Cost : as rotor_matrices()
+/// Joints that are locked or driven do not move.
+/// Cost   : as rotor_matrices()
 template <class M>
 [[nodiscard]] Eigen::MatrixXd momenta_slope(const BodySystem<M>& system, double t,
                                             const Eigen::VectorXd& y, BodyWorkspace& w) {
@@ -30,7 +30,7 @@ template <class M>
       gives_way[static_cast<std::size_t>(v)] = link.moved_by_forces();
     }
   }
-  std::vector<int> own;    // places among u
+  std::vector<int> own;    // positions among u
   std::vector<int> rates;  // and among all rates
   for (int k = 0; k < static_cast<int>(m.rates.size()); ++k) {
     const int rate = m.rates[static_cast<std::size_t>(k)];
@@ -51,11 +51,11 @@ template <class M>
   return slope;
 }
 
-/// The modes of  x' = A x,  damped or not, with how their roots go with the momenta of the rotors:
+/// The modes of x' = A x, damped or not, with the dependence of their roots on the rotors' momenta:
 ///
 ///   d ln|s| / d ln(L) = Re(y.(dA / d ln(L)) x / s),   y.x = 1,   y and x left and right vectors.
 ///
-/// energy_sign is 0: it has a meaning without damping only.
+/// energy_sign is 0: it is defined only without damping.
 ///
 /// Error  : of the roots as spectrum(); of spin_growth that of the vectors. 0 for roots that do not
 ///          oscillate, or are multiple and have too few vectors

@@ -25,23 +25,25 @@ struct Mode {
   Eigen::VectorXcd shape;
 };
 
-/// Which kind of motion a mode of a system with rotors is, by how its frequency goes with their
-/// momenta L: d ln|root| / d ln(L), towards 1 for a nutation of fast rotors (~ L/J), towards -1 for
-/// a precession (~ K/L) and towards 0 for what stiffness and inertia alone would do.
+/// Type of a mode of a system with rotors, by the dependence of its frequency on the rotors'
+/// momenta L: d ln|root| / d ln(L). This tends to 1 for a nutation of fast rotors (~ L/J) and to -1
+/// for a precession (~ K/L). It tends to 0 for an oscillation of stiffness and inertia alone.
 enum class ModeKind {
   nutation,    ///< grows by more than the square root of L
   precession,  ///< falls by more than the square root of L
-  oscillation  ///< neither: the springs' more than the rotors'. Also a root that does not oscillate
+  oscillation  ///< neither: stiffness dominates the rotors. Also a root that does not oscillate
 };
 
 /// A mode of a system of second order without damping.
 struct GyroscopicMode : Mode {
-  /// d ln|root| / d ln(L), if all momenta grow in proportion: exact, by the first-order change of the
-  /// root of  m w^2 + gamma w - k = 0,  -gamma/(2 m w + gamma). 0 for modes that do not oscillate.
+  /// d ln|root| / d ln(L) for all momenta in proportion. It is exact, by the first-order change of
+  /// the root of m w^2 + gamma w - k = 0: -gamma/(2 m w + gamma). 0 for modes that do not
+  /// oscillate.
   double spin_growth = 0;
 
-  /// Of the energy x.(w^2 M + K) x of an oscillation: +1, or -1 where gyroscopic forces alone keep
-  /// it; any damping, however small, lets a mode of negative energy grow. 0 without oscillation.
+  /// Sign of the energy x.(w^2 M + K) x of an oscillation. It is -1 if gyroscopic forces alone
+  /// stabilise the mode: any damping, however small, then lets the mode grow. 0 without
+  /// oscillation.
   int energy_sign = 0;
 
   [[nodiscard]] ModeKind kind() const {
@@ -57,7 +59,7 @@ namespace detail {
   return a.imag() != b.imag() ? a.imag() > b.imag() : a.real() < b.real();
 }
 
-/// So that the greatest component is real and positive: equal modes are equal numbers.
+/// Makes the greatest component real and positive, so that equal modes are equal numbers.
 inline void take_phase_out(Eigen::VectorXcd& shape) {
   Eigen::Index greatest = 0;
   if (!(shape.cwiseAbs().maxCoeff(&greatest) > 0)) return;
@@ -76,13 +78,13 @@ template <class... Words>
 
 }  // namespace detail
 
-/// The modes of  x' = A x,  slowest oscillation first; of two conjugate ones first that with
-/// root.imag() > 0.
+/// The modes of x' = A x, slowest oscillation first. In a conjugate pair the root with root.imag()
+/// > 0 comes first.
 ///
 /// error  : of A itself, as a norm
 /// Error  : reported for each: 8 u |A| and `error` times the condition 1/|y.x| of the root, y and x
 ///          its left and right vectors; for a root that is (nearly) multiple and has too few vectors
-///          u^(1/n) |A|, which is what such a root moves by
+///          u^(1/n) |A|, the distance by which such a root moves
 /// Throws : InvalidInput if A is not square or not finite; ComputationFailed if QR does not
 ///          converge
 [[nodiscard]] inline std::vector<Mode> spectrum(const Eigen::MatrixXd& A, double error = 0) {
@@ -125,8 +127,8 @@ template <class Coefficients>
 
 namespace detail {
 
-/// x.M x, x.K x and the imaginary part of x.G x, by which the root i w of a mode of the shape x is
-/// that of  m w^2 + gamma w - k = 0.
+/// x.M x, x.K x and the imaginary part of x.G x. They determine the root i w of a mode of shape x:
+/// m w^2 + gamma w - k = 0.
 struct ModalNumbers {
   double m, gamma, k;
 
@@ -137,8 +139,8 @@ struct ModalNumbers {
     return {re.dot(M * re) + im.dot(M * im), 2 * re.dot(G * im), re.dot(K * re) + im.dot(K * im)};
   }
 
-  /// The root next to w, where k >= 0 without cancellation. A stationary value: it errs by the
-  /// square of the shape's error only.
+  /// The root next to w, without cancellation for k >= 0. The value is stationary: its error is the
+  /// square of the shape's error.
   [[nodiscard]] double frequency(double w) const {
     const double root = std::sqrt(std::max(gamma * gamma + 4 * m * k, 0.0));
     const double far = -(gamma + std::copysign(root, gamma)) / (2 * m);
@@ -167,7 +169,7 @@ template <class Coefficients>
 ///
 ///   (s; v)' = (0  R'; -R  -G) (s; v),
 ///
-/// a skew matrix: i times it is Hermitian, and its eigenvalues are real to the last bit.
+/// a skew matrix. Times i it is Hermitian, and its eigenvalues are real to the last bit.
 template <class Coefficients>
 [[nodiscard]] std::vector<GyroscopicMode> definite_modes(const Coefficients& c,
                                                          const Eigen::MatrixXd& L,
@@ -198,8 +200,8 @@ template <class Coefficients>
   return modes;
 }
 
-/// Roots of the state matrix. Those of a conservative system lie mirrored at the imaginary axis; a
-/// root that has no other within its error of its mirror image is its own, and lies on the axis.
+/// The roots of the state matrix. Roots of a conservative system are symmetric about the imaginary
+/// axis. A root with no other root within its error of its mirror image lies on the axis.
 template <class Coefficients>
 [[nodiscard]] std::vector<GyroscopicMode> indefinite_modes(const Coefficients& c) {
   const std::vector<Mode> all = spectrum(state_matrix(c));
@@ -234,12 +236,14 @@ template <class Coefficients>
 ///
 ///   M x'' + G x' + K x = 0,   M = M' > 0,   G = -G',   K = K',
 ///
-/// slowest first; of two conjugate roots that with root.imag() > 0 stands for both.
+/// slowest first; the root with root.imag() > 0 stands for each conjugate pair.
 ///
-/// K >= 0: one mode for each coordinate, its root exactly on the imaginary axis; 0 stands for two
-/// roots 0 and has the shape 0. K indefinite: nothing in the structure keeps the roots on the axis,
-/// gyroscopic forces may or may not (Thomson and Tait); a root counts as lying on it only if
-/// rounding cannot have hidden that it does not, which at the border of stability stays open.
+/// K >= 0: one mode for each coordinate, its root exactly on the imaginary axis. A double root 0
+/// appears once, with the shape 0.
+///
+/// K indefinite: gyroscopic forces may keep the roots on the axis or not (Thomson and Tait). A root
+/// then counts as on the axis only if rounding cannot hide a distance from it. At the border of
+/// stability this stays undecided.
 ///
 /// Coefficients : has mass, damping = G, and stiffness
 /// Error        : of each root reported; where K >= 0 some 1e-15 of |K/M|^(1/2) and |G/M|, and slow
@@ -269,7 +273,7 @@ template <class Coefficients>
   const double zero = 16 * std::numeric_limits<double>::epsilon() * k.cwiseAbs().maxCoeff();
   std::vector<GyroscopicMode> modes;
   if (k.minCoeff() >= -zero) {
-    // No square root of what rounding has left of a 0.
+    // No square root of a rounding residue.
     const Eigen::VectorXd roots =
         k.unaryExpr([zero](double x) { return x > zero ? std::sqrt(x) : 0.0; });
     const Eigen::MatrixXd R = directions * roots.asDiagonal();

@@ -12,7 +12,7 @@
 
 namespace kreisel {
 
-/// Where a pair of multipliers leaves the unit circle.
+/// The point of the unit circle at which a pair of multipliers leaves it.
 enum class BoundaryKind { minus_one, plus_one, krein };
 
 /// A zero of one of the three discriminants of PairedMultipliers.
@@ -22,8 +22,8 @@ struct StabilityBoundary {
   BoundaryKind kind = BoundaryKind::minus_one;
 };
 
-/// A range of the parameter in which the motion is unstable. An end of the range that was looked
-/// at counts as a boundary with the error 0.
+/// A range of the parameter in which the motion is unstable. An end of the examined range counts as
+/// a boundary with the error 0.
 struct UnstableInterval {
   StabilityBoundary begin;
   StabilityBoundary end;
@@ -45,8 +45,8 @@ struct Discriminant {
   }
 }
 
-/// The zero of g between a and b, where it has the values ga and gb of different signs: false
-/// position that halves the weight of an end which stays twice, every third time bisection.
+/// The zero of g between a and b, with the values ga and gb of different signs. False position that
+/// halves the weight of an end that stays twice; every third step is a bisection.
 template <class Function>
 [[nodiscard]] double zero_between(const Function& g, double a, double ga, double b, double gb) {
   const double close =
@@ -69,10 +69,10 @@ template <class Function>
   return (a + b) / 2;
 }
 
-/// A place between a and c where g is below 0, b between them being lower than both; c if there is
-/// none. Golden section with parabolas: a tongue that is far narrower than the samples' distance
-/// is the bottom of a parabola that touches 0 where the tongue has its tip. Given up when the
-/// parabola through a, b, c stays above half of g(b) twice.
+/// A position between a and c with g below 0, or c if there is none. g(b) must be lower than g(a)
+/// and g(c). Golden section with parabolas: a tongue far narrower than the sampling is the bottom
+/// of a parabola. The parabola touches 0 at the tip of the tongue. The search ends if the parabola
+/// through a, b, c stays above half of g(b) twice.
 template <class Function>
 [[nodiscard]] double below_zero(const Function& g, double a, double ga, double b, double gb,
                                 double c, double gc) {
@@ -89,7 +89,7 @@ template <class Function>
     const double slope = left + bend * (b - a);
     hopeless = gb - slope * slope / (4 * bend) > gb / 2 ? hopeless + 1 : 0;
     if (hopeless == 2) return none;
-    // Through the three lowest so far, if its bottom lies well inside.
+    // Through the three lowest so far, if the bottom lies well inside.
     const double r = (b - second) * (gb - g_third);
     const double q = (b - third) * (gb - g_second);
     const double denominator = 2 * (q - r);
@@ -123,25 +123,25 @@ template <class Function>
 
 }  // namespace detail
 
-/// Where stability changes while a parameter goes from `from` to `to`: the zeros of the three
-/// discriminants, each found by a bracket and closed in to rounding.
+/// The values of a parameter from `from` to `to` at which stability changes. They are the zeros of
+/// the three discriminants, each bracketed and refined to rounding.
 ///
-/// Between samples a discriminant may dip below 0 and come back (a narrow tongue): each local
-/// extremum towards 0 is followed to its bottom. Two tongues of one kind within two samples are
-/// missed, as are tongues narrower than 1e-9 of the parameter.
+/// Between samples a discriminant may dip below 0 and return (a narrow tongue). Each local extremum
+/// towards 0 is therefore refined. Two tongues of one kind within two samples are missed, and so
+/// are tongues narrower than 1e-9 of the parameter.
 ///
-/// At         : callable (double parameter) -> PairedMultipliers
-/// Error      : reported for each, and a bound: at paired_multipliers()' default accuracy below
+/// At     : callable (double parameter) -> PairedMultipliers
+/// Error  : reported for each, and a bound: at paired_multipliers()' default accuracy below
 ///              2e-13 of the parameter, tongues of 4e-4 included (tests/dynamics/study/floquet.cpp)
-/// Cost       : samples + 1 transition matrices, and some 15 for each boundary
-/// Throws     : InvalidInput if from < to does not hold or there are fewer than 2 samples
+/// Cost   : samples + 1 transition matrices, and some 15 for each boundary
+/// Throws : InvalidInput if from < to does not hold or there are fewer than 2 samples
 template <class At>
 [[nodiscard]] std::vector<StabilityBoundary> stability_boundaries(const At& at, double from,
                                                                   double to, int samples = 200) {
   if (!(from < to) || samples < 2) {
     std::ostringstream text;
     text << "stability boundaries: [" << from << ", " << to << "] in " << samples
-         << " samples is no range to look at";
+         << " samples: from < to and at least 2 samples are needed";
     throw InvalidInput(text.str());
   }
   const auto count = static_cast<std::size_t>(samples) + 1;
@@ -188,9 +188,9 @@ template <class At>
 
 /// The unstable ranges of a parameter between `from` and `to`.
 ///
-/// Between two boundaries the verdict does not change, so that one look in the middle decides. A
-/// discriminant that only touches 0, or changes its sign where another pair is unstable already,
-/// makes no end of a range.
+/// Between two boundaries the verdict does not change, so that one test in the middle decides. A
+/// discriminant that only touches 0 is no end of a range. One that changes its sign while another
+/// pair is unstable is no end either.
 ///
 /// Cost and throws : as stability_boundaries(), and one transition matrix for each piece
 template <class At>

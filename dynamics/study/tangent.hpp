@@ -12,19 +12,19 @@
 
 namespace kreisel {
 
-/// The directions in which a state can move: itself, but for three small angles on the turned
-/// body's axes instead of the four numbers of each quaternion.
+/// The directions in which a state can move. Each quaternion has three small angles on the turned
+/// body's axes in place of its four numbers.
 ///
 ///   y -> (.., q exp(theta/2), ..),   dy = E eta,   E = dy/d eta
 ///
-/// Linear equations in eta have no zero roots that stand for nothing but a quaternion's norm.
+/// Linear equations in eta have no spurious zero roots of a quaternion's norm.
 ///
 /// Units  : radian for the angles; those of the state for the rest
 class Tangent {
  public:
-  /// `quaternions` are the places in y where a quaternion (x, y, z, w) begins.
+  /// `quaternions` are the positions in y at which a quaternion (x, y, z, w) begins.
   ///
-  /// Throws : InvalidInput if they overlap or do not fit into a state of so many components
+  /// Throws : InvalidInput if they overlap or exceed the state's number of components
   Tangent(int components, std::vector<int> quaternions)
       : components_(components), quaternions_(std::move(quaternions)) {
     int free = 0;
@@ -32,28 +32,28 @@ class Tangent {
       if (at < free || at + 4 > components) {
         std::ostringstream text;
         text << "a quaternion at component " << at << " does not fit into a state of " << components
-             << ", or not behind the one before it";
+             << ", or overlaps the one before";
         throw InvalidInput(text.str());
       }
       free = at + 4;
     }
   }
 
-  /// Of eta.
+  /// The number of components of eta.
   [[nodiscard]] int dimension() const {
     return components_ - static_cast<int>(quaternions_.size());
   }
 
   [[nodiscard]] const std::vector<int>& quaternions() const { return quaternions_; }
 
-  /// E at y. It is linear in the quaternions: E at a rate of y, with 0 for what does not depend on
-  /// y, is the rate of E.
+  /// E at y. E is linear in the quaternions. At a rate of y, with 0 for the constant entries, it is
+  /// therefore the rate of E.
   [[nodiscard]] Eigen::MatrixXd basis(const Eigen::VectorXd& y) const { return filled(y, 1); }
   [[nodiscard]] Eigen::MatrixXd basis_rate(const Eigen::VectorXd& dy) const {
     return filled(dy, 0);
   }
 
-  /// The eta of a rate:  P E = 1.
+  /// The left inverse of the basis: P E = 1, eta = P (rate).
   [[nodiscard]] Eigen::MatrixXd inverse(const Eigen::VectorXd& y) const {
     Eigen::MatrixXd P = basis(y).transpose();
     for (std::size_t i = 0; i < quaternions_.size(); ++i) {

@@ -14,19 +14,20 @@
 
 namespace kreisel {
 
-/// How a motion depends on where it begins.
+/// Dependence of a motion on its start.
 template <int n>
 struct Transition {
   Eigen::Matrix<double, n, 1> state;   ///< y(t_end)
   Eigen::Matrix<double, n, n> matrix;  ///< dy(t_end)/dy(t_begin)
 
-  /// Of each entry of the matrix: what steps with a hundred times the error change, and rounding.
+  /// Error of each entry of the matrix: its change for steps with a hundred times the error, and
+  /// rounding.
   Eigen::Matrix<double, n, n> error;
 };
 
 namespace detail {
 
-/// y and, behind it, the columns of the transition matrix, as one state.
+/// y, followed by the columns of the transition matrix, as one state.
 template <int n>
 using WithTransition = Eigen::Matrix<double, n*(n + 1), 1>;
 
@@ -44,7 +45,7 @@ template <int n, class Field>
   return steps.advance_to(t_end);
 }
 
-/// Field: (t, y) -> the rates of y and the matrix that the transition matrix's rate has in front.
+/// Field: (t, y) -> the rates of y, and the matrix before X in X'.
 template <int n, class Field>
 [[nodiscard]] Transition<n> transition_of(const Field& field, double t_begin,
                                           const Eigen::Matrix<double, n, 1>& y, double t_end,
@@ -92,8 +93,8 @@ template <int n, class Coefficients>
 ///
 ///   y' = f(t, y),   X' = (df/dy) X,   X(t_begin) = 1,
 ///
-/// df/dy by dual numbers: exact, no differences. What a periodic or steady motion does to its
-/// neighbours is this matrix over one period.
+/// df/dy by dual numbers: exact, no differences. The matrix over one period shows the growth of
+/// neighbouring motions of a periodic or steady motion.
 ///
 /// Scene  : has Vector, blocks and rates(t, y), which takes dual numbers too
 /// Error  : reported entry by entry

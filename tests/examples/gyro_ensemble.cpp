@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_the_parts_that_are_there) {
   BOOST_TEST((std::filesystem::last_write_time(kept) == time));
   const test::Outcome other = run("--tolerance 1e-6 " + words);
   BOOST_TEST(other.status == 2);
-  BOOST_TEST(other.err.find("is of another ensemble") != std::string::npos);
+  BOOST_TEST(other.err.find("belongs to another ensemble") != std::string::npos);
   std::ofstream(part, std::ios::app) << "one row too many\n";
   BOOST_TEST(run(words).status == 2);
 }

@@ -1,6 +1,6 @@
 // A brake that acts in one direction only asks for the sign of a speed, of which a pack has one a
 // lane.
-// refused: this code branches on a number, of which a pack has one a lane
+// refused: this code branches on a number, but a pack has several
 #include <dynamics/ensemble/pack.hpp>
 
 using kreisel::Pack;
