@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(eigenvalues_of_special_matrices) {
   BOOST_TEST(detail::eigenvalues(block).cwiseAbs().maxCoeff() == 0);
 }
 
-BOOST_AUTO_TEST_CASE(eigenvalues_of_nothing) {
+BOOST_AUTO_TEST_CASE(empty_matrices_have_no_eigenvalues) {
   BOOST_TEST(detail::eigenvalues(Eigen::MatrixXd(0, 0)).size() == 0);
   BOOST_TEST(detail::eigenvalues(Eigen::MatrixXd::Zero(3, 3)).isZero(0));
   for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(eigenvalues_of_nothing) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(empty_matrices_have_no_values) {
+BOOST_AUTO_TEST_CASE(empty_matrices_have_no_decomposition) {
   for (const auto& [rows, columns] : {std::pair(0, 0), {0, 3}, {3, 0}}) {
     const Eigen::MatrixXd A(rows, columns);
     const Eigen::MatrixXcd C(rows, columns);

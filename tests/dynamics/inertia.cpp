@@ -92,7 +92,7 @@ std::string refusal(const Inertia<>& T, Mass rule = Mass::positive) {
 
 BOOST_AUTO_TEST_SUITE(symmetric_matrices)
 
-BOOST_AUTO_TEST_CASE(have_their_numbers_where_their_names_say) {
+BOOST_AUTO_TEST_CASE(have_their_numbers_by_name) {
   const Symmetric3<> s{1, 2, 3, 4, 5, 6};
   Matrix3<double> m;
   m << 1, 4, 5, 4, 2, 6, 5, 6, 3;
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(take_the_mean_of_both_triangles) {
 }
 
 // Anchor: a unit mass at (1, 2, 3) has the inertia (13, 10, 5; -2, -3, -6).
-BOOST_AUTO_TEST_CASE(of_offsets_are_twice_the_inertia_of_a_unit_mass) {
+BOOST_AUTO_TEST_CASE(offset_tensor_is_twice_a_unit_mass_inertia) {
   const Vector3<double> p(1, 2, 3);
   const Matrix3<double> twice = offset_product(p, p).matrix();
   Matrix3<double> m;
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(of_offsets_are_twice_the_inertia_of_a_unit_mass) {
   BOOST_TEST(same(twice, 2 * m));
 }
 
-BOOST_DATA_TEST_CASE(of_offsets_are_bilinear, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(offset_tensor_is_bilinear, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const Vector3<double> a = sample.vector();
   const Vector3<double> b = sample.vector();
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(is_the_papers_matrix_10) {
 }
 
 // Anchor: 2 kg at (1, 0, 0), spinning about z with 3 rad/s.
-BOOST_AUTO_TEST_CASE(of_one_mass_by_hand) {
+BOOST_AUTO_TEST_CASE(one_mass_by_hand) {
   const Inertia<> T = inertia({{2, {1, 0, 0}}});
   BOOST_TEST(same(T * Motor<>{{0, 0, 3}, {0, 0, 0}}, Motor<>{{0, 6, 0}, {0, 0, 6}}));
 }
@@ -175,7 +175,7 @@ BOOST_DATA_TEST_CASE(gives_the_momentum_of_its_masses, data::xrange(200u), seed)
   BOOST_TEST(near(inertia(masses) * V, momentum(masses, V), all_terms(masses) * terms(V), 20));
 }
 
-BOOST_DATA_TEST_CASE(of_two_bodies_is_that_of_all_masses, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(two_bodies_have_the_sum_of_their_masses, data::xrange(50u), seed) {
   test::Sample sample(seed);
   std::vector<PointMass> masses = sample.masses();
   const std::vector<PointMass> others = sample.masses();
@@ -187,7 +187,7 @@ BOOST_DATA_TEST_CASE(of_two_bodies_is_that_of_all_masses, data::xrange(50u), see
   BOOST_TEST(near_inertia(-one, inertia({}) - one, all_terms(masses), 0));
 }
 
-BOOST_DATA_TEST_CASE(displaced_is_that_of_the_displaced_masses, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(displaced_agrees_with_displaced_masses, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const std::vector<PointMass> masses = sample.masses();
   const Pose<> X = sample.pose(-2, 2);
@@ -197,7 +197,7 @@ BOOST_DATA_TEST_CASE(displaced_is_that_of_the_displaced_masses, data::xrange(200
   BOOST_TEST(near_inertia(X * inertia(masses), inertia(moved), scale, 24));
 }
 
-BOOST_DATA_TEST_CASE(displaced_is_the_displaced_motor_tensor, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(displaced_agrees_with_the_motor_tensor, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Inertia<> T = inertia(sample.masses());
   const Pose<> X = sample.pose(-2, 2);
@@ -205,7 +205,7 @@ BOOST_DATA_TEST_CASE(displaced_is_the_displaced_motor_tensor, data::xrange(100u)
   BOOST_TEST(near(six((X * T).motor_tensor()), six(X * T.motor_tensor()), scale, 32));
 }
 
-BOOST_DATA_TEST_CASE(gives_an_energy_that_no_frame_changes, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(has_the_same_energy_in_every_frame, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Inertia<> T = inertia(sample.masses());
   const Motor<> V = sample.motor();
@@ -249,7 +249,7 @@ BOOST_DATA_TEST_CASE(is_a_difference_of_products, data::xrange(200u), seed) {
 }
 
 // The masses moved for h and for -h, in 50 digits.
-BOOST_DATA_TEST_CASE(is_how_the_inertia_of_moving_masses_changes, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_moving_masses, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const std::vector<PointMass> masses = sample.masses();
   const Motor<> V = sample.motor(-1, 1);
@@ -280,7 +280,7 @@ BOOST_DATA_TEST_CASE(is_how_the_inertia_of_moving_masses_changes, data::xrange(1
 }
 
 // Paper 002, section 2: oT V' = [V' (T V')],  oT F = [V' (T F)] + T [F V'].
-BOOST_DATA_TEST_CASE(of_the_paper, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_the_paper, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Inertia<> T = inertia(sample.masses());
   const Motor<> V = sample.motor();
@@ -326,7 +326,7 @@ BOOST_DATA_TEST_CASE(undoes_the_inertia, data::xrange(200u), seed) {
       near(A.moment, exact.moment, turned * size * r.norm() + P.resultant.norm() / T.mass, 8));
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_a_force_does_not_determine) {
+BOOST_AUTO_TEST_CASE(refuses_undetermined_accelerations) {
   const Motor<> P{{1, 2, 3}, {4, 5, 6}};
   const auto fails = [&P](const Inertia<>& T) {
     try {
@@ -353,7 +353,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(the_check)
 
-BOOST_DATA_TEST_CASE(passes_whatever_is_made_of_masses, data::xrange(400u), seed) {
+BOOST_DATA_TEST_CASE(accepts_all_sets_of_masses, data::xrange(400u), seed) {
   test::Sample sample(seed);
   const std::vector<PointMass> masses = sample.masses();
   BOOST_TEST(refusal(inertia(masses)) == "");
@@ -362,7 +362,7 @@ BOOST_DATA_TEST_CASE(passes_whatever_is_made_of_masses, data::xrange(400u), seed
   BOOST_TEST(refusal([&] { check(cast<float>(moved)); }) == "");
 }
 
-BOOST_AUTO_TEST_CASE(passes_the_legal_limits) {
+BOOST_AUTO_TEST_CASE(accepts_the_legal_limits) {
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {0, 0, 0, 0, 0, 0}}) == "");          // point
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {0, 2, 2, 0, 0, 0}}) == "");          // needle
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {1, 2, 3, 0, 0, 0}}) == "");          // disc
@@ -370,7 +370,7 @@ BOOST_AUTO_TEST_CASE(passes_the_legal_limits) {
   BOOST_TEST(refusal(Inertia<>{1e-30, {0, 0, 0}, {1e-40, 1e-40, 1e-40, 0, 0, 0}}) == "");
 }
 
-BOOST_AUTO_TEST_CASE(asks_for_a_mass_above_zero) {
+BOOST_AUTO_TEST_CASE(requires_a_mass_above_zero) {
   BOOST_TEST(refusal(Inertia<>{-2.5, {0, 0, 0}, {1, 1, 1, 0, 0, 0}}) ==
              "inertia: mass >= 0 fails: mass = -2.5 kg");
   BOOST_TEST(refusal(Inertia<>{-2.5, {0, 0, 0}, {1, 1, 1, 0, 0, 0}}, Mass::zero_allowed) ==
@@ -379,7 +379,7 @@ BOOST_AUTO_TEST_CASE(asks_for_a_mass_above_zero) {
              "inertia: mass > 0 fails: mass = 0 kg");
 }
 
-BOOST_AUTO_TEST_CASE(passes_a_massless_ring_where_that_is_allowed) {
+BOOST_AUTO_TEST_CASE(accepts_a_massless_ring_if_allowed) {
   BOOST_TEST(refusal(Inertia<>{0, {0, 0, 0}, {1, 1, 2, 0, 0, 0}}, Mass::zero_allowed) == "");
   BOOST_TEST(refusal(Inertia<>{0, {0, 1e-9, 0}, {1, 1, 2, 0, 0, 0}}, Mass::zero_allowed) ==
              "inertia: mass = 0 kg, but its first moment is not 0");
@@ -387,7 +387,7 @@ BOOST_AUTO_TEST_CASE(passes_a_massless_ring_where_that_is_allowed) {
              "inertia: triangle inequality about the centre of mass fails: 1 + 1 >= 3 kg m^2");
 }
 
-BOOST_AUTO_TEST_CASE(names_the_moments_that_are_negative) {
+BOOST_AUTO_TEST_CASE(names_negative_moments) {
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {-0.5, 2, 2, 0, 0, 0}}) ==
              "inertia: principal moments about the centre of mass >= 0 fails: -0.5, 2, 2 kg m^2");
   // Products of inertia too great for the moments, and a centre of mass too far from the origin.
@@ -428,7 +428,7 @@ BOOST_AUTO_TEST_CASE(names_the_nearest_legal_tensor) {
              std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(names_the_triangle_that_does_not_close) {
+BOOST_AUTO_TEST_CASE(names_the_violated_triangle_inequality) {
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 0}, {1, 4, 2, 0, 0, 0}}) ==
              "inertia: triangle inequality about the centre of mass fails: 1 + 2 >= 4 kg m^2");
   BOOST_TEST(
@@ -441,7 +441,7 @@ BOOST_AUTO_TEST_CASE(names_the_triangle_that_does_not_close) {
              "inertia: triangle inequality about the centre of mass fails: 1 + 1 >= 3 kg m^2");
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_not_a_number) {
+BOOST_AUTO_TEST_CASE(refuses_numbers_that_are_not_finite) {
   const std::string text = "inertia: not a finite number among mass, first moment and tensor";
   for (const double bad : {not_a_number, infinity, -infinity}) {
     BOOST_TEST(refusal(Inertia<>{bad, {0, 0, 0}, {1, 1, 1, 0, 0, 0}}) == text);
@@ -459,7 +459,7 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_not_a_number) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(calls_the_body_by_its_name) {
+BOOST_AUTO_TEST_CASE(names_the_body) {
   BOOST_TEST(refusal([] { check(Inertia<>{}, Mass::positive, "outer gimbal"); }) ==
              "outer gimbal: mass > 0 fails: mass = 0 kg");
 }
@@ -468,7 +468,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(an_inertia_tensor)
 
-BOOST_AUTO_TEST_CASE(is_made_about_the_centre_or_about_the_origin) {
+BOOST_AUTO_TEST_CASE(may_be_given_about_centre_or_origin) {
   const Vector3<double> centre(1, 2, 3);
   const Matrix3<double> one = Matrix3<double>::Identity();
   const auto about_centre = InertiaTensor<Body>::about_centre(2, centre, one);
@@ -483,7 +483,7 @@ BOOST_AUTO_TEST_CASE(is_made_about_the_centre_or_about_the_origin) {
   BOOST_TEST(same(again.value.tensor.matrix(), about_origin));
 }
 
-BOOST_AUTO_TEST_CASE(is_checked_where_it_is_made) {
+BOOST_AUTO_TEST_CASE(is_checked_by_its_constructor) {
   Matrix3<double> lopsided = Matrix3<double>::Identity();
   lopsided(0, 1) = 0.1;
   const Vector3<double> o = Vector3<double>::Zero();

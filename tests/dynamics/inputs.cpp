@@ -64,7 +64,7 @@ std::string kept(const Scene& scene, const typename Scene::State& state) {
 
 BOOST_AUTO_TEST_SUITE(inputs)
 
-BOOST_AUTO_TEST_CASE(of_bodies_in_a_tree) {
+BOOST_AUTO_TEST_CASE(bodies_in_a_tree_are_checked) {
   refuses([](BodyDescription& b) { b.name = ""; });
   for (const double none : {not_a_number, infinite}) {
     for (int i = 0; i < 3; ++i) {
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(of_bodies_in_a_tree) {
   BOOST_TEST(system_of(pushed_by_nothing).tree().rotors().size() == 1U);
 }
 
-BOOST_AUTO_TEST_CASE(of_workspaces) {
+BOOST_AUTO_TEST_CASE(workspaces_are_checked) {
   const auto turns = system_of(rod());
   const auto rests = system_of(rod(JointKind::fixed));
   BodyWorkspace of_other = rests.workspace();
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(of_workspaces) {
 }
 
 // Needles along each axis, in a ball joint: the message names the axis that nothing resists.
-BOOST_AUTO_TEST_CASE(of_needles) {
+BOOST_AUTO_TEST_CASE(needles_are_refused_with_their_axis) {
   for (int axis = 0; axis < 3; ++axis) {
     BodyDescription needle = rod(JointKind::spherical);
     Vector3<double> moments(1, 1, 1);
@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_CASE(of_needles) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_single_numbers) {
+BOOST_AUTO_TEST_CASE(single_numbers_are_checked) {
   BOOST_CHECK_THROW((void)EqualSpringsRange::of({0, 1, 1}, 1), InvalidInput);
   BOOST_CHECK_THROW((void)EqualSpringsRange::of({1, 1, 1}, 0), InvalidInput);
   BOOST_CHECK_THROW(SymmetricFreeFlow(1, 0), InvalidInput);
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(of_single_numbers) {
 }
 
 // Which invariants a top has depends on which of its numbers are 0.
-BOOST_AUTO_TEST_CASE(of_tops_that_keep_less) {
+BOOST_AUTO_TEST_CASE(tops_list_their_invariants) {
   const EulerTop::State state{Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3), {1, 2, 3}};
   const std::string always = "energy,vertical momentum,";
   BOOST_TEST(kept(EulerTop({1, 1, 1.5}, {0, 0, 1}), state) == always + "axial momentum,");
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(of_tops_that_keep_less) {
 }
 
 // And a Cardan gyro, on its bearings and what turns its rotor.
-BOOST_AUTO_TEST_CASE(of_gimbals_that_keep_less) {
+BOOST_AUTO_TEST_CASE(gimbals_list_their_invariants) {
   const CardanMoments moments{{2, 2, 3}, {1, 1, 1}, {1, 1, 1}};
   const CardanState state{0.1, 0.2, 0.3, 1, 2, 30};
   const auto kept_by = [&](const CardanBearings& bearings, const auto& rotor) {
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(of_gimbals_that_keep_less) {
 }
 
 // A brake takes from the energy that a steady guide leaves.
-BOOST_AUTO_TEST_CASE(of_loads_that_keep_less) {
+BOOST_AUTO_TEST_CASE(loads_limit_the_invariants) {
   const auto kept_by = [](double damping) {
     const FixedPointBody body(
         InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},
@@ -189,7 +189,7 @@ BOOST_AUTO_TEST_CASE(of_loads_that_keep_less) {
 }
 
 // Which invariants a tree has depends on its joints, forces and rotors.
-BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
+BOOST_AUTO_TEST_CASE(trees_list_their_invariants) {
   const auto kept_by = [](const BodyDescription& body) {
     const auto system = system_of(body);
     return kept(system, system.rest());
@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(of_trees_that_keep_less) {
 }
 
 // A tensor whose rounding makes much of the rates is said to be uncertain by its last digits.
-BOOST_AUTO_TEST_CASE(of_nearly_singular_bodies) {
+BOOST_AUTO_TEST_CASE(nearly_singular_bodies_have_uncertainty) {
   const auto body = [](double least) {
     Matrix3<double> Theta = Vector3<double>(1, 1, least).asDiagonal();
     return FixedPointBody(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
@@ -233,7 +233,7 @@ BOOST_AUTO_TEST_CASE(of_nearly_singular_bodies) {
 }
 
 // A tensor is symmetric in each of its three pairs, and a body without mass has none anywhere.
-BOOST_AUTO_TEST_CASE(of_tensors) {
+BOOST_AUTO_TEST_CASE(tensors_are_checked) {
   for (const auto& [i, k] : {std::pair(0, 1), {0, 2}, {1, 2}}) {
     Matrix3<double> Theta = Matrix3<double>::Identity();
     Theta(i, k) = 1e-3;
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(of_tensors) {
 }
 
 // A spring without length whose ends meet pulls at nothing; one with a length has no direction.
-BOOST_AUTO_TEST_CASE(of_springs_whose_ends_meet) {
+BOOST_AUTO_TEST_CASE(springs_with_joined_ends_have_no_force) {
   const auto pulled_by = [](double rest_length) {
     const FixedPointBody body(
         InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Matrix3<double>::Identity()), {0, 0, 0},

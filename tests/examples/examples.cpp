@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_CASE(rate_in_two_frames_shows_u_cross_u) {
   BOOST_TEST(text.find("and back               (0, 0, 0; 0, 0, 0)") != std::string::npos, text);
 }
 
-BOOST_AUTO_TEST_CASE(euler_top_stays_near_the_closed_form_and_draws) {
+BOOST_AUTO_TEST_CASE(euler_top_agrees_with_the_closed_form) {
   const test::Scratch folder;
   const std::string picture = (folder.path() / "polhodes.svg").string();
   const std::string text = output("euler_top " + picture);
@@ -83,7 +83,7 @@ std::vector<std::vector<double>> rows(const std::string& text) {
 
 // The drifts of the reference (tests/data/cardan-gyro.json); a mean over 60 nutations that do not
 // end where they began is sure to 1e-4.
-BOOST_AUTO_TEST_CASE(cardan_gyro_drifts_as_the_reference_says_and_draws) {
+BOOST_AUTO_TEST_CASE(cardan_gyro_drifts_as_the_reference) {
   const test::Scratch folder;
   const auto table = rows(output("cardan_gyro " + (folder.path() / "nutations.svg").string()));
   const std::vector<double> drifts{-2.311623203651e-4, -9.247687974572e-4, -3.700988820911e-3,
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(cardan_gyro_drifts_as_the_reference_says_and_draws) {
 
 // An axis that stays in space goes by n' = -u x n for those on board; the rings' angles are its,
 // but for the 6e-5 rad by which rings with mass pull it off.
-BOOST_AUTO_TEST_CASE(gyro_on_ship_follows_an_axis_that_stays_in_space) {
+BOOST_AUTO_TEST_CASE(gyro_on_ship_follows_an_inertial_axis) {
   const auto table = rows(output("gyro_on_ship"));
   BOOST_TEST_REQUIRE(table.size() == 11U);
   const double degree = std::acos(-1.0) / 180;

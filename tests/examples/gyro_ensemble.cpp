@@ -34,7 +34,7 @@ std::string csv_of_one_thread(const test::Scratch& folder) {
 
 BOOST_AUTO_TEST_SUITE(gyro_ensemble)
 
-BOOST_AUTO_TEST_CASE(writes_the_same_rows_from_two_threads_and_from_parts) {
+BOOST_AUTO_TEST_CASE(rows_do_not_depend_on_threads_and_parts) {
   const test::Scratch folder;
   const std::string csv = csv_of_one_thread(folder);
   BOOST_TEST(std::count(csv.begin(), csv.end(), '\n') == 604);
@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_CASE(writes_the_same_rows_from_two_threads_and_from_parts) {
 }
 
 // What is there is taken as it stands: a row changed by hand comes through.
-BOOST_AUTO_TEST_CASE(goes_on_from_the_parts_that_are_there) {
+BOOST_AUTO_TEST_CASE(continues_from_existing_parts) {
   const test::Scratch folder;
   const std::string csv = csv_of_one_thread(folder);
   const std::string words =
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_the_parts_that_are_there) {
 }
 
 #ifdef KREISEL_GYRO_ENSEMBLE_MPI
-BOOST_AUTO_TEST_CASE(writes_the_same_rows_from_two_ranks) {
+BOOST_AUTO_TEST_CASE(rows_do_not_depend_on_ranks) {
   const test::Scratch folder;
   const std::string csv = csv_of_one_thread(folder);
   const test::Outcome ranks =
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(writes_the_same_rows_from_two_ranks) {
 
 // Rank 1 is killed when the first part is there. It is reported, the parts that were finished stay,
 // and the same command computes the others.
-BOOST_AUTO_TEST_CASE(outlives_a_rank) {
+BOOST_AUTO_TEST_CASE(survives_the_loss_of_a_rank) {
   const test::Scratch folder;
   const std::string many = " --members 1403 --t-end 4 --threads 1 --csv ";
   BOOST_TEST(test::run(KREISEL_GYRO_ENSEMBLE + many + path(folder, "one.csv")).status == 0);
@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(outlives_a_rank) {
 }
 #endif
 
-BOOST_AUTO_TEST_CASE(refuses_what_makes_no_sense) {
+BOOST_AUTO_TEST_CASE(refuses_invalid_options) {
   BOOST_TEST(test::run(KREISEL_GYRO_ENSEMBLE " --members 0").status == 2);
   BOOST_TEST(test::run(KREISEL_GYRO_ENSEMBLE " --tolerance 1").status == 2);
   BOOST_TEST(test::run(KREISEL_GYRO_ENSEMBLE " --csv /nowhere/at/all --members 2").status == 2);

@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(print_the_modes_of_the_platform_and_draw) {
 }
 
 // precession_order of the same file has a force besides; the orders are the same.
-BOOST_AUTO_TEST_CASE(print_the_error_of_technical_equations_and_draw) {
+BOOST_AUTO_TEST_CASE(print_the_error_of_precession_equations) {
   const test::Scratch folder;
   const auto rows = table(run("precession_error " + (folder.path() / "error.svg").string()).out, 1);
   BOOST_REQUIRE(rows.size() == 5U);
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(print_the_error_of_technical_equations_and_draw) {
 }
 
 // By hand: h = 2 C speed cos(20 degrees); A* has the wheels' C, A has not.
-BOOST_AUTO_TEST_CASE(print_nutation_and_precession_of_the_satellite) {
+BOOST_AUTO_TEST_CASE(print_the_modes_of_the_satellite) {
   const auto rows = table(run("momentum_wheel_satellite").out, 2);
   BOOST_REQUIRE(rows.size() == 2U);
   const double slant = 0.349, C = 0.1, across = 0.06, speed = 200;

@@ -14,7 +14,7 @@ using namespace kreisel;
 BOOST_AUTO_TEST_SUITE(the_example_of_the_unsymmetric_rotor)
 
 // tests/data/floquet.json, ten decimals.
-BOOST_AUTO_TEST_CASE(prints_the_boundaries_of_the_reference_and_draws) {
+BOOST_AUTO_TEST_CASE(prints_the_boundaries_of_the_reference) {
   const test::Scratch folder;
   const std::string picture = (folder.path() / "chart.svg").string();
   const test::Outcome outcome = test::run(KREISEL_PROGRAMS "/unsymmetric_rotor " + picture);

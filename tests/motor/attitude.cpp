@@ -74,7 +74,7 @@ BOOST_DATA_TEST_CASE(come_back_from_their_rotation, data::xrange(200u), seed) {
 }
 
 // At pitch +-90 degrees only yaw -+ roll is known: the angles differ, the rotation must not.
-BOOST_DATA_TEST_CASE(describe_the_rotation_at_the_pole_too, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(describe_the_rotation_at_the_poles, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const double distance = sample.once_in(3) ? 0 : sample.magnitude(-17, -3);
   const double pitch = (std::numbers::pi / 2 - distance) * (sample.once_in(2) ? 1 : -1);

@@ -81,11 +81,11 @@ BOOST_AUTO_TEST_CASE(turns_then_shifts) {
   BOOST_TEST(same(X * Motor<>{{0, 0, 0}, {1, 0, 0}}, Motor<>{{0, 0, 0}, {0, 1, 0}}));
 }
 
-BOOST_AUTO_TEST_CASE(is_none_when_nothing_is_said) {
+BOOST_AUTO_TEST_CASE(is_the_identity_by_default) {
   BOOST_TEST(same(Pose<>{}.point({1, 2, 3}), Vector3<double>(1, 2, 3)));
 }
 
-BOOST_DATA_TEST_CASE(of_two_is_one_after_the_other, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(product_applies_one_after_the_other, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Pose<> X = sample.pose();
   const Pose<> Y = sample.pose();
@@ -96,7 +96,7 @@ BOOST_DATA_TEST_CASE(of_two_is_one_after_the_other, data::xrange(200u), seed) {
   BOOST_TEST(near((X * Y) * a, X * (Y * a), terms(X) * (terms(Y) * terms(a)), 16));
 }
 
-BOOST_DATA_TEST_CASE(and_its_inverse_are_none, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(times_its_inverse_is_the_identity, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Pose<> X = sample.pose();
   const Pose<Terms> scale = terms(X) * terms(X).inverse();
@@ -107,7 +107,7 @@ BOOST_DATA_TEST_CASE(and_its_inverse_are_none, data::xrange(200u), seed) {
 }
 
 // A motor is a field: its moment at a point, displaced, is the displaced motor's at the displaced.
-BOOST_DATA_TEST_CASE(takes_the_field_of_a_motor_along, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(moves_the_field_of_a_motor, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Pose<> X = sample.pose();
   const Motor<> a = sample.motor();
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(X.translation, Vector3<double>(7, 8, 9)));
 }
 
-BOOST_DATA_TEST_CASE(does_not_see_its_norm, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(does_not_depend_on_the_norm, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Eigen::Quaterniond q(sample.number(-3, 0), sample.number(-3, 0), sample.number(-3, 0),
                              sample.magnitude(-3, 0));
@@ -147,7 +147,7 @@ BOOST_DATA_TEST_CASE(is_orthogonal, data::xrange(200u), seed) {
   BOOST_TEST(near(R.determinant(), 1.0, 1.0, 12));
 }
 
-BOOST_DATA_TEST_CASE(is_given_back_by_its_matrix, data::xrange(400u), seed) {
+BOOST_DATA_TEST_CASE(is_restored_from_its_matrix, data::xrange(400u), seed) {
   test::Sample sample(seed);
   const double half =
       sample.once_in(4) ? pi / 2 - sample.magnitude(-16, -1) : sample.uniform(0, pi / 2);
@@ -164,20 +164,20 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(the_exponential)
 
-BOOST_AUTO_TEST_CASE(of_nothing_is_exactly_no_displacement) {
+BOOST_AUTO_TEST_CASE(exp_of_zero_is_exactly_the_identity) {
   const Pose<> X = exp(Motor<>{});
   BOOST_TEST(same(X.rotation, Matrix3<double>::Identity()));
   BOOST_TEST(same(X.translation, Vector3<double>::Zero()));
 }
 
-BOOST_AUTO_TEST_CASE(of_a_couple_is_exactly_a_shift) {
+BOOST_AUTO_TEST_CASE(exp_of_a_couple_is_exactly_a_shift) {
   const Pose<> X = exp(Motor<>{{0, 0, 0}, {1, -2, 3e10}});
   BOOST_TEST(same(X.rotation, Matrix3<double>::Identity()));
   BOOST_TEST(same(X.translation, Vector3<double>(1, -2, 3e10)));
 }
 
 // Anchor: half a turn about the line along z through (1, 0, 0), climbing 5.
-BOOST_AUTO_TEST_CASE(of_a_screw_turns_about_its_axis_and_climbs) {
+BOOST_AUTO_TEST_CASE(exp_of_a_screw_turns_and_climbs) {
   const Pose<> X = exp(motor(Screw<>{ScrewKind::general, {0, 0, 1}, {1, 0, 0}, pi, 5 / pi}));
   BOOST_TEST(near(X.point({0, 0, 0}), Vector3<double>(2, 0, 5), 5.0, 4));
   BOOST_TEST(near(X.point({1, 0, 0}), Vector3<double>(1, 0, 5), 5.0, 4));
@@ -185,19 +185,19 @@ BOOST_AUTO_TEST_CASE(of_a_screw_turns_about_its_axis_and_climbs) {
 }
 
 // Anchor: a quarter turn about z is right-handed.
-BOOST_AUTO_TEST_CASE(of_a_quarter_turn_takes_x_to_y) {
+BOOST_AUTO_TEST_CASE(exp_of_a_quarter_turn_maps_x_to_y) {
   const Pose<> X = exp(Motor<>{{0, 0, pi / 2}, {0, 0, 0}});
   BOOST_TEST(near(X.point({1, 0, 0}), Vector3<double>(0, 1, 0), 1.0, 2));
 }
 
-BOOST_DATA_TEST_CASE(leaves_its_own_motor_alone, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(leaves_its_own_motor_unchanged, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> A = turn(sample, sample.uniform(0, pi));
   const Pose<> X = exp(A);
   BOOST_TEST(near(X * A, A, terms(X) * terms(A), 24));
 }
 
-BOOST_DATA_TEST_CASE(of_two_halves_is_the_whole, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(two_halves_make_the_whole, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> A = turn(sample, sample.uniform(0, 2 * pi));
   const double s = sample.uniform(0, 1);
@@ -239,7 +239,7 @@ BOOST_DATA_TEST_CASE(keeps_its_error_bounds, data::make(angles), theta) {
   }
 }
 
-BOOST_DATA_TEST_CASE(is_the_power_series_in_fifty_digits, data::make(angles), theta) {
+BOOST_DATA_TEST_CASE(agrees_with_the_series_in_50_digits, data::make(angles), theta) {
   test::Sample sample(static_cast<std::uint64_t>(1 + theta * 1000));
   const Motor<Digits50> A = cast<Digits50>(turn(sample, theta));
   const Pose<Digits50> X = exp(A);
@@ -253,17 +253,17 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(the_logarithm)
 
-BOOST_AUTO_TEST_CASE(of_no_displacement_is_exactly_nothing) {
+BOOST_AUTO_TEST_CASE(log_of_the_identity_is_exactly_zero) {
   BOOST_TEST(same(log(Pose<>{}), Motor<>{}));
 }
 
-BOOST_AUTO_TEST_CASE(of_a_shift_is_exactly_a_couple) {
+BOOST_AUTO_TEST_CASE(log_of_a_shift_is_exactly_a_couple) {
   const Vector3<double> x(1, -2, 3e10);
   BOOST_TEST(same(log(Pose<>{Matrix3<double>::Identity(), x}), Motor<>{{0, 0, 0}, x}));
 }
 
 // Anchor: half a turn about x, taken at (0, 1, 0): the axis goes through (0, 1/2, 0).
-BOOST_AUTO_TEST_CASE(of_a_half_turn_by_hand) {
+BOOST_AUTO_TEST_CASE(log_of_a_half_turn_by_hand) {
   const Pose<> X{Vector3<double>(1, -1, -1).asDiagonal(), {0, 1, 0}};
   const Motor<> A = log(X);
   BOOST_TEST(near(A.resultant, Vector3<double>(pi, 0, 0), pi, 1));
@@ -271,7 +271,7 @@ BOOST_AUTO_TEST_CASE(of_a_half_turn_by_hand) {
 }
 
 // The matrix of a half turn is symmetric: only its symmetric part knows the axis.
-BOOST_DATA_TEST_CASE(of_a_half_turn_finds_the_axis, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(log_of_a_half_turn_finds_the_axis, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Vector3<double> n = sample.direction();
   const Vector3<double> x = sample.vector();
@@ -318,7 +318,7 @@ struct Range {
 };
 
 // The table in displacement.hpp. Away from pi the limit is 1e-15.
-BOOST_AUTO_TEST_CASE(of_the_exponential_gives_the_motor_back) {
+BOOST_AUTO_TEST_CASE(log_of_exp_is_the_motor) {
   const Range ranges[] = {{"< 1e-8", 1e-30, 1e-8, false, 4},
                           {"1e-8..1e-3", 1e-8, 1e-3, false, 10},
                           {"1e-3..1", 1e-3, 1, false, 10},

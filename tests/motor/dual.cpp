@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(agree_with_double_in_all_functions) {
 }
 
 // At no displacement the tangent of exp is the motor itself, exactly; and that of log too.
-BOOST_AUTO_TEST_CASE(are_exact_where_exp_and_log_begin) {
+BOOST_AUTO_TEST_CASE(are_exact_at_the_identity) {
   const Pose<Dual> X = exp(variables(Motor<>{}));
   const Motor<Dual> A = log(X);
   for (int i = 0; i < 6; ++i) {
@@ -112,7 +112,7 @@ BOOST_DATA_TEST_CASE(are_the_derivatives_of_the_exponential, data::make(angles),
 }
 
 // log(exp(A)) = A: at zero, in every branch, and to near the half turn, where log has a corner.
-BOOST_DATA_TEST_CASE(of_the_logarithm_undo_those_of_the_exponential, data::make(angles), theta) {
+BOOST_DATA_TEST_CASE(derivatives_of_log_invert_those_of_exp, data::make(angles), theta) {
   test::Sample sample(1);
   const Motor<> A{theta * sample.direction(), sample.vector(-1, 1)};
   const Motor<Dual> B = log(exp(variables(A)));

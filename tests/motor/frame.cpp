@@ -51,7 +51,7 @@ BOOST_AUTO_TEST_CASE(join_along_a_chain_of_frames) {
   BOOST_TEST(same(untagged(sum), Motor<>{{0, 0, 3}, {11, 0, 0}}));
 }
 
-BOOST_AUTO_TEST_CASE(turn_their_names_with_their_sign) {
+BOOST_AUTO_TEST_CASE(swap_their_frames_with_their_sign) {
   const Velocity<Device, Ship, Device> walk{{{0, 0, 1}, {1, 0, 0}}};
   static_assert(is<decltype(-walk), Velocity<Ship, Device, Device>>);
   BOOST_TEST(same((-walk).value, Motor<>{{0, 0, -1}, {-1, 0, 0}}));
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(add_to_their_own_kind) {
   BOOST_TEST(same((-J).value, -J.value));
 }
 
-BOOST_AUTO_TEST_CASE(give_their_numbers_away_by_name_only) {
+BOOST_AUTO_TEST_CASE(give_their_numbers_by_name_only) {
   const Force<Body> P{{{1, 2, 3}, {4, 5, 6}}};
   BOOST_TEST(same(untagged(P), Motor<>{{1, 2, 3}, {4, 5, 6}}));
   static_assert(!std::is_convertible_v<Force<Body>, Motor<>>);
@@ -111,7 +111,7 @@ BOOST_DATA_TEST_CASE(join_along_a_chain_of_frames, data::xrange(50u), seed) {
 
 // Anchor: the ship's origin lies 100 m north (y) of the earth's; the ship makes 10 m/s along x and
 // turns with 1 rad/s about z. Where the earth's origin is, the ship's frame moves with 10 + 100.
-BOOST_AUTO_TEST_CASE(rewrite_a_velocity_and_leave_its_meaning) {
+BOOST_AUTO_TEST_CASE(rewrite_a_velocity_without_changing_it) {
   const Displacement<Earth, Ship> X_ES{{Matrix3<double>::Identity(), {0, 100, 0}}};
   const Velocity<Ship, Earth, Ship> V{{{0, 0, 1}, {10, 0, 0}}};
   const auto V_E = X_ES * V;

@@ -24,7 +24,7 @@ static_assert(std::is_aggregate_v<Motor<>>);
 
 BOOST_AUTO_TEST_SUITE(a_motor)
 
-BOOST_AUTO_TEST_CASE(is_zero_when_nothing_is_said) {
+BOOST_AUTO_TEST_CASE(is_zero_by_default) {
   const Motor<> a;
   BOOST_TEST(same(a.resultant, Vector3<double>::Zero()));
   BOOST_TEST(same(a.moment, Vector3<double>::Zero()));
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(adds_and_scales_each_half) {
   BOOST_TEST(same(c, a));
 }
 
-BOOST_AUTO_TEST_CASE(differs_when_one_number_differs) {
+BOOST_AUTO_TEST_CASE(differs_if_one_number_differs) {
   const Motor<> a{{1, 2, 3}, {4, 5, 6}};
   BOOST_TEST(!(a == Motor<>{{1, 2, 3}, {4, 5, 7}}));
   BOOST_TEST(!(a == Motor<>{{1, 0, 3}, {4, 5, 6}}));
@@ -68,12 +68,12 @@ BOOST_AUTO_TEST_CASE(a_force_has_no_moment_at_its_own_point) {
   BOOST_TEST(same(force.reduced_at({1, 0, 0}), Motor<>{{0, 1, 0}, {0, 0, 0}}));
 }
 
-BOOST_AUTO_TEST_CASE(leaves_a_couple_alone) {
+BOOST_AUTO_TEST_CASE(leaves_a_couple_unchanged) {
   const Motor<> couple{{0, 0, 0}, {1, 2, 3}};
   BOOST_TEST(same(couple.reduced_at({4, -5, 6}), couple));
 }
 
-BOOST_DATA_TEST_CASE(in_two_steps_is_reduction_in_one, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(two_steps_equal_one, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   const Vector3<double> p = sample.vector();
@@ -92,12 +92,12 @@ const Vector3<double> y(0, 1, 0);
 const Vector3<double> z(0, 0, 1);
 
 // Anchors: what a spin about z does to a line along x, to a couple, and what a translation does.
-BOOST_AUTO_TEST_CASE(of_a_spin_turns_what_it_carries) {
+BOOST_AUTO_TEST_CASE(spin_rotates_motors) {
   BOOST_TEST(same(cross(Motor<>{z, zero}, Motor<>{x, zero}), Motor<>{y, zero}));
   BOOST_TEST(same(cross(Motor<>{z, zero}, Motor<>{zero, x}), Motor<>{zero, y}));
 }
 
-BOOST_AUTO_TEST_CASE(of_a_translation_moves_lines_and_leaves_couples) {
+BOOST_AUTO_TEST_CASE(translation_moves_lines_but_no_couples) {
   // A line along z through the origin, carried along x: its moment grows by x cross z.
   BOOST_TEST(same(cross(Motor<>{zero, x}, Motor<>{z, zero}), Motor<>{zero, -y}));
   BOOST_TEST(same(cross(Motor<>{zero, x}, Motor<>{zero, z}), Motor<>{zero, zero}));
@@ -136,7 +136,7 @@ BOOST_DATA_TEST_CASE(obeys_jacobi, data::xrange(200u), seed) {
   BOOST_TEST(near(sum, Motor<>{}, scale, 10));
 }
 
-BOOST_DATA_TEST_CASE(means_the_same_at_every_point, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(is_the_same_at_every_point, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   const Motor<> b = sample.motor();
@@ -146,7 +146,7 @@ BOOST_DATA_TEST_CASE(means_the_same_at_every_point, data::xrange(200u), seed) {
                   scale + cross(terms(a), terms(b)).reduced_at(terms(p)), 8));
 }
 
-BOOST_DATA_TEST_CASE(means_the_same_in_every_frame, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(is_the_same_in_every_frame, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   const Motor<> b = sample.motor();
@@ -197,7 +197,7 @@ BOOST_DATA_TEST_CASE(is_the_same_in_every_frame, data::xrange(200u), seed) {
 }
 
 // Of three motors all products in cyclic order are one number: [A . ] is minus its transposed.
-BOOST_DATA_TEST_CASE(and_motor_product_change_places, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(commutes_with_the_motor_product, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   const Motor<> b = sample.motor();

@@ -32,16 +32,16 @@ void run_everything() {
 }  // namespace
 
 // First that the counter counts: a test that cannot fail shows nothing.
-BOOST_AUTO_TEST_SUITE(the_counter)
+BOOST_AUTO_TEST_SUITE(the_allocation_counter)
 
-BOOST_AUTO_TEST_CASE(sees_the_operators) {
+BOOST_AUTO_TEST_CASE(counts_operator_new) {
   BOOST_TEST(requests_of([] { use(std::make_unique<int>(1)); }) == 1u);
   BOOST_TEST(requests_of([] { use(std::make_unique<int[]>(9)); }) == 1u);
   BOOST_TEST(requests_of([] { use(std::vector<double>(9)); }) == 1u);
   BOOST_TEST(requests_of([] { use(std::string(99, 'x')); }) == 1u);
 }
 
-BOOST_AUTO_TEST_CASE(sees_the_functions) {
+BOOST_AUTO_TEST_CASE(counts_malloc) {
   const auto release = [](void* memory) {
     use(memory);
     std::free(memory);
@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(sees_the_functions) {
 }
 
 // What would creep in by mistake: a matrix of unknown size, a product evaluated into one.
-BOOST_AUTO_TEST_CASE(sees_the_matrices_of_eigen) {
+BOOST_AUTO_TEST_CASE(counts_matrices_of_eigen) {
   BOOST_TEST(requests_of([] { use(Eigen::VectorXd(3)); }) == 1u);
   const Vector3<double> a(1, 2, 3);
   BOOST_TEST(requests_of([&] { use(Eigen::MatrixXd(a * a.transpose())); }) >= 1u);
@@ -63,6 +63,6 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(every_function)
 
-BOOST_AUTO_TEST_CASE(does_without_memory) { BOOST_TEST(requests_of(run_everything) == 0u); }
+BOOST_AUTO_TEST_CASE(allocates_no_memory) { BOOST_TEST(requests_of(run_everything) == 0u); }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -117,7 +117,7 @@ void check_plain_all(const Rounded& n, const Differentiated& truth, const Q& q) 
 BOOST_AUTO_TEST_SUITE(a_rate)
 
 // Anchor: for an observer who turns about z, a vector at rest along x turns backwards, to -y.
-BOOST_AUTO_TEST_CASE(of_what_rests_turns_backwards_for_who_turns) {
+BOOST_AUTO_TEST_CASE(rotates_backwards_for_a_turning_observer) {
   const Force<Body> weight{{{1, 0, 0}, {0, 0, 0}}};
   const Rate<Inertial, Force<Body>> none{};
   const Velocity<Guide, Inertial, Body> spin{{{0, 0, 1}, {0, 0, 0}}};
@@ -126,14 +126,14 @@ BOOST_AUTO_TEST_CASE(of_what_rests_turns_backwards_for_who_turns) {
 
 // Anchor: a force resting along z, watched from a frame that moves along x: the frame sees its line
 // go along -x, so that the moment about the frame's origin changes by -x cross z = y.
-BOOST_AUTO_TEST_CASE(of_what_rests_is_left_behind_by_who_moves) {
+BOOST_AUTO_TEST_CASE(is_opposite_for_a_moving_observer) {
   const Force<Body> weight{{{0, 0, 1}, {0, 0, 0}}};
   const Rate<Inertial, Force<Body>> none{};
   const Velocity<Guide, Inertial, Body> along{{{0, 0, 0}, {1, 0, 0}}};
   BOOST_TEST(same(seen_from<Guide>(none, along, weight).value, Motor<>{{0, 0, 0}, {0, 1, 0}}));
 }
 
-BOOST_DATA_TEST_CASE(is_what_differentiated_coordinates_say, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_differentiated_coordinates, data::xrange(200u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
   check_all_observers(n, truth.V_rel, n.V_rel);
@@ -143,7 +143,7 @@ BOOST_DATA_TEST_CASE(is_what_differentiated_coordinates_say, data::xrange(200u),
 }
 
 // (3a)-(3c), (4a)-(4c): the pairs that are equal: no velocity carries itself anywhere.
-BOOST_DATA_TEST_CASE(of_a_velocity_is_one_for_both_its_frames, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(is_equal_for_both_frames_of_a_velocity, data::xrange(100u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
   const Rate<Body, Relative> own{cast<double>(truth.V_rel.T.body)};
@@ -158,7 +158,7 @@ BOOST_DATA_TEST_CASE(of_a_velocity_is_one_for_both_its_frames, data::xrange(100u
                   scale(guide.value, n.F.value, n.F.value), 1));
 }
 
-BOOST_DATA_TEST_CASE(of_a_sum_is_the_sum_of_rates, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(is_additive, data::xrange(100u), seed) {
   const Truth truth = random_truth(seed);
   const Rate<Guide, Relative> dV_rel{cast<double>(truth.V_rel.T.guide)};
   const Rate<Guide, Guiding> dF{cast<double>(truth.F.T.guide)};
@@ -175,7 +175,7 @@ BOOST_DATA_TEST_CASE(of_a_sum_is_the_sum_of_rates, data::xrange(100u), seed) {
 }
 
 // Frame by frame or at once: the body's rate from the inertial one through the guide.
-BOOST_DATA_TEST_CASE(changes_hands_along_a_chain, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(is_converted_along_a_chain_of_frames, data::xrange(100u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
   const Momentum<Body> J{cast<double>(truth.J.value)};
@@ -189,7 +189,7 @@ BOOST_DATA_TEST_CASE(changes_hands_along_a_chain, data::xrange(100u), seed) {
 }
 
 // A rate is a motor: rewritten in another frame it is the rate of the rewritten.
-BOOST_DATA_TEST_CASE(may_be_written_anywhere, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(may_be_written_in_any_frame, data::xrange(100u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
   const Displacement<Guide, Body> X_GB{cast<double>(truth.X_GB)};
@@ -213,7 +213,7 @@ BOOST_AUTO_TEST_SUITE(a_second_rate)
 // constant for itself, and Q is the quadratic motor Q0 + t Q1 + t^2 Q2 in inertial coordinates.
 // In guide coordinates Q is exp(-t F) Q(t): its second derivative at t = 0 is
 // 2 Q2 - 2 [F Q1] + [F [F Q0]].
-BOOST_DATA_TEST_CASE(is_made_by_handing_over_twice, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(follows_from_two_conversions, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Velocity<Guide, Inertial, Body> F{sample.motor(-1, 1)};
   const Force<Body> Q{sample.motor(-1, 1)};
@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(differ_by_the_moving_point) {
   BOOST_TEST(same(plain_rate(none, leaving, force).value, Motor<>{{0, 0, 0}, {0, 0, -1}}));
 }
 
-BOOST_DATA_TEST_CASE(are_what_differentiation_says, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(agree_with_differentiation, data::xrange(200u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
   check_plain_all(n, truth.V_rel, n.V_rel);

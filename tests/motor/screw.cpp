@@ -63,12 +63,12 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(motor(s), a));
 }
 
-BOOST_AUTO_TEST_CASE(of_left_hand_has_negative_pitch) {
+BOOST_AUTO_TEST_CASE(left_handed_screw_has_negative_pitch) {
   BOOST_TEST(pitch(Motor<>{{0, 0, -3}, {0, 0, 6}}) == -2.0);
   BOOST_TEST(same(screw(Motor<>{{0, 0, -3}, {0, 0, 6}}).direction, Vector3<double>(0, 0, -1)));
 }
 
-BOOST_AUTO_TEST_CASE(without_pitch_is_a_line) {
+BOOST_AUTO_TEST_CASE(is_a_line_without_pitch) {
   const Motor<> force{{0, 2, 0}, {0, 0, 6}};  // 2 N along y through (3, 0, 0)
   const Screw<> s = screw(force);
   BOOST_TEST((s.kind == ScrewKind::line));
@@ -77,7 +77,7 @@ BOOST_AUTO_TEST_CASE(without_pitch_is_a_line) {
   BOOST_TEST(same(motor(s), force));
 }
 
-BOOST_AUTO_TEST_CASE(of_a_couple_has_infinite_pitch_and_no_axis) {
+BOOST_AUTO_TEST_CASE(couple_has_infinite_pitch_and_no_axis) {
   const Motor<> couple{{0, 0, 0}, {0, -5, 0}};
   const Screw<> s = screw(couple);
   BOOST_TEST((s.kind == ScrewKind::couple));
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(of_a_couple_has_infinite_pitch_and_no_axis) {
   BOOST_CHECK_EXCEPTION((void)axis_point(couple), InvalidInput, says_axis);
 }
 
-BOOST_AUTO_TEST_CASE(of_the_zero_motor_is_nothing) {
+BOOST_AUTO_TEST_CASE(zero_motor_has_no_screw) {
   const Screw<> s = screw(Motor<>{});
   BOOST_TEST((s.kind == ScrewKind::zero));
   BOOST_TEST(same(s.direction, Vector3<double>(0, 0, 0)));
@@ -103,13 +103,13 @@ BOOST_AUTO_TEST_CASE(of_the_zero_motor_is_nothing) {
   BOOST_CHECK_EXCEPTION((void)axis_point(Motor<>{}), InvalidInput, says_axis);
 }
 
-BOOST_DATA_TEST_CASE(gives_back_its_motor, data::xrange(400u), seed) {
+BOOST_DATA_TEST_CASE(restores_its_motor, data::xrange(400u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   BOOST_TEST(near_halves(motor(screw(a)), a, 8));
 }
 
-BOOST_DATA_TEST_CASE(says_the_same_as_its_parts, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_its_parts, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   if (a.resultant == Vector3<double>::Zero()) return;
@@ -133,7 +133,7 @@ BOOST_DATA_TEST_CASE(has_its_length_on_its_axis, data::xrange(200u), seed) {
   BOOST_TEST(near(r_0.dot(opening(a)), 0.0, size, 12));
 }
 
-BOOST_DATA_TEST_CASE(has_one_length_and_pitch_from_wherever_it_is_seen, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(has_the_same_length_in_every_frame, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   if (a.resultant == Vector3<double>::Zero()) return;
@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_SUITE(sizes_near_the_ends_of_double)
 // Squares of these vanish or overflow.
 const double sizes[] = {1e-300, 1e-170, 1e-100, 1, 1e100, 1e160, 1e300};
 
-BOOST_DATA_TEST_CASE(give_back_their_motor, data::make(sizes), size) {
+BOOST_DATA_TEST_CASE(restore_their_motor, data::make(sizes), size) {
   const Motor<> unit{{3, -4, 12}, {0.5, 7, -2}};
   const Motor<> a = size * unit;
   BOOST_TEST(near_halves(motor(screw(a)), a, 8));
@@ -160,13 +160,13 @@ BOOST_DATA_TEST_CASE(give_back_their_motor, data::make(sizes), size) {
   BOOST_TEST(near(length(a), Vector3<double>(size * length(unit)), size, 64));
 }
 
-BOOST_DATA_TEST_CASE(of_a_couple_give_it_back, data::make(sizes), size) {
+BOOST_DATA_TEST_CASE(restore_a_couple, data::make(sizes), size) {
   const Motor<> couple{{0, 0, 0}, {3 * size, -4 * size, 12 * size}};
   BOOST_TEST(near(screw(couple).intensity, 13 * size, size, 40));
   BOOST_TEST(near_halves(motor(screw(couple)), couple, 8));
 }
 
-BOOST_AUTO_TEST_CASE(of_both_halves_far_apart_give_them_back) {
+BOOST_AUTO_TEST_CASE(restore_halves_of_very_different_size) {
   for (const double small : {1e-170, 1e-140}) {
     const Motor<> slow{small * Vector3<double>(1, 2, -2), Vector3<double>(5, 3, 1)};
     BOOST_TEST(near_halves(motor(screw(slow)), slow, 8));
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(of_both_halves_far_apart_give_them_back) {
 }
 
 // The numbers have no digits left, the direction has all of its own.
-BOOST_AUTO_TEST_CASE(below_the_smallest_normal_number_keep_the_direction) {
+BOOST_AUTO_TEST_CASE(keep_the_direction_of_subnormal_numbers) {
   const Motor<> a{denormal * Vector3<double>(1, 1, 1), {0, 0, 0}};
   const Screw<> s = screw(a);
   BOOST_TEST((s.kind == ScrewKind::line));

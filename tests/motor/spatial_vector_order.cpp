@@ -16,16 +16,15 @@ using Six = SpatialVector<double>;
 
 BOOST_AUTO_TEST_SUITE(spatial_vector_order)
 
-BOOST_AUTO_TEST_CASE(lie_as_other_libraries_have_them) {
-  BOOST_TEST((velocity_numbers(V, SpatialVectorOrder::angular_first) == Six(1, 2, 3, 4, 5, 6)));
-  BOOST_TEST((velocity_numbers(V, SpatialVectorOrder::linear_first) == Six(4, 5, 6, 1, 2, 3)));
-  BOOST_TEST((force_numbers(F, SpatialVectorOrder::angular_first) == Six(10, -11, 12, -7, 8, 9)));
-  BOOST_TEST((force_numbers(F, SpatialVectorOrder::linear_first) == Six(-7, 8, 9, 10, -11, 12)));
+BOOST_AUTO_TEST_CASE(agrees_with_other_libraries) {
+  BOOST_TEST((velocity_numbers(V, Halves::angular_first) == Six(1, 2, 3, 4, 5, 6)));
+  BOOST_TEST((velocity_numbers(V, Halves::linear_first) == Six(4, 5, 6, 1, 2, 3)));
+  BOOST_TEST((force_numbers(F, Halves::angular_first) == Six(10, -11, 12, -7, 8, 9)));
+  BOOST_TEST((force_numbers(F, Halves::linear_first) == Six(-7, 8, 9, 10, -11, 12)));
 }
 
-BOOST_AUTO_TEST_CASE(come_back_and_do_the_same_work) {
-  for (const SpatialVectorOrder order :
-       {SpatialVectorOrder::angular_first, SpatialVectorOrder::linear_first}) {
+BOOST_AUTO_TEST_CASE(preserves_numbers_and_power) {
+  for (const Halves order : {Halves::angular_first, Halves::linear_first}) {
     const Six v = velocity_numbers(V, order);
     const Six f = force_numbers(F, order);
     const Motor<> again = velocity_of(v, order);
@@ -39,7 +38,7 @@ BOOST_AUTO_TEST_CASE(come_back_and_do_the_same_work) {
 
 // A wheel that rolls along x, its centre at height 1 over the world's origin: the point that touches
 // the ground is at rest.
-BOOST_AUTO_TEST_CASE(are_brought_from_their_points_to_the_origin) {
+BOOST_AUTO_TEST_CASE(moves_vectors_to_the_origin) {
   const Vector3<double> centre(0, 0, 1);
   const Six cvel(0, 2, 0, 2, 0, 0);
   const Motor<> of_cvel = velocity_of_cvel(cvel, centre);

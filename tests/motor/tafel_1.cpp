@@ -251,7 +251,7 @@ Vector length_rate(const Motor<>& a, const Motor<>& d) {
 
 BOOST_AUTO_TEST_SUITE(relations_16_and_17)
 
-BOOST_DATA_TEST_CASE(hold_where_the_errata_say, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(hold_as_the_errata_state, data::xrange(200u), seed) {
   const Symbols s = random_symbols(seed);
   check_relations(s);
   check_relations(converted(s));
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(hold_in_the_reference_case) {
 }
 
 // In a motion as general as I1 none of them holds by chance.
-BOOST_AUTO_TEST_CASE(fail_where_the_errata_say) {
+BOOST_AUTO_TEST_CASE(fail_as_the_errata_state) {
   const Symbols s = differentiated(reference_truth(0));
   for (const Relation& r : relations) {
     const Vector in_T = r.left(s, s.T_rel, s.T_guide) - r.right(s, s.T_rel, s.T_guide);
@@ -283,7 +283,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(relations_11_to_15)
 
 // (12), (13) speak of plain vectors: .v_0 = ov_0 + [u v_0]. The moments of .F and oF are equal.
-BOOST_DATA_TEST_CASE(thirteen_is_true_for_plain_vectors_only, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(equation_13_holds_for_plain_vectors_only, data::xrange(100u), seed) {
   const Symbols s = random_symbols(seed);
   BOOST_TEST(near(s.P_guide.dot.moment,
                   Vector(s.P_guide.ring.moment + x(s.F.resultant, s.F.moment)), s.size(), 8));
@@ -291,7 +291,7 @@ BOOST_DATA_TEST_CASE(thirteen_is_true_for_plain_vectors_only, data::xrange(100u)
 }
 
 // Corrected (14): the length v_n of F is along u, so .v_n = *v_n + [(u + u') v_n] = *v_n + [u' v_n].
-BOOST_DATA_TEST_CASE(fourteen_has_a_term_too_many, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(equation_14_has_a_superfluous_term, data::xrange(100u), seed) {
   const Symbols s = random_symbols(seed);
   if (s.F.resultant.norm() < 1e-20) return;
   const Vector v_n = length(s.F);
@@ -301,7 +301,7 @@ BOOST_DATA_TEST_CASE(fourteen_has_a_term_too_many, data::xrange(100u), seed) {
   BOOST_TEST(near(dot, Vector(star + x(s.V_rel.resultant, v_n)), scale, 32));
 }
 
-BOOST_AUTO_TEST_CASE(fourteen_as_printed_errs_by_its_last_term) {
+BOOST_AUTO_TEST_CASE(printed_14_errs_by_its_last_term) {
   const Symbols s = differentiated(reference_truth(0));
   const Vector last = x(s.V_rel.moment, s.F.resultant);
   const Vector printed =
@@ -339,7 +339,7 @@ BOOST_DATA_TEST_CASE(corrected_is_right, data::xrange(200u), seed) {
 // 1 rad/s, the body in it with 2, O' = (1, t, 0) in the guide. All x components:
 //   T: *v = 1, ov = .v = 0, *v' = ov' = 2, .v' = 3.   True force: -3.
 // The printed columns So and S' give other forces for the same motion.
-BOOST_AUTO_TEST_CASE(as_printed_contradicts_the_equation_of_motion) {
+BOOST_AUTO_TEST_CASE(printed_contradicts_the_equation_of_motion) {
   const Truth truth = reference_truth(1);
   const Symbols s = differentiated(truth);
   const auto& [u1, v1] = s.V_rel;

@@ -25,7 +25,7 @@ static_assert(sizeof(MotorTensor<>) == 36 * sizeof(double));
 BOOST_AUTO_TEST_SUITE(a_motor_tensor)
 
 // Anchor: every block has its own power of ten, so that a block in the wrong place shows.
-BOOST_AUTO_TEST_CASE(has_its_blocks_where_their_names_say) {
+BOOST_AUTO_TEST_CASE(has_its_blocks_by_name) {
   const Matrix3<double> one = Matrix3<double>::Identity();
   const MotorTensor<> T{1 * one, 10 * one, 100 * one, 1000 * one};
   const Motor<> a{{1, 2, 3}, {4, 5, 6}};
@@ -33,7 +33,7 @@ BOOST_AUTO_TEST_CASE(has_its_blocks_where_their_names_say) {
 }
 
 // Anchor: the paper's (10) acts on (moment; resultant) and gives {momentum; moment}.
-BOOST_AUTO_TEST_CASE(is_the_papers_matrix_with_its_columns_exchanged) {
+BOOST_AUTO_TEST_CASE(is_matrix_10_with_exchanged_columns) {
   Matrix3<double> block;
   block << 1, 2, 3, 4, 5, 6, 7, 8, 9;
   const MotorTensor<> T{block, 2 * block, 3 * block, 4 * block};
@@ -61,7 +61,7 @@ BOOST_DATA_TEST_CASE(adds_and_scales_entry_by_entry, data::xrange(50u), seed) {
   BOOST_TEST(same(six(3.0 * T), (3.0 * six(T)).eval()));
 }
 
-BOOST_DATA_TEST_CASE(called_identity_changes_nothing, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(identity_changes_nothing, data::xrange(20u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   BOOST_TEST(same(MotorTensor<>::identity() * a, a));
@@ -81,7 +81,7 @@ BOOST_DATA_TEST_CASE(changes_sides_of_the_reciprocal_product, data::xrange(200u)
 }
 
 // With J the matrix of the reciprocal product: J T^T J.
-BOOST_DATA_TEST_CASE(is_not_the_transposed_matrix, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(differs_from_the_transposed_matrix, data::xrange(20u), seed) {
   test::Sample sample(seed);
   const MotorTensor<> T = sample.tensor();
   Matrix6<double> J;
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_dyad)
 
-BOOST_DATA_TEST_CASE(measures_with_one_motor_and_answers_with_the_other, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(maps_by_the_reciprocal_product, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   const Motor<> b = sample.motor();
@@ -130,7 +130,7 @@ BOOST_DATA_TEST_CASE(are_matrix_products, data::xrange(100u), seed) {
 }
 
 // The transposed of [V . ] is -[V . ]; hence that of [V T] is -[T^t V].
-BOOST_DATA_TEST_CASE(are_each_others_transposed, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(are_transposes_of_each_other, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const MotorTensor<> T = sample.tensor();
   const Motor<> V = sample.motor();
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(a_displaced_tensor)
 
 // Anchor: what answers a force along z through the origin with itself, moved to (1, 0, 0).
-BOOST_AUTO_TEST_CASE(acts_where_it_was_put) {
+BOOST_AUTO_TEST_CASE(acts_at_its_new_position) {
   const Motor<> force{{0, 0, 1}, {0, 0, 0}};
   const Motor<> rotation{{0, 0, 0}, {0, 0, 1}};  // reciprocal(rotation, force) = 1
   const Pose<> X{Matrix3<double>::Identity(), {1, 0, 0}};
@@ -170,7 +170,7 @@ BOOST_DATA_TEST_CASE(is_a_congruence_of_matrices, data::xrange(100u), seed) {
   BOOST_TEST(near(six(X * T), (test::displacement_matrix(X) * six(T) * back).eval(), scale, 40));
 }
 
-BOOST_DATA_TEST_CASE(of_a_dyad_is_the_dyad_of_the_displaced, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(dyads_are_displaced_by_factors, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
   const Motor<> b = sample.motor();

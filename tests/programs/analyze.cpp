@@ -351,7 +351,7 @@ void check_equilibria(const json& result, const std::vector<std::string>& bodies
 
 BOOST_AUTO_TEST_SUITE(analyze_lists_equilibria)
 
-BOOST_AUTO_TEST_CASE(of_a_pendulum_wherever_it_begins) {
+BOOST_AUTO_TEST_CASE(pendulum_from_any_start) {
   for (const double degrees : {0.0, 30.0, 75.0, 83.0, 90.0, 91.0, 135.0, 179.0, 180.0, -100.0}) {
     const json result =
         answer_to(point_pendulum("initial = { angle_deg = " + std::to_string(degrees) + " }"));
@@ -369,7 +369,7 @@ BOOST_AUTO_TEST_CASE(of_a_pendulum_wherever_it_begins) {
   BOOST_TEST(run(file).out == text.out);
 }
 
-BOOST_AUTO_TEST_CASE(of_a_double_pendulum_all_four) {
+BOOST_AUTO_TEST_CASE(all_four_of_a_double_pendulum) {
   const std::string two = point_pendulum("initial = { angle_deg = 180 }") +
                           "[[body]]\nname = \"lower\"\nparent = \"bob\"\njoint = { kind = "
                           "\"revolute\", axis = [0, 1, 0], position = [0, 0, -1] }\nmass = 2\n"
@@ -382,7 +382,7 @@ BOOST_AUTO_TEST_CASE(of_a_double_pendulum_all_four) {
 }
 
 // k q = m g l sin(q) with k = m g l/2: a spring tells whole turns apart, and the mass stands on it.
-BOOST_AUTO_TEST_CASE(of_a_mass_that_bends_its_spring) {
+BOOST_AUTO_TEST_CASE(mass_on_a_bending_spring) {
   const double bent = 1.8954942670339809;
   std::string text = point_pendulum("spring = { stiffness = 4.905 }\ndamping = 0.1");
   text.replace(text.find("[0, 0, -1]"), 10, "[0, 0, 1]");
@@ -391,7 +391,7 @@ BOOST_AUTO_TEST_CASE(of_a_mass_that_bends_its_spring) {
 }
 
 // On a guide that turns about the vertical it rests where  w^2 l cos(q) = g.
-BOOST_AUTO_TEST_CASE(of_a_governor) {
+BOOST_AUTO_TEST_CASE(governor) {
   const double w = 5;
   const double out = std::acos(9.81 / (w * w));
   check_equilibria(answer_to("[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 5]\n" +
@@ -401,7 +401,7 @@ BOOST_AUTO_TEST_CASE(of_a_governor) {
 }
 
 // What goes on as a family is listed once.
-BOOST_AUTO_TEST_CASE(of_families_one) {
+BOOST_AUTO_TEST_CASE(one_for_each_family) {
   std::string ball = point_pendulum("initial = { attitude = [0.8, 0.6, 0, 0] }");
   ball.replace(ball.find("kind = \"revolute\", axis = [0, 1, 0]"), 35, "kind = \"spherical\"");
   ball.replace(ball.find("[0, 0, 0]"), 9, "[0.1, 0.2, 0.25]");
@@ -414,7 +414,7 @@ BOOST_AUTO_TEST_CASE(of_families_one) {
   BOOST_TEST(answer(scene("gimbal_lock")).at("equilibria").size() == 1U);
 }
 
-BOOST_AUTO_TEST_CASE(none_where_a_torque_goes_on_acting) {
+BOOST_AUTO_TEST_CASE(none_under_a_persistent_torque) {
   const std::string wheel = R"([[body]]
 name = "wheel"
 joint = { kind = "revolute", axis = [0, 0, 1] }
@@ -439,7 +439,7 @@ t_end = 1
 }
 
 // Roots of a body whose axes turn along differ by that turning from those on resting axes.
-BOOST_AUTO_TEST_CASE(roots_name_the_frame_they_are_seen_from) {
+BOOST_AUTO_TEST_CASE(roots_name_their_frame) {
   const std::string top = R"([[body]]
 name = "top"
 joint = { kind = "spherical" }
@@ -545,7 +545,7 @@ BOOST_AUTO_TEST_CASE(unsymmetric_rotors) {
 }
 
 // Mathieu's pendulum, shaken along its length, upright: the equation by classical Runge-Kutta steps.
-BOOST_AUTO_TEST_CASE(pendulum_shaken_upright) {
+BOOST_AUTO_TEST_CASE(pendulum_stabilised_upright) {
   std::string text = rod;
   text.replace(text.find("0.5"), 3, "3.141592653589793");
   const std::string shaken = R"([guide]
@@ -633,14 +633,14 @@ BOOST_AUTO_TEST_CASE(every_example_scene_has_an_answer) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(says_what_is_beyond_it_in_a_line) {
+BOOST_AUTO_TEST_CASE(states_its_limits_in_one_line) {
   const auto notes = [](const char* name) { return answer(scene(name)).at("notes").dump(); };
   BOOST_TEST(notes("heavy_top").find("gimbals and a rotor") != std::string::npos);
   BOOST_TEST(notes("cardan_gyro_shaken").find("several frequencies") != std::string::npos);
   BOOST_TEST(notes("device_on_logged_ship").find("log") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_failed_sweeps_with_3) {
+BOOST_AUTO_TEST_CASE(exit_status_is_2_or_3_for_errors) {
   const Scratch folder;
   const std::string good = folder.write("scene.toml", rod).string();
   const std::string bad = folder.write("bad.toml", "titel = \"\"\n" + rod).string();
@@ -675,7 +675,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_failed_sweeps_with_3) {
                  .status == 3);
 }
 
-BOOST_AUTO_TEST_CASE(draws) {
+BOOST_AUTO_TEST_CASE(writes_pictures) {
   const Scratch folder;
   const auto check_pictures = [&](const std::string& arguments,
                                   std::initializer_list<const char*> names) {

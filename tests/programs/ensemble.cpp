@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_threads) {
 }
 
 // A member that cannot be made or computed has its row, with the reason.
-BOOST_AUTO_TEST_CASE(lists_members_that_fail) {
+BOOST_AUTO_TEST_CASE(lists_failed_members) {
   const test::Scratch folder;
   const test::Outcome outcome = run(scene("wheel_spun_up") +
                                     " --vary 'body.wheel.inertia[2]=linear(-0.01,0.01)' "
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(lists_members_that_fail) {
 }
 
 // Rounding alone makes more than 1e-15.
-BOOST_AUTO_TEST_CASE(members_that_miss_the_tolerance_exit_with_4) {
+BOOST_AUTO_TEST_CASE(missed_tolerances_exit_with_4) {
   const test::Outcome outcome = run(scene("double_pendulum") +
                                     " --vary 'body.upper.initial.angle=linear(2,2.1)' "
                                     "--members 2 --tolerance 1e-15 --json");
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(a_member_that_is_not_finite_has_failed) {
   BOOST_TEST(test::parsed(outcome.out).at("failed") == 1);
 }
 
-BOOST_AUTO_TEST_CASE(keeps_what_was_computed_when_interrupted) {
+BOOST_AUTO_TEST_CASE(keeps_its_results_when_interrupted) {
   const test::Scratch folder;
   std::size_t computed = 0;
   // A busy machine may not have come to the first member yet.

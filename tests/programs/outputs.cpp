@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
 }
 
 // A mistake is one line, whatever the file says.
-BOOST_AUTO_TEST_CASE(hostile_texts_make_one_line_of_a_mistake) {
+BOOST_AUTO_TEST_CASE(hostile_texts_stay_in_one_line) {
   for (const std::string& name : hostile_names()) {
     const Scratch folder;
     std::string text = rod("", "\"rod\"", "0.1");
@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(a_pipe_gets_all_rows) {
 }
 
 // 1e4 rows are more than a pipe holds.
-BOOST_AUTO_TEST_CASE(a_reader_that_goes_away_makes_3) {
+BOOST_AUTO_TEST_CASE(a_lost_reader_exits_with_3) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", rod("", "\"rod\"", "100")).string();
   const std::string pipe = (folder.path() / "pipe").string();
@@ -223,7 +223,7 @@ BOOST_AUTO_TEST_CASE(a_signal_ends_a_wait_for_a_reader) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(devices_are_written_to_not_replaced) {
+BOOST_AUTO_TEST_CASE(devices_are_written_and_not_replaced) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", rod("", "\"rod\"", "0.1")).string();
   const std::string vary = " --members 2 --vary 'body[0].initial.angle=linear(0.1,0.2)' --csv ";
@@ -254,7 +254,7 @@ BOOST_AUTO_TEST_CASE(the_input_is_not_overwritten) {
 }
 
 // Files that may not grow past 8 kB: the page and the pictures are larger.
-BOOST_AUTO_TEST_CASE(a_picture_that_is_cut_makes_3) {
+BOOST_AUTO_TEST_CASE(a_truncated_picture_exits_with_3) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", rod("", "\"rod\"", "2")).string();
   for (const std::string& program : {simulate, analyze}) {

@@ -84,7 +84,7 @@ void compare(const json& found, const json& wanted, const json& estimate, const 
 
 BOOST_AUTO_TEST_SUITE(pendulum_deviation)
 
-BOOST_AUTO_TEST_CASE(every_reference_comes_out_to_twelve_digits) {
+BOOST_AUTO_TEST_CASE(every_reference_has_twelve_digits) {
   for (const char* const file : {"pendulum.json", "pendulum-extra.json"}) {
     for (const json& reference : references(file)) {
       const json found = answer(options(reference.at("inputs")));
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(every_reference_comes_out_to_twelve_digits) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(the_paper_s_pendulum_is_printed_with_thirteen_digits) {
+BOOST_AUTO_TEST_CASE(papers_pendulum_has_thirteen_digits) {
   const Outcome outcome = run("--latitude 45 --azimuth 90 --reduced-length 0.5 --gravity 9.81");
   BOOST_TEST(outcome.status == 0);
   BOOST_TEST(outcome.err == "");
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(the_paper_s_pendulum_is_printed_with_thirteen_digits) {
 }
 
 // Three ways to give the same rod.
-BOOST_AUTO_TEST_CASE(a_rod_is_a_rod_however_it_is_given) {
+BOOST_AUTO_TEST_CASE(all_descriptions_of_a_rod_agree) {
   const std::string site = "--latitude 30 --azimuth 60 --gravity 9.8 ";
   const json a = answer(site + "--reduced-length 0.5");
   const json b = answer(site + "--rod 0.75");
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(a_rod_is_a_rod_however_it_is_given) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_list_of_sites_gives_each_what_it_gets_alone) {
+BOOST_AUTO_TEST_CASE(a_list_of_sites_agrees_with_single_runs) {
   const Scratch folder;
   const auto list = folder.write("sites.csv",
                                  "name,latitude,height,azimuth\n"
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(a_sweep_hits_both_its_ends) {
 }
 
 // The gravity gradient changes the rod's period some 870 times as much as the rotation does.
-BOOST_AUTO_TEST_CASE(the_gravity_gradient_comes_on_request) {
+BOOST_AUTO_TEST_CASE(the_gravity_gradient_is_optional) {
   const std::string site = "--latitude 0 --gravity 9.81 ";
   const double without = answer(site).at("period").at("relative_change_exact");
   const double with = answer(site + "--gravity-gradient").at("period").at("relative_change_exact");
@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(an_endless_list_is_refused) {
   BOOST_TEST(outcome.err.find("is larger than 64 MB") != std::string::npos, outcome.err);
 }
 
-BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_one_line_and_no_file) {
+BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
   const Scratch folder;
   const auto half = folder.write("half.csv", "name,latitude,height,azimuth\nA,10,0,90\nB,20,0\n");
   // A number does not end at a byte 0.

@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_SUITE(resuming)
 
 // 300 kills in all, of runs of half a second or more. A run that is killed too early to come on gets
 // more time.
-BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_after_300_kills) {
+BOOST_AUTO_TEST_CASE(continues_exactly_after_300_kills) {
   std::mt19937 random(1);
   for (const auto& [method, t_end] : {std::pair("verner98", "600"), std::pair("taylor", "800"),
                                       std::pair("gauss16", "150"), std::pair("radau13", "400")}) {
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_after_300_kills) {
 }
 
 // The checkpoint of a run with new steps is one of the run that began with that row.
-BOOST_AUTO_TEST_CASE(goes_on_after_new_steps) {
+BOOST_AUTO_TEST_CASE(continues_after_new_steps) {
   const Case c("verner98", "600");
   const std::string begin = c.rows.substr(0, c.rows.find("\n0.25,") + 1);
   const auto begin_anew = [&] {
@@ -244,7 +244,7 @@ BOOST_AUTO_TEST_CASE(finds_rows_that_were_changed) {
 }
 
 // What the steps depend on is part of what tells one run from another.
-BOOST_AUTO_TEST_CASE(takes_no_checkpoint_of_another_run) {
+BOOST_AUTO_TEST_CASE(refuses_a_checkpoint_of_another_run) {
   const Case c("verner98", "600");
   c.stop_half_way();
   const std::string rows = c.folder.read("part.csv");

@@ -218,7 +218,7 @@ tolerance = 1e-9
 output_step = 0.01
 )";
 
-BOOST_AUTO_TEST_CASE(answers_as_the_library_does_to_the_bit) {
+BOOST_AUTO_TEST_CASE(agrees_with_the_library_to_the_bit) {
   const auto rod = InertiaTensor<Body>::about_centre(
       1, {0, 0, -1}, 0.1 * Matrix3<double>::Identity(), Mass::zero_allowed);
   const Joint joint{.kind = JointKind::revolute, .axis = {0, 1, 0}};
@@ -261,7 +261,7 @@ BOOST_AUTO_TEST_CASE(answers_as_the_library_does_to_the_bit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(tells_reactions_and_terms_when_asked) {
+BOOST_AUTO_TEST_CASE(prints_reactions_and_terms_on_request) {
   const Scratch folder;
   const std::string file = folder.write("scene.toml", two_rods).string();
   BOOST_TEST(!answer(file).at("final").contains("reactions"));
@@ -279,7 +279,7 @@ BOOST_AUTO_TEST_CASE(tells_reactions_and_terms_when_asked) {
 }
 
 // Rows and report, wherever the run was when it was killed, and killed twice.
-BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
+BOOST_AUTO_TEST_CASE(continues_exactly_after_a_kill) {
   const Scratch folder;
   std::string longer = two_rods;
   longer.replace(longer.find("output_step = 0.01"), 18, "output_step = 0.05");
@@ -322,7 +322,7 @@ BOOST_AUTO_TEST_CASE(goes_on_to_the_last_bit_when_it_was_killed) {
 
 // Rows without a checkpoint: what was cut off is computed again from the last whole one, to the
 // tolerance.
-BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
+BOOST_AUTO_TEST_CASE(continues_a_stopped_run) {
   const Scratch folder;
   const std::string file = folder.write("scene.toml", two_rods).string();
   const json whole = answer(file + " --csv " + (folder.path() / "whole.csv").string());
@@ -354,7 +354,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_where_it_was_stopped) {
   BOOST_TEST(lines(folder.read("other.csv")).size() == 2U);
 }
 
-BOOST_AUTO_TEST_CASE(leaves_whole_rows_when_interrupted_or_killed) {
+BOOST_AUTO_TEST_CASE(leaves_whole_rows_when_stopped) {
   std::string endless = two_rods;
   endless.replace(endless.find("t_end = 2"), 9, "t_end = 1e4");
   for (const char* const signal : {"INT", "KILL"}) {
@@ -455,7 +455,7 @@ reactions = true
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(tells_what_the_error_of_a_log_does) {
+BOOST_AUTO_TEST_CASE(reports_the_effect_of_log_errors) {
   RollingShip ship;
   for (const char* const keys : {"", "sigma = 0\n", "sigma = 3e-5\n", "sigma = [3e-5, 0]\n"}) {
     const json result = ship.along_the_log(keys);
@@ -476,7 +476,7 @@ BOOST_AUTO_TEST_CASE(tells_what_the_error_of_a_log_does) {
   BOOST_TEST(text.out.find("error_of_log ") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(begins_its_rows_with_the_start_itself) {
+BOOST_AUTO_TEST_CASE(first_row_is_the_start) {
   const Scratch folder;
   const std::string command =
       std::string(KREISEL_SIMULATE) + " " + scene("double_pendulum") + " --t-end 20 --csv ";
@@ -516,7 +516,7 @@ BOOST_AUTO_TEST_CASE(a_number_that_is_not_finite_exits_with_3) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(help_tells_the_exit_statuses) {
+BOOST_AUTO_TEST_CASE(help_lists_the_exit_statuses) {
   const Outcome help = run("--help");
   BOOST_TEST(help.status == 0);
   for (const char* const status : {"  0 ", "  2 ", "  3 ", "  4 ", "  130 "}) {
@@ -553,7 +553,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
 }
 
 // A joint that finds no inertia is found out when it should move.
-BOOST_AUTO_TEST_CASE(what_cannot_be_computed_exits_with_3) {
+BOOST_AUTO_TEST_CASE(failed_computations_exit_with_3) {
   const Scratch folder;
   std::string massless = two_rods;
   const std::size_t last =
@@ -592,7 +592,7 @@ std::string approximated(const char* model, const std::string& bodies) {
 }
 
 // Against the harmonic oscillation; and its error is that of the period, phi^2/16 of it.
-BOOST_AUTO_TEST_CASE(linear_equations_and_how_far_they_are_off) {
+BOOST_AUTO_TEST_CASE(linear_equations_report_their_error) {
   const Scratch folder;
   const std::string rod = two_rods.substr(0, two_rods.find("[[body]]\nname = \"lower\""));
   const std::string file = folder.write("scene.toml", approximated("linear", rod)).string();
@@ -656,7 +656,7 @@ BOOST_AUTO_TEST_CASE(linear_equations_of_an_attitude) {
 }
 
 // Without inertia across the spin:  H beta' + c_a alpha = 0,  -H alpha' + c_b beta = 0.
-BOOST_AUTO_TEST_CASE(precession_equations_and_how_far_they_are_off) {
+BOOST_AUTO_TEST_CASE(precession_equations_report_their_error) {
   const Scratch folder;
   const std::string bodies = R"(
 [[body]]
@@ -716,7 +716,7 @@ std::string gyro(const std::string& rings, const std::string& rotor) {
 }
 
 // With T_a = T_b = T and equal springs z = alpha + i beta obeys  T z'' - i H z' + c z = 0.
-BOOST_AUTO_TEST_CASE(foeppls_equations_and_how_far_they_are_off) {
+BOOST_AUTO_TEST_CASE(foeppls_equations_report_their_error) {
   const Scratch folder;
   const std::string bodies =
       gyro("mass = 1\ninertia = [1e-3, 2e-3, 1.5e-3]\nspring = { stiffness = 2 }\n",
@@ -782,7 +782,7 @@ BOOST_AUTO_TEST_CASE(foeppls_equations_on_any_axes) {
 // Between two springs at 1.4 rad/s the rest is unstable: each half turn makes 1.2313690 times the
 // angles, as the Floquet multipliers of docs/site/approximations.md have it; and it does not matter
 // where the rotor begins, but for the names of its axes.
-BOOST_AUTO_TEST_CASE(fuchs_and_weigands_equations_and_how_far_they_are_off) {
+BOOST_AUTO_TEST_CASE(fuchs_weigand_equations_report_their_error) {
   const Scratch folder;
   const std::string rings = "mass = 0\ninertia = [0, 0, 0]\nspring = { stiffness = 1 }\n";
   const double half_turn = std::acos(-1.0) / 1.4;
@@ -817,7 +817,7 @@ BOOST_AUTO_TEST_CASE(fuchs_and_weigands_equations_and_how_far_they_are_off) {
   check_near("begun a quarter of a turn later", ends.at(1), ends.at(0), 1e-9 * std::abs(ends[0]));
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_no_gyro_in_two_rings) {
+BOOST_AUTO_TEST_CASE(refuses_scenes_without_a_cardan_gyro) {
   const Scratch folder;
   const std::string rings = "mass = 1\ninertia = [1e-3, 2e-3, 1.5e-3]\n";
   const std::string free = "\nrotor = { mode = \"free\", speed = 50 }";
@@ -851,7 +851,7 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_gyro_in_two_rings) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_equations_that_a_scene_has_not) {
+BOOST_AUTO_TEST_CASE(refuses_unavailable_equations) {
   const Scratch folder;
   const std::string rods = two_rods.substr(0, two_rods.find("[solve]"));
   const std::string swinging =
@@ -871,7 +871,7 @@ BOOST_AUTO_TEST_CASE(refuses_equations_that_a_scene_has_not) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(draws) {
+BOOST_AUTO_TEST_CASE(writes_pictures) {
   const Scratch folder;
   const std::string pictures = (folder.path() / "pictures").string();
   const Outcome outcome =

@@ -104,7 +104,7 @@ bool has_browser() {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_where_the_library_has_it) {
+BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   if (!has_browser()) return;
   const Scratch folder;
   const auto file = folder.write("scene.toml", all_joints);

@@ -70,7 +70,7 @@ double differ(const EulerTop::State& a, const EulerTop::State& b) {
 
 BOOST_AUTO_TEST_SUITE(an_ensemble)
 
-BOOST_AUTO_TEST_CASE(is_the_same_to_the_last_bit_for_any_number_of_threads) {
+BOOST_AUTO_TEST_CASE(results_do_not_depend_on_threads) {
   const auto with = [](int threads) {
     const auto result = ensemble(top, {.count = 37, .threads = threads}, scattered, options);
     BOOST_TEST((result.status == RunStatus::complete));
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(is_the_same_to_the_last_bit_for_any_number_of_threads) {
   BOOST_TEST((gyros(3) == gyros_once));
 }
 
-BOOST_AUTO_TEST_CASE(is_the_same_in_parts) {
+BOOST_AUTO_TEST_CASE(results_do_not_depend_on_ranges) {
   const auto part = [](std::size_t first, std::size_t count) {
     return numbers<EulerTop>(ensemble(top, {.count = count, .first = first}, scattered, options));
   };
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(is_the_same_in_parts) {
 }
 
 // Each is within its own estimate of the truth; that of a run alone held to 1e-14 counts as it.
-BOOST_AUTO_TEST_CASE(goes_where_each_member_goes_alone) {
+BOOST_AUTO_TEST_CASE(members_agree_with_single_runs) {
   for (const double tolerance : {1e-6, 1e-10}) {
     const SolveOptions asked{.output_times = {0.1, 0.2}, .tolerance = tolerance};
     const auto result = ensemble(top, {.count = 24, .seed = 3}, scattered, asked);
@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(goes_where_each_member_goes_alone) {
 // Scenes of one kind with other moments of inertia lie side by side in a pack. Each keeps to its own
 // estimate, whether it does or not, but for one in 60 of some last digits; moments mixed up between
 // lanes would turn each another way.
-BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
+BOOST_AUTO_TEST_CASE(members_may_have_their_own_scenes) {
   static_assert(detail::lies_side_by_side<Gyro, Pack>);
   static_assert(detail::lies_side_by_side<EulerTop, Pack>);
   static_assert(!detail::lies_side_by_side<CardanGyro<RestingFrame<>, DrivenRotor<>>, Pack>);
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(takes_a_scene_for_each_member) {
   check(tops, OfScene<EulerTop>());
 }
 
-BOOST_AUTO_TEST_CASE(takes_other_members_with_another_seed) {
+BOOST_AUTO_TEST_CASE(another_seed_gives_other_members) {
   const auto with = [](std::uint64_t seed) {
     return numbers<EulerTop>(ensemble(top, {.count = 8, .seed = seed}, scattered, options));
   };
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(takes_other_members_with_another_seed) {
 
 // One that cannot be made, and one that runs into gimbal lock: with massless rings nothing resists
 // alpha at beta = 90 degrees.
-BOOST_AUTO_TEST_CASE(keeps_what_a_member_failed_by) {
+BOOST_AUTO_TEST_CASE(a_failed_member_has_its_reason) {
   const Gyro gyro({.rotor = moments.rotor}, {}, {});
   const auto make = [](std::size_t index, MemberRandom& random) {
     if (index == 5) throw InvalidInput("member 5 is not made");
@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_a_member_failed_by) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
+BOOST_AUTO_TEST_CASE(a_cancelled_run_keeps_its_results) {
   const auto all = ensemble(top, {.count = 400}, scattered, options);
   for (const int threads : {1, 3}) {
     Sampling sampling{.count = 400, .threads = threads};
@@ -246,7 +246,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_had_when_it_is_cancelled) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(tells_its_progress_up_to_the_end) {
+BOOST_AUTO_TEST_CASE(progress_is_reported_up_to_the_end) {
   Sampling sampling{.count = 50, .threads = 2};
   std::vector<double> shares;
   sampling.progress = [&](double share) {
@@ -259,7 +259,7 @@ BOOST_AUTO_TEST_CASE(tells_its_progress_up_to_the_end) {
   BOOST_TEST(shares.back() == 1);
 }
 
-BOOST_AUTO_TEST_CASE(hands_on_what_the_progress_callback_throws) {
+BOOST_AUTO_TEST_CASE(exceptions_of_the_progress_callback_pass) {
   for (const int threads : {1, 3}) {
     Sampling sampling{.count = 50, .threads = threads};
     sampling.progress = [](double) -> bool { throw std::runtime_error("enough"); };
@@ -270,7 +270,7 @@ BOOST_AUTO_TEST_CASE(hands_on_what_the_progress_callback_throws) {
 
 // Tops that turn about their middle axis but for 1e-4: of most a first try errs by too much, and to 1e-12
 // rounding has grown to more.
-BOOST_AUTO_TEST_CASE(tries_again_where_members_err_by_too_much) {
+BOOST_AUTO_TEST_CASE(members_with_large_errors_run_again) {
   const EulerTop free({1, 2, 3});
   const auto beside_middle_axis = [](std::size_t, MemberRandom& random) {
     const double x = random.normal(0, 1e-4);
@@ -305,7 +305,7 @@ BOOST_AUTO_TEST_CASE(tries_again_where_members_err_by_too_much) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(without_estimates_takes_half_the_work) {
+BOOST_AUTO_TEST_CASE(runs_without_estimates_cost_half) {
   Sampling sampling{.count = 16};
   const auto with = ensemble(top, sampling, scattered, options);
   sampling.estimates_errors = false;
@@ -320,7 +320,7 @@ BOOST_AUTO_TEST_CASE(without_estimates_takes_half_the_work) {
 }
 
 // Its load takes doubles alone.
-BOOST_AUTO_TEST_CASE(runs_other_scenes_one_by_one) {
+BOOST_AUTO_TEST_CASE(scenes_without_packs_run_one_by_one) {
   const auto load = [](const LoadContext<>&) { return Force<Body>{}; };
   using Top = FixedPointBody<RestingFrame<>, decltype(load)>;
   static_assert(detail::takes_packs<EulerTop, Pack>);
@@ -341,7 +341,7 @@ BOOST_AUTO_TEST_CASE(runs_other_scenes_one_by_one) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_makes_no_sense) {
+BOOST_AUTO_TEST_CASE(invalid_options_are_refused) {
   const auto run = [](const Sampling& sampling, const SolveOptions& asked) {
     static_cast<void>(ensemble(top, sampling, scattered, asked));
   };

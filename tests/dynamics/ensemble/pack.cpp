@@ -74,7 +74,7 @@ struct Oscillators {
 
 BOOST_AUTO_TEST_SUITE(packs)
 
-BOOST_AUTO_TEST_CASE(have_sines_of_nearly_full_precision) {
+BOOST_AUTO_TEST_CASE(sines_have_nearly_full_precision) {
   using exact = long double;
   const auto off = [](double found, exact truth) {
     return static_cast<double>(std::abs(found - truth));
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(have_sines_of_nearly_full_precision) {
   BOOST_TEST(worst <= 1.2 * eps / 2);
 }
 
-BOOST_AUTO_TEST_CASE(have_sines_of_any_number_that_has_one) {
+BOOST_AUTO_TEST_CASE(sines_exist_for_all_finite_numbers) {
   Pack x(0.5);
   x.set_lane(0, 1e300);
   BOOST_TEST(sin(x).lane(0) == std::sin(1e300));
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(have_sines_of_any_number_that_has_one) {
   BOOST_TEST(std::isnan(cos(x).lane(0)));
 }
 
-BOOST_AUTO_TEST_CASE(choose_and_ask_lane_by_lane) {
+BOOST_AUTO_TEST_CASE(select_and_compare_lane_by_lane) {
   Pack x;
   for (int k = 0; k < lanes; ++k) x.set_lane(k, k);
   BOOST_TEST(any(x <= Pack(0)));
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(choose_and_ask_lane_by_lane) {
 }
 
 // Fused multiplications and the order of sums that a compiler is free in make a few u.
-BOOST_AUTO_TEST_CASE(move_scenes_as_numbers_do) {
+BOOST_AUTO_TEST_CASE(move_scenes_like_doubles) {
   BOOST_TEST(rates_differ_by(EulerTop({0.002, 0.0025, 0.003}, {0.01, 0, 0.05}, {0, 0, 1})) <
              32 * eps);
   BOOST_TEST(rates_differ_by(CardanGyro(round_rotor, {}, RestingFrame<>{})) < 256 * eps);
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_SUITE(members_that_share_their_steps)
 
 // A small fast oscillator beside a large slow one: measured by the other's size it might err by 1e6
 // times as much. Each has (error in a step) * (steps) of its own, and no lane more.
-BOOST_AUTO_TEST_CASE(are_each_held_to_the_accuracy_in_their_own_size) {
+BOOST_AUTO_TEST_CASE(each_keep_the_relative_accuracy) {
   constexpr double accuracy = 1e-10;
   Oscillators field{1};
   field.frequency.set_lane(lanes - 1, 10);
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(are_each_held_to_the_accuracy_in_their_own_size) {
   BOOST_TEST(steps.effort().steps <= 1.1 * alone.effort().steps);
 }
 
-BOOST_AUTO_TEST_CASE(go_where_each_goes_alone) {
+BOOST_AUTO_TEST_CASE(agree_with_single_runs) {
   const EulerTop top({0.002, 0.002, 0.003}, {0, 0, 0.05});
   PackedAdvance<EulerTop>::States starts;
   for (int k = 0; k < lanes; ++k) starts[std::size_t(k)].angular_velocity = {0.3 + k, 0.1, 100};
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(go_where_each_goes_alone) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(ask_for_no_memory_on_the_way) {
+BOOST_AUTO_TEST_CASE(allocate_no_memory_in_steps) {
   const EulerTop top({0.002, 0.002, 0.003}, {0, 0, 0.05});
   PackedAdvance<EulerTop>::States starts;
   starts.fill({.angular_velocity = {1, 0, 100}});

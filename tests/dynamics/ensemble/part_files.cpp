@@ -25,7 +25,7 @@ std::vector<std::string> rows(std::size_t count) {
 BOOST_AUTO_TEST_SUITE(part_files)
 
 // 300 members are one whole part and 44 of the next.
-BOOST_AUTO_TEST_CASE(tell_what_is_still_to_do) {
+BOOST_AUTO_TEST_CASE(list_the_missing_parts) {
   const Scratch folder;
   const PartFiles parts(folder.path() / "parts", "seed 1", 300);
   BOOST_TEST(parts.size() == 2U);
@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(tell_what_is_still_to_do) {
   BOOST_TEST(parts.read(1) == rows(44));
 }
 
-BOOST_AUTO_TEST_CASE(are_refused_where_they_do_not_hold_what_was_asked) {
+BOOST_AUTO_TEST_CASE(are_refused_if_they_do_not_match) {
   const Scratch folder;
   const PartFiles parts(folder.path(), "seed 1", 300);
   BOOST_CHECK_THROW((void)parts.read(0), InvalidInput);

@@ -11,7 +11,7 @@ using namespace kreisel;
 BOOST_AUTO_TEST_SUITE(the_random_numbers_of_a_member)
 
 // kat_vectors of Random123, the authors' own program.
-BOOST_AUTO_TEST_CASE(are_philox) {
+BOOST_AUTO_TEST_CASE(agree_with_philox) {
   using Block = MemberRandom::Block;
   constexpr std::uint32_t ones = 0xFFFFFFFF;
   BOOST_TEST((MemberRandom::philox({0, 0, 0, 0}, {0, 0}) ==
@@ -31,7 +31,7 @@ BOOST_AUTO_TEST_CASE(take_all_four_words_of_each_block) {
   BOOST_TEST(random.bits() == (std::uint64_t{next[1]} << 32 | next[0]));
 }
 
-BOOST_AUTO_TEST_CASE(differ_by_seed_index_and_turn) {
+BOOST_AUTO_TEST_CASE(differ_by_seed_index_and_count) {
   std::set<std::uint64_t> seen;
   for (const std::uint64_t seed : {0ULL, 1ULL, 1ULL << 32}) {
     for (const std::uint64_t index : {0ULL, 1ULL, 2ULL, 1ULL << 32}) {
@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(differ_by_seed_index_and_turn) {
 }
 
 // Means of n numbers: within five of their own deviations, for this seed once and for all.
-BOOST_AUTO_TEST_CASE(are_distributed_as_they_say) {
+BOOST_AUTO_TEST_CASE(have_their_distributions) {
   constexpr int n = 200000;
   MemberRandom random(7, 3);
   double uniform = 0, uniform_squares = 0, normal = 0, squares = 0, fourth = 0;

@@ -65,7 +65,7 @@ Vector3<double> moments(test::Sample& sample) {
 BOOST_AUTO_TEST_SUITE(free_top)
 
 // Random bodies and rates fall on both sides of the separatrix and on all axes in any order.
-BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series, data::xrange(40u), seed) {
+BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series, data::xrange(40u), seed) {
   test::Sample sample(seed);
   const Vector3<double> I = moments(sample);
   const Vector3<double> omega = sample.direction();
@@ -93,7 +93,7 @@ BOOST_DATA_TEST_CASE(distance_from_the_separatrix_is_exact,
   BOOST_TEST(worst.rate <= rounded);
 }
 
-BOOST_AUTO_TEST_CASE(motion_on_the_separatrix_ends_at_the_middle_axis) {
+BOOST_AUTO_TEST_CASE(separatrix_ends_at_the_middle_axis) {
   const Errors worst = errors({2, 5, 6}, {-1, 0.3, 1}, 16);
   BOOST_TEST(worst.attitude <= rounded);
   BOOST_TEST(worst.rate <= rounded);
@@ -124,7 +124,7 @@ BOOST_DATA_TEST_CASE(motion_after_1e4_periods_keeps_its_digits, data::xrange(12u
             << ", angle " << angle << " rad\n";
 }
 
-BOOST_AUTO_TEST_CASE(motion_after_a_million_seconds_keeps_its_digits) {
+BOOST_AUTO_TEST_CASE(motion_after_1e6_seconds_keeps_its_digits) {
   const FreeTop top({1, 2, 3}, {1e-3, 2, 1e-3}, anyhow);
   test::TopTruth truth({1, 2, 3}, Vector3<double>::Zero(), 0, {1e-3, 2, 1e-3}, anyhow);
   truth.advance_far(1e6, top.period());
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(motion_after_a_million_seconds_keeps_its_digits) {
   std::cout << "1e6 s: attitude " << worst.attitude << " rad, rate " << worst.rate << '\n';
 }
 
-BOOST_AUTO_TEST_CASE(rotation_about_a_principal_axis_is_steady_to_the_bit) {
+BOOST_AUTO_TEST_CASE(rotation_about_principal_axes_is_steady) {
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3<double> omega = -0.7 * Vector3<double>::Unit(axis);
     const FreeTop top({2, 5, 6}, omega, anyhow);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(rotation_about_a_principal_axis_is_steady_to_the_bit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(sphere_turns_steadily_about_any_axis_and_a_body_at_rest_stays) {
+BOOST_AUTO_TEST_CASE(spheres_and_bodies_at_rest_are_steady) {
   const Vector3<double> omega(1, -2, 0.5);
   BOOST_TEST(test::same(FreeTop({2, 2, 2}, omega, anyhow).at(1e9).angular_velocity, omega));
   BOOST_TEST(errors({2, 2, 2}, omega, 16).attitude <= rounded);
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(sphere_turns_steadily_about_any_axis_and_a_body_at_rest_sta
 }
 
 // Axis of symmetry on each body axis, flat and long, exactly and to 1e-15: one formula for all.
-BOOST_DATA_TEST_CASE(symmetric_bodies_need_no_case_of_their_own,
+BOOST_DATA_TEST_CASE(symmetric_bodies_need_no_special_case,
                      data::xrange(3) * data::make({1.0, 1 + 1e-15, 1 - 1e-15}) *
                          data::make({1.0, 3.0}),
                      axis, nearly, along) {
@@ -166,19 +166,19 @@ BOOST_DATA_TEST_CASE(symmetric_bodies_need_no_case_of_their_own,
   BOOST_TEST(worst.rate <= rounded);
 }
 
-BOOST_AUTO_TEST_CASE(tiny_rates_do_not_vanish_on_the_way) {
+BOOST_AUTO_TEST_CASE(tiny_rates_do_not_vanish) {
   const FreeTop top({1, 2, 3}, {1, 2, 0.5}, anyhow);
   const FreeTop slow({1, 2, 3}, Vector3<double>(1, 2, 0.5) * 0x1p-600, anyhow);
   BOOST_TEST(test::same(slow.at(0x1p602).attitude.coeffs(), top.at(4).attitude.coeffs()));
 }
 
-BOOST_AUTO_TEST_CASE(energy_and_momentum_are_the_bodys) {
+BOOST_AUTO_TEST_CASE(energy_and_momentum_are_correct) {
   const FreeTop top({1, 2, 3}, {3, -2, 1}, anyhow);
   BOOST_TEST(top.energy() == 10);
   BOOST_TEST(top.momentum() == std::sqrt(34.0));
 }
 
-BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_arguments_are_refused) {
   const auto message = [](const Vector3<double>& I, const Vector3<double>& omega,
                           const Eigen::Quaterniond& q) -> std::string {
     try {

@@ -104,7 +104,7 @@ struct Errors {
 
 BOOST_AUTO_TEST_SUITE(symmetric_gyrostat)
 
-BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series, data::xrange(30u), seed) {
+BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series, data::xrange(30u), seed) {
   test::Sample sample(seed);
   const double A = sample.uniform(0.5, 2);
   const double C = sample.uniform(0.1, 2) * A;
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(motion_after_1e4_periods_keeps_its_digits) {
 }
 
 // The two programs share no formula for the attitude.
-BOOST_AUTO_TEST_CASE(gyrostat_with_its_rotor_at_rest_is_a_free_top) {
+BOOST_AUTO_TEST_CASE(rotor_at_rest_gives_the_free_top) {
   const SymmetricGyrostat gyrostat(2, 3, 0, {1, 2, 0.5}, anyhow);
   const exact::FreeTop top({2, 2, 3}, {1, 2, 0.5}, anyhow);
   BOOST_TEST(std::abs(gyrostat.period() / top.period() - 1) <= 2 * u);
@@ -142,14 +142,14 @@ BOOST_AUTO_TEST_CASE(gyrostat_with_its_rotor_at_rest_is_a_free_top) {
 }
 
 // (A - C) omega3 = h: to the body its rotor makes up for the moment it lacks.
-BOOST_AUTO_TEST_CASE(rotor_can_make_any_rotation_steady) {
+BOOST_AUTO_TEST_CASE(a_rotor_can_make_any_rotation_steady) {
   const Vector3<double> omega(1, -2, 0.5);
   const SymmetricGyrostat top(2, 1, 0.5, omega, anyhow);
   BOOST_TEST(test::same(top.at(1e9).angular_velocity, omega));
   BOOST_TEST(std::isinf(top.period()));
 }
 
-BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_arguments_are_refused) {
   BOOST_CHECK_EXCEPTION(
       (void)SymmetricGyrostat(1, 1, std::nan(""), {1, 1, 1}, anyhow), InvalidInput,
       [](const auto& error) { return std::string(error.what()) == "rotor = nan must be finite"; });
@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(gyrostat)
 
-BOOST_AUTO_TEST_CASE(motion_is_that_of_the_taylor_series) {
+BOOST_AUTO_TEST_CASE(motion_agrees_with_the_taylor_series) {
   int complex = 0;
   double attitude = 0;
   double rate = 0;
@@ -217,7 +217,7 @@ BOOST_DATA_TEST_CASE(motion_near_a_saddle_keeps_its_digits,
 
 // Equal moments across a rotor that makes up for what the third lacks: any rotation is steady. One
 // about an axis across the rotor is not, where the rotor pushes it on.
-BOOST_AUTO_TEST_CASE(is_steady_only_where_nothing_turns_its_momentum) {
+BOOST_AUTO_TEST_CASE(is_steady_if_its_momentum_is_constant) {
   const Vector3<double> any(1, -2, 0.5);
   BOOST_TEST(
       test::same(Gyrostat({2, 2, 1}, {0, 0, 0.5}, any, anyhow).at(1e9).angular_velocity, any));
@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(is_steady_only_where_nothing_turns_its_momentum) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(motion_on_the_separatrix_ends_at_the_saddle) {
+BOOST_AUTO_TEST_CASE(separatrix_ends_at_the_saddle) {
   const Vector3<double> end =
       Gyrostat({2, 4, 4.5}, {0, 0, 0.125}, {3, 1, 3.75}, anyhow).at(1e6).angular_velocity;
   BOOST_TEST(end.x() == 0);
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(motion_on_the_separatrix_ends_at_the_saddle) {
 }
 
 // The saddle on the rotor's axis: 2 E C = (|L| - h)^2 with |L| = 7, and the rates near it.
-BOOST_AUTO_TEST_CASE(saddle_on_the_axis_of_the_rotor_keeps_its_digits) {
+BOOST_AUTO_TEST_CASE(saddle_on_the_rotor_axis_keeps_its_digits) {
   for (const double side : {1.0, -1.0}) {
     const Gyro gyro{{2, 4, 4}, {0, 0, -2 * side}, {1, 0.75, 2 * side}};
     const Errors worst(gyro, 32);
@@ -254,8 +254,7 @@ BOOST_AUTO_TEST_CASE(saddle_on_the_axis_of_the_rotor_keeps_its_digits) {
 }
 
 // Nutations so small that both ends, or L and the axis, are almost one.
-BOOST_DATA_TEST_CASE(motion_near_a_steady_rotation_keeps_its_digits,
-                     data::make({1e-3, 1e-8, 1e-15}), eps) {
+BOOST_DATA_TEST_CASE(near_steady_motion_keeps_its_digits, data::make({1e-3, 1e-8, 1e-15}), eps) {
   for (const Gyro& gyro :
        {Gyro{{2, 4, 3}, {0, 0, 5}, {eps, eps, 1}}, Gyro{{2, 4, 3}, {0, 0, 5}, {eps, eps, -2}},
         Gyro{{2, 4, 3}, {0, 0, 2}, {eps, 1, 2 + eps}},
@@ -278,7 +277,7 @@ BOOST_DATA_TEST_CASE(nearly_symmetric_bodies_keep_their_digits,
 }
 
 // Which shares no formula: one goes along omega3, the other along the axis that L circles.
-BOOST_AUTO_TEST_CASE(gyrostat_with_hardly_a_rotor_is_a_free_top) {
+BOOST_AUTO_TEST_CASE(a_weak_rotor_gives_the_free_top) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double middle : {0.1, 3.0}) {
       const Gyro gyro{{2, 3, 4}, 1e-40 * Vector3<double>::Unit(axis), {1, middle, -1.5}};
@@ -297,7 +296,7 @@ BOOST_AUTO_TEST_CASE(gyrostat_with_hardly_a_rotor_is_a_free_top) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(symmetric_body_is_the_symmetric_gyrostat) {
+BOOST_AUTO_TEST_CASE(symmetric_bodies_give_the_symmetric_gyrostat) {
   const SymmetricGyrostat symmetric(2, 3, -4, {1, 2, 0.5}, anyhow);
   const Gyrostat any({2, 2, 3}, {0, 0, -4}, {1, 2, 0.5}, anyhow);
   BOOST_TEST(any.period() == symmetric.period());
@@ -306,7 +305,7 @@ BOOST_AUTO_TEST_CASE(symmetric_body_is_the_symmetric_gyrostat) {
 }
 
 // On an axis, and aslant where the rotor makes up for the moments: (C - B) omega3 + h = 0.
-BOOST_AUTO_TEST_CASE(steady_rotation_of_a_gyrostat_is_steady_to_the_bit) {
+BOOST_AUTO_TEST_CASE(steady_rotations_are_exactly_steady) {
   for (Gyro gyro :
        {Gyro{{2, 5, 6}, {0, 0, 3}, {0, 0, -0.7}}, Gyro{{2, 5, 6}, {0, 0, 3}, {0, 2, -3}},
         Gyro{{2, 5, 6}, {0, 0, 3}, {2, 0, -0.75}}}) {
@@ -321,7 +320,7 @@ BOOST_AUTO_TEST_CASE(steady_rotation_of_a_gyrostat_is_steady_to_the_bit) {
   BOOST_TEST(Gyrostat({2, 5, 6}, {0, 0, 3}, {1e-9, 2, -3}, anyhow).period() > 0);
 }
 
-BOOST_AUTO_TEST_CASE(tiny_rates_of_a_gyrostat_do_not_vanish_on_the_way) {
+BOOST_AUTO_TEST_CASE(tiny_rates_do_not_vanish) {
   for (const double h : {0.3, 3.0}) {
     const Gyrostat top({1, 2, 2.5}, {0, 0, h}, {1, 2, 0.5}, anyhow);
     const Gyrostat slow({1, 2, 2.5}, {0, 0, h * 0x1p-600}, Vector3<double>(1, 2, 0.5) * 0x1p-600,
@@ -330,7 +329,7 @@ BOOST_AUTO_TEST_CASE(tiny_rates_of_a_gyrostat_do_not_vanish_on_the_way) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(other_arguments_of_a_gyrostat_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_gyrostats_are_refused) {
   const auto message = [](const Vector3<double>& moments, const Vector3<double>& rotor,
                           const Vector3<double>& omega) -> std::string {
     try {

@@ -119,13 +119,13 @@ const auto cases = data::make(std::vector<Case>{
 
 BOOST_AUTO_TEST_SUITE(lagrange_top)
 
-BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series, data::xrange(24u), seed) {
+BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series, data::xrange(24u), seed) {
   const Errors worst = errors(random_case(seed), seed % 2 == 0 ? 8 : -8);
   BOOST_TEST(worst.attitude <= rounded);
   BOOST_TEST(worst.rate <= rounded * worst.fastest);
 }
 
-BOOST_DATA_TEST_CASE(motion_keeps_its_digits_at_its_edges, cases, c) {
+BOOST_DATA_TEST_CASE(limiting_motions_keep_their_digits, cases, c) {
   // No longer: upon the homoclinic motion 50 digits are used up by exp(sqrt(kappa) t).
   const Errors worst = errors(c, 16);
   const double period = LagrangeTop(c.A, c.C, c.weight_moment, c.omega, c.attitude).period();
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(sleeping_top_is_steady_to_the_bit) {
 
 // Without spin a push of v^2 = kappa at the lowest point lasts to the upper rest point; sqrt(6) is
 // no double, and which way the top falls is in its last digit.
-BOOST_AUTO_TEST_CASE(top_that_ends_upright_does_so) {
+BOOST_AUTO_TEST_CASE(homoclinic_motion_ends_upright) {
   const LagrangeTop top(3, 1, 3, {2, 0, 0}, hanging);
   BOOST_TEST(std::isinf(top.period()));
   BOOST_TEST(errors({"homoclinic", 3, 1, 3, {2, 0, 0}, hanging}, 16).attitude <= rounded);
@@ -212,7 +212,7 @@ BOOST_AUTO_TEST_CASE(top_that_ends_upright_does_so) {
 
 // L3 - L_vertical and the energy both miss those of the homoclinic motion by 1e-13. So small a
 // distance is what the truth's own 1e-27 in each step counts against.
-BOOST_AUTO_TEST_CASE(top_that_almost_ends_upright_comes_back_in_time) {
+BOOST_AUTO_TEST_CASE(near_homoclinic_motion_returns_in_time) {
   const Errors worst = errors({"", 2, 1, 2, {1, 1 + 1e-13, 2}, {1, 1, 0, 0}}, 64);
   BOOST_TEST(worst.attitude <= 32 * u);
 }
@@ -243,7 +243,7 @@ BOOST_AUTO_TEST_CASE(top_without_weight_is_free) {
   BOOST_TEST(test::same(top.at(3).attitude.coeffs(), free.at(3).attitude.coeffs()));
 }
 
-BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_arguments_are_refused) {
   const auto message = [](double A, double C, double weight_moment) -> std::string {
     try {
       (void)LagrangeTop(A, C, weight_moment, {1, 1, 1}, anyhow);

@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(a_long_text_is_written_whole) {
   BOOST_TEST((folder.read("result.csv") == text));
 }
 
-BOOST_AUTO_TEST_CASE(a_folder_that_is_not_there_is_bad_input) {
+BOOST_AUTO_TEST_CASE(a_missing_folder_is_bad_input) {
   const Scratch folder;
   BOOST_CHECK_THROW(AtomicFile(folder.path() / "none" / "result.csv"), InvalidInput);
   BOOST_CHECK_THROW(AtomicFile{folder.path()}, InvalidInput);
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(a_full_device_is_an_error) {
   BOOST_TEST(std::filesystem::is_character_file("/dev/full"));
 }
 
-BOOST_AUTO_TEST_CASE(a_full_disk_leaves_the_place_untouched) {
+BOOST_AUTO_TEST_CASE(a_full_disk_leaves_the_old_file) {
   const Scratch folder;
   const auto place = folder.write("result.csv", "old");
   std::signal(SIGXFSZ, SIG_IGN);
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(a_full_disk_leaves_the_place_untouched) {
 }
 
 // A device stays one, as /dev/null must when root writes to it.
-BOOST_AUTO_TEST_CASE(a_device_is_written_to_not_replaced) {
+BOOST_AUTO_TEST_CASE(a_device_is_written_and_not_replaced) {
   write("/dev/null", "new");
   BOOST_TEST(std::filesystem::is_character_file("/dev/null"));
   BOOST_TEST(!std::filesystem::exists("/dev/null.part"));

@@ -31,7 +31,7 @@ std::string complaint(const std::string& text) {
 
 BOOST_AUTO_TEST_SUITE(csv)
 
-BOOST_AUTO_TEST_CASE(fields_come_out_as_they_were_meant) {
+BOOST_AUTO_TEST_CASE(fields_are_read_correctly) {
   const Scratch folder;
   const auto path = folder.write("table.csv",
                                  "\xEF\xBB\xBF# a remark\r\n x , name\r\n\r\n 1.5, plain \r\n"
@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_CASE(fields_come_out_as_they_were_meant) {
   BOOST_TEST(table.where(1) == path.string() + ":5");
 }
 
-BOOST_AUTO_TEST_CASE(a_field_written_is_the_field_read) {
+BOOST_AUTO_TEST_CASE(written_fields_are_read_back) {
   for (const std::string text : {"plain", "a,b", "\"", "# no remark", "\"\"quoted\"\""}) {
     const Scratch folder;
     const auto path = folder.write("t.csv", "name,x\n" + kreisel::csv_field(text) + ",0\n");
@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(a_field_written_is_the_field_read) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(what_is_broken_is_named_with_its_line) {
+BOOST_AUTO_TEST_CASE(errors_name_their_line) {
   BOOST_TEST(complaint("name,x\na,1\n") == "");
   BOOST_TEST(complaint("") == "table.csv: no row that names the columns");
   BOOST_TEST(complaint("name,x\n") == "table.csv: no rows");

@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(a_named_attitude_comes_without_a_position) {
   BOOST_TEST(read("t,qw,qx,qy,qz,x,y,z\n0,1,0,0,0,1,2,3\n", options, motion).has("x"));
 }
 
-BOOST_AUTO_TEST_CASE(a_decimal_comma_is_read_when_it_is_said) {
+BOOST_AUTO_TEST_CASE(a_declared_decimal_comma_is_read) {
   LogOptions german;
   german.decimal = ',';
   BOOST_TEST((rows(read("t;value\n0,000;1,5\n0,1;-20,0e-1\n", german)) == two));
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(nanoseconds_since_1970_keep_their_digits) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_passed_over) {
+BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_ignored) {
   BOOST_TEST(complaint("t [ms],value\n0,1\n") ==
              "log.csv:1: column 't [ms]' for 't' is in ms: give  time_unit = \"ms\"  (or the unit "
              "that is right)");
@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_passed_over) {
                  .find("is in m/s, and is read in m:") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(degrees_that_nobody_named_are_noticed) {
+BOOST_AUTO_TEST_CASE(undeclared_degrees_are_detected) {
   const std::string text = "# Time, surge, sway, heave, roll, pitch, yaw\n0,14,0,0,0.49,4.95,0.3\n";
   BOOST_TEST(complaint(text, {}, motion) ==
              "log.csv:2: pitch = 4.95 is more than a right angle in radian: give  angles = \"deg\" "
@@ -315,7 +315,7 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
              "log.csv: columns: qw, qx, qy, qz belong together, but 'qx' is not given");
 }
 
-BOOST_AUTO_TEST_CASE(rows_that_are_broken_are_named_by_line) {
+BOOST_AUTO_TEST_CASE(broken_rows_are_named_by_line) {
   const std::string good = "t,value\n0,1\n";
   BOOST_TEST(complaint(good + "1,2,3\n") == "log.csv:3: 3 fields where line 2 has 2");
   BOOST_TEST(complaint(good + "1\n") == "log.csv:3: 1 fields where line 2 has 2");
@@ -358,7 +358,7 @@ BOOST_AUTO_TEST_CASE(rows_that_are_broken_are_named_by_line) {
              "log.csv:3: the line is longer than 1 MB");
 }
 
-BOOST_AUTO_TEST_CASE(quaternions_are_held_to_norm_one) {
+BOOST_AUTO_TEST_CASE(quaternions_must_have_norm_one) {
   const std::string header = "t;qw;qx;qy;qz\n0.901;-0.99866;-6.5e-005;-0.00093;0.05182\n";
   BOOST_TEST(complaint(header + "0.907;0.026989;9.8e-007;2.7e-005;-0.0014243\n", {}, motion) ==
              "log.csv:3: the quaternion has norm 0.02702656992 and not 1 (t = 0.907 s): check  "
@@ -443,7 +443,7 @@ BOOST_AUTO_TEST_CASE(rows_far_from_the_run_are_not_read) {
              "s");
 }
 
-BOOST_AUTO_TEST_CASE(spacing_of_the_written_numbers_is_told) {
+BOOST_AUTO_TEST_CASE(spacing_of_the_written_numbers_is_reported) {
   const auto resolution = [](const std::string& a, const std::string& b) {
     return read("t,value\n0.000," + a + "\n0.010," + b + "\n").column("value").resolution;
   };
@@ -461,7 +461,7 @@ BOOST_AUTO_TEST_CASE(spacing_of_the_written_numbers_is_told) {
   BOOST_TEST(std::abs(log.column("yaw").resolution / (0.1 * std::numbers::pi / 180) - 1) < 1e-14);
 }
 
-BOOST_AUTO_TEST_CASE(what_is_no_file_cannot_be_read) {
+BOOST_AUTO_TEST_CASE(only_files_can_be_read) {
   const Scratch folder;
   const auto said = [](const std::filesystem::path& path) {
     try {

@@ -61,7 +61,7 @@ const std::vector<double> times{0, 0.1, 0.2, 0.3};
 
 BOOST_AUTO_TEST_SUITE(log_options)
 
-BOOST_AUTO_TEST_CASE(each_key_reads_the_logs_it_is_for) {
+BOOST_AUTO_TEST_CASE(each_key_reads_its_logs) {
   const std::vector<std::string> s{"0.0", "0.1", "0.2", "0.3"};
   const std::pair<std::string, std::string> cases[] = {
       {plain, ""},
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(each_key_reads_the_logs_it_is_for) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(mistakes_in_keys_are_told_with_their_place) {
+BOOST_AUTO_TEST_CASE(mistakes_in_keys_have_their_position) {
   const std::pair<std::string, std::string> cases[] = {
       {"colums = { t = 1 }", "s.toml:4:1: guide.colums: is no key here (did you mean 'columns'?)"},
       {"columns = { time = 1 }", "s.toml:4:13: guide.columns.time: is no key here"},
@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(mistakes_in_keys_are_told_with_their_place) {
              "s.toml:5:10: guide.angles: must be a text, not a whole number");
 }
 
-BOOST_AUTO_TEST_CASE(a_log_beside_the_run_tells_the_key_that_helps) {
+BOOST_AUTO_TEST_CASE(a_log_outside_the_run_names_the_helpful_key) {
   const std::string at = "s.toml:3:8: guide.file: 'log.csv' goes from t = ";
   const auto header = [](const std::string& name) { return name + ",qw,qx,qy,qz\n"; };
   BOOST_TEST(mistakes(header("t") + rows({"0.01", "0.11", "0.21", "0.31"}, ",1,0,0,0")) ==

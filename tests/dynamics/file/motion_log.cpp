@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(a_quaternion_may_change_its_sign) {
   BOOST_TEST(complaint("t,qw,qx,qy,qz\n0,1,0,0,0\n1,-1,0,0,0\n2,1,0,0,0\n3,-1,0,0,0\n") == "");
 }
 
-BOOST_AUTO_TEST_CASE(logs_that_are_no_motion_are_refused) {
+BOOST_AUTO_TEST_CASE(logs_without_a_motion_are_refused) {
   BOOST_TEST(complaint("t,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,0,0\n") ==
              "log.csv: 2 rows where a motion needs 4 or more");
   BOOST_TEST(complaint("t,qw,qx,qy,qz\n0,1,0,0,0\n\n1,0,1,0,0\n2,0,1,0,0\n3,0,1,0,0\n") ==

@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(rest_by_default) {
   check_same(guide(""), RestingFrame<>{});
 }
 
-BOOST_AUTO_TEST_CASE(rotate_as_the_library_has_it) {
+BOOST_AUTO_TEST_CASE(rotate_as_in_the_library) {
   const std::string text =
       "[guide]\nkind = \"rotating\"\nangular_velocity = [1, 2, 3]\norigin_acceleration = [4, 5, "
       "6]\n";
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(rotate_as_the_library_has_it) {
   check_same(guide(text), RotatingFrame<>{{1, 2, 3}, {4, 5, 6}});
 }
 
-BOOST_AUTO_TEST_CASE(oscillate_as_the_library_has_it) {
+BOOST_AUTO_TEST_CASE(oscillate_as_in_the_library) {
   const SceneGuide read = guide(R"([guide]
 kind = "harmonic"
 angular_velocity = { constant = [0.1, 0, 0], terms = [
@@ -92,7 +92,7 @@ origin_acceleration = { terms = [ { amplitude = [1, 0, 2], frequency = 2, phase 
                                    {{0, 0, 0}, {{{1, 0, 2}, 2, 0.5}}}, 0, 4 * (1 + 1e-12)));
 }
 
-BOOST_AUTO_TEST_CASE(ride_on_the_earth_as_the_library_has_it) {
+BOOST_AUTO_TEST_CASE(move_on_the_earth_as_in_the_library) {
   check_same(guide("[guide]\n" + site), earth_frame({50, 30, 100}));
   check_same(guide("[guide]\n" + site + "rate = 0.5e-4\n"), earth_frame({50, 30, 100, 0.5e-4}));
   // A gravity given as a number holds the centrifugal part.
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(rates_without_accelerations_do_not_fall) {
   BOOST_CHECK_THROW((void)read("gravity = [0, 0, -9.81]\n"), SceneMistakes);
 }
 
-BOOST_AUTO_TEST_CASE(chain_as_the_library_has_it) {
+BOOST_AUTO_TEST_CASE(chain_as_in_the_library) {
   struct Earth;
   struct Ship;
   const SceneGuide read = guide("[guide]\nkind = \"chain\"\n[[guide.links]]\n" + site + R"(
@@ -206,14 +206,14 @@ inertia = [0.1, 0.1, 0.1]
 )";
 const double lever = 0.5 / (0.1 + 0.25);  // m a / Theta
 
-BOOST_AUTO_TEST_CASE(is_none_unless_asked_for) {
+BOOST_AUTO_TEST_CASE(is_absent_by_default) {
   BOOST_TEST(acceleration(arm + run)[0] == 0);
   BOOST_TEST(std::abs(acceleration("[guide]\n" + site + arm + run)[0]) < 0.05);
   BOOST_TEST(std::abs(acceleration("[guide]\n" + site + "gravity = \"none\"\n" + arm + run)[0]) <
              0.05);
 }
 
-BOOST_AUTO_TEST_CASE(points_where_it_is_told) {
+BOOST_AUTO_TEST_CASE(points_in_the_given_direction) {
   const auto uniform = [](const char* kind) {
     return std::string("[gravity]\nkind = \"") + kind + "\"\nvector = [9, 0, 0]\n" + arm + run;
   };
@@ -228,7 +228,7 @@ BOOST_AUTO_TEST_CASE(points_where_it_is_told) {
 
 // Both ways to say it give the effective gravity, but for its gradient over half a metre and the
 // earth's turning: 1.5e-6 m/s^2 and 0.5 u^2.
-BOOST_AUTO_TEST_CASE(on_earth_is_the_effective_one) {
+BOOST_AUTO_TEST_CASE(is_effective_gravity_on_the_earth) {
   const double g = normal_gravity({50, 30, 100}).magnitude;
   for (const std::string& text :
        {"[guide]\n" + site + "gravity = \"normal\"\n" + arm + run,
@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(have_springs_dampers_and_forces) {
   BOOST_TEST(f.constant == 5);
 }
 
-BOOST_AUTO_TEST_CASE(begin_against_their_parent) {
+BOOST_AUTO_TEST_CASE(start_relative_to_their_parent) {
   // The joint's frame is turned by a quarter about z and lies at x = 1.
   const auto read = scene(one_body(
       "joint = { kind = \"free\", position = [1, 0, 0], orientation = [0.70710678118654757, 0, 0, "
@@ -369,7 +369,7 @@ BOOST_AUTO_TEST_CASE(makes_output_times) {
   BOOST_TEST(times("output_step = 1", {.t_end = 2}) == std::vector<double>({0, 1, 2}));
 }
 
-BOOST_AUTO_TEST_CASE(says_by_which_equations_and_how_well) {
+BOOST_AUTO_TEST_CASE(sets_equations_and_tolerance) {
   const auto solve = [](const std::string& rest) { return scene(body + run + rest); };
   BOOST_TEST((solve("model = \"linear\"").model == SceneModel::linear));
   BOOST_TEST((solve("model = \"precession\"").model == SceneModel::precession));
@@ -382,7 +382,7 @@ BOOST_AUTO_TEST_CASE(says_by_which_equations_and_how_well) {
   BOOST_TEST(scene(body + run + "[report]\nterms = true\n").terms);
 }
 
-BOOST_AUTO_TEST_CASE(is_read_from_a_file_of_bearable_size) {
+BOOST_AUTO_TEST_CASE(limits_the_size_of_files) {
   const test::Scratch folder;
   const auto file = folder.write("scene.toml", "title = \"a 'b' # c\"\n" + body + run);
   BOOST_TEST(read_scene(file).title == "a 'b' # c");
@@ -401,7 +401,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(mistakes_of_a_scene_file)
 
-BOOST_AUTO_TEST_CASE(are_told_with_line_column_key_and_reason) {
+BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
   const std::string revolute = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
   const std::pair<std::string, std::string> cases[] = {
       {"",
@@ -460,7 +460,7 @@ BOOST_AUTO_TEST_CASE(are_told_with_line_column_key_and_reason) {
 }
 
 // In each place where a scene may be at odds with itself.
-BOOST_AUTO_TEST_CASE(are_told_wherever_they_are) {
+BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
   const std::string revolute = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
   const std::string prismatic = "joint = { kind = \"prismatic\", axis = [0, 0, 1] }\n";
   const std::string free = "joint = { kind = \"free\" }\n";
@@ -564,7 +564,7 @@ BOOST_AUTO_TEST_CASE(are_told_wherever_they_are) {
 }
 
 // One line each, and none longer than a screen is wide several times.
-BOOST_AUTO_TEST_CASE(show_texts_of_the_file_short_and_in_one_line) {
+BOOST_AUTO_TEST_CASE(quote_the_file_in_one_short_line) {
   const std::string found =
       mistakes("[guide]\nkind = \"a\\nb\\u007f" + std::string(100, 'c') + "\"\n" + body + run);
   BOOST_TEST(found.find("guide.kind: 'a?b?" + std::string(56, 'c') + "...' is none of") !=
@@ -575,7 +575,7 @@ BOOST_AUTO_TEST_CASE(show_texts_of_the_file_short_and_in_one_line) {
 }
 
 // Mass, tensor and axis are wrong at once, and all are told, in the order of the file.
-BOOST_AUTO_TEST_CASE(are_told_all_at_once) {
+BOOST_AUTO_TEST_CASE(are_reported_all_at_once) {
   const std::string found = mistakes(R"([[body]]
 name = "a"
 mass = -1
@@ -594,7 +594,7 @@ t_end = "soon"
 }
 
 // What goes with a joint is not blamed where the joint is.
-BOOST_AUTO_TEST_CASE(are_told_once) {
+BOOST_AUTO_TEST_CASE(are_reported_only_once) {
   const std::string rest =
       "damping = 1\ninitial = { angle = 1 }\nrotor = { mode = \"free\", speed = 1 }";
   BOOST_TEST(mistakes(one_body("joint = { kind = \"revolut\", axis = [0, 0, 1] }\n" + rest)) ==
@@ -603,7 +603,7 @@ BOOST_AUTO_TEST_CASE(are_told_once) {
   BOOST_TEST(mistakes(one_body(rest)) == "s.toml:1:1: body 'a'.joint: is missing");
 }
 
-BOOST_AUTO_TEST_CASE(of_what_is_no_text_are_told_too) {
+BOOST_AUTO_TEST_CASE(are_reported_for_binary_files) {
   const std::string nested = "a = " + std::string(100'000, '[');
   BOOST_TEST(mistakes(nested).find("nested more than 64 deep") != std::string::npos);
   std::string dotted = "a";
@@ -616,7 +616,7 @@ BOOST_AUTO_TEST_CASE(of_what_is_no_text_are_told_too) {
   BOOST_CHECK_THROW((void)read_scene("/"), InvalidInput);
 }
 
-BOOST_AUTO_TEST_CASE(are_none_with_byte_order_mark_and_carriage_returns) {
+BOOST_AUTO_TEST_CASE(exclude_byte_order_mark_and_carriage_return) {
   std::string text = "\xEF\xBB\xBF";
   for (const char c : "# a [ comment . with ' brackets\n" + body + run) {
     if (c == '\n') text += '\r';

@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(angles_and_their_rates_in_degrees) {
 }
 
 // "The start of rotating and harmonic": against the frame before it, on its axes.
-BOOST_AUTO_TEST_CASE(guides_begin_as_they_are_told) {
+BOOST_AUTO_TEST_CASE(guides_start_as_stated) {
   const std::string begin =
       "attitude = [0.6, 0.8, 0, 0]\norigin_position = [1, 2, 3]\norigin_velocity = [4, 5, 6]\n";
   const Displacement<Inertial, Guide> X{
@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(guides_begin_as_they_are_told) {
 }
 
 // "against the frame before it and on its axes", in a chain.
-BOOST_AUTO_TEST_CASE(links_begin_on_the_link_before) {
+BOOST_AUTO_TEST_CASE(links_start_on_the_link_before) {
   struct Ship;
   const SceneGuide guide = make_guide(scene(one(hinge, R"([guide]
 kind = "chain"
@@ -266,7 +266,7 @@ BOOST_AUTO_TEST_CASE(heave_with_its_velocity_does_not_drift) {
 }
 
 // "attitude guide to inertial, place on inertial axes".
-BOOST_AUTO_TEST_CASE(logs_tell_the_guide_on_inertial_axes) {
+BOOST_AUTO_TEST_CASE(logs_give_the_guide_on_inertial_axes) {
   std::string log = "t,qw,qx,qy,qz,x,y,z\n";
   for (int i = 0; i <= 20; ++i) {
     log += row({std::to_string(0.1 * i), "0.6", "0", "0", "0.8", std::to_string(0.1 * i), "2", "3"},
@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(logs_tell_the_guide_on_inertial_axes) {
 }
 
 // "those at the log's first time, or at the first in window"; a turn of 1 rad/s from -1 s on.
-BOOST_AUTO_TEST_CASE(rates_begin_where_the_window_does) {
+BOOST_AUTO_TEST_CASE(rates_start_with_the_window) {
   std::string log = "t,wx,wy,wz\n";
   for (int i = -10; i <= 20; ++i) log += row({std::to_string(0.1 * i), "0", "0", "1"}, ",");
   const auto angle = [&log](const std::string& keys) {
@@ -293,7 +293,7 @@ BOOST_AUTO_TEST_CASE(rates_begin_where_the_window_does) {
 
 // "sigma .. [a, b]: of the attitude's quaternion, and of the position", "0: no smoothing": what is
 // not smoothed goes through its rows.
-BOOST_AUTO_TEST_CASE(sigma_is_of_the_attitude_and_of_the_place) {
+BOOST_AUTO_TEST_CASE(sigma_is_for_attitude_and_position) {
   std::string log = "t,yaw,pitch,roll,x,y,z\n";
   for (int i = 0; i <= 100; ++i) {
     const std::string noise = i % 2 == 0 ? "0.01" : "-0.01";
@@ -368,7 +368,7 @@ BOOST_AUTO_TEST_CASE(logs_are_read_as_the_page_shows) {
 
 // "At zero coordinates all axes are parallel to those of the guide, unless a joint turns them", and
 // "position and axes are on the parent's axes; orientation turns the body's axes".
-BOOST_AUTO_TEST_CASE(bodies_stand_on_their_parent) {
+BOOST_AUTO_TEST_CASE(bodies_are_placed_on_their_parent) {
   const std::string child =
       "[[body]]\nname = \"b\"\nparent = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n";
   for (const std::string& joint :
@@ -394,7 +394,7 @@ BOOST_AUTO_TEST_CASE(bodies_stand_on_their_parent) {
 
 // "joint force -stiffness (q - rest)", "-damping q', and a constant one"; "load: torque about its
 // origin". The moment of inertia about the joint is 0.25.
-BOOST_AUTO_TEST_CASE(joint_forces_are_as_the_formulas_say) {
+BOOST_AUTO_TEST_CASE(joint_forces_follow_the_formulas) {
   const std::pair<std::string, double> cases[] = {
       {"spring = { stiffness = 3, rest = 0.5 }\ninitial = { angle = 0.7 }", -3 * 0.2},
       {"damping = 2\ninitial = { rate = 0.3 }", -2 * 0.3},
@@ -473,7 +473,7 @@ BOOST_AUTO_TEST_CASE(two_coordinates_take_a_number_for_both) {
 }
 
 // "Numbers that no mass can have": catalogue numbers rounded in the last digit.
-BOOST_AUTO_TEST_CASE(rounded_inertia_is_told_the_nearest_legal) {
+BOOST_AUTO_TEST_CASE(rounded_inertia_gets_the_nearest_legal) {
   const std::string told = mistakes(one("inertia = [0.0795775, 0.0795775, 0.1591551]\n" + hinge));
   const std::size_t begin = told.find("nearest legal tensor: [");
   BOOST_TEST_REQUIRE(begin != std::string::npos, told);
@@ -481,7 +481,7 @@ BOOST_AUTO_TEST_CASE(rounded_inertia_is_told_the_nearest_legal) {
   BOOST_TEST(!contains(mistakes(one("inertia = [1, 1, 2.1]\n" + hinge)), "nearest"));
 }
 
-BOOST_AUTO_TEST_CASE(defaults_are_as_the_page_says) {
+BOOST_AUTO_TEST_CASE(defaults_agree_with_the_page) {
   const SceneFile file = scene("[[body]]\nname = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n" + hinge +
                                "[solve]\nt_end = 5\n");
   BOOST_TEST(file.output_times.size() == 501U);
@@ -501,7 +501,7 @@ BOOST_AUTO_TEST_CASE(defaults_are_as_the_page_says) {
 }
 
 // "A scene that is no more than a pendulum or a top goes by its closed form under auto".
-BOOST_AUTO_TEST_CASE(closed_forms_are_taken_where_there_are_some) {
+BOOST_AUTO_TEST_CASE(closed_forms_are_used_if_they_exist) {
   const std::string off = "centre = [0, 0, -0.4]\n";
   const std::string swung = "initial = { angle = 0.3 }\n";
   const std::string spun = "initial = { angular_velocity = [1, 2, 3] }\n";
@@ -571,7 +571,7 @@ BOOST_AUTO_TEST_CASE(methods_have_the_names_of_the_page) {
 }
 
 // "All others go by the Taylor series of their motion, unless ..".
-BOOST_AUTO_TEST_CASE(series_are_taken_where_they_are_known) {
+BOOST_AUTO_TEST_CASE(series_are_used_if_they_are_known) {
   const std::string swung = hinge + "centre = [0, 0, -0.4]\ndamping = 0.1\n";
   const std::string turning = "[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 1]\n";
   const std::string second =

@@ -387,7 +387,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler_in_50_digits) {
 }
 
 // E11 of the catalogue of hard cases: light rings, a hair from 90 degrees.
-BOOST_AUTO_TEST_CASE(keeps_its_digits_at_gimbal_lock_however_light_the_rings) {
+BOOST_AUTO_TEST_CASE(keeps_its_digits_at_gimbal_lock) {
   for (const CardanMoments& heavy : {symmetric, unsymmetric}) {
     for (const double factor : {1.0, 1e-4, 1e-8, 0.0}) {
       for (const double off : {0.0, 1e-8, -1e-4}) {
@@ -410,7 +410,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_digits_at_gimbal_lock_however_light_the_rings) {
 }
 
 // The state that counts from a reference has its sines to full accuracy next to 90 degrees too.
-BOOST_AUTO_TEST_CASE(does_not_depend_on_where_its_angles_count_from) {
+BOOST_AUTO_TEST_CASE(does_not_depend_on_reference_angles) {
   const double reference = 1.5;
   const double rest = std::numbers::pi / 2 - reference + 1e-8;  // exact but for its last digit
   const Vector6 y = (Vector6() << 0.25, rest, 0.7, 0.4, -0.6, 50).finished();
@@ -425,7 +425,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_where_its_angles_count_from) {
 
 // Next to 90 degrees it is the cosine that is nearly 0, next to 180 the sine: what is less than the
 // last digit of the angle is all there is to them.
-BOOST_AUTO_TEST_CASE(has_sines_of_what_its_reference_hides) {
+BOOST_AUTO_TEST_CASE(has_accurate_sines_near_right_angles) {
   using L = long double;
   constexpr double pi = std::numbers::pi;
   for (const double hidden : {1e-20, -3e-18, 1e-17}) {
@@ -445,7 +445,7 @@ BOOST_AUTO_TEST_CASE(has_sines_of_what_its_reference_hides) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(is_rounded_to_the_mean_of_its_moments) {
+BOOST_AUTO_TEST_CASE(rounds_moments_to_their_mean) {
   const CardanGyro round =
       CardanGyro(unsymmetric, {}, RestingFrame<>{}).without(RotorAsymmetry{}, 0, 1);
   const Vector3<double>& rotor = unsymmetric.rotor;
@@ -454,7 +454,7 @@ BOOST_AUTO_TEST_CASE(is_rounded_to_the_mean_of_its_moments) {
   BOOST_TEST((round.moments().inner_ring == unsymmetric.inner_ring));
 }
 
-BOOST_AUTO_TEST_CASE(stops_where_nothing_resists) {
+BOOST_AUTO_TEST_CASE(stops_at_a_singular_mass_matrix) {
   const Vector6 y = (Vector6() << 0.3, std::numbers::pi / 2, 0.7, 0.4, -0.6, 50).finished();
   const auto says = [](const char* words) {
     return [words](const ComputationFailed& e) {
@@ -496,7 +496,7 @@ BOOST_AUTO_TEST_CASE(stops_where_nothing_resists) {
       !gyro.rates(0, Vector6::Constant(std::numeric_limits<double>::infinity())).allFinite());
 }
 
-BOOST_AUTO_TEST_CASE(is_refused_if_it_cannot_be) {
+BOOST_AUTO_TEST_CASE(is_refused_with_impossible_moments) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const RestingFrame<> rest;
   const auto refuses = [&](const CardanMoments& m, const CardanBearings& b, const char* words) {
@@ -526,7 +526,7 @@ BOOST_AUTO_TEST_CASE(is_refused_if_it_cannot_be) {
 
 BOOST_AUTO_TEST_SUITE_END()
 
-BOOST_AUTO_TEST_SUITE(what_a_cardan_gyro_keeps)
+BOOST_AUTO_TEST_SUITE(invariants_of_a_cardan_gyro)
 
 namespace {
 
@@ -556,7 +556,7 @@ const RotatingFrame<> turntable{{0.3, -0.2, 0.5}};
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(is_told_of_each_kind) {
+BOOST_AUTO_TEST_CASE(are_listed_for_each_kind) {
   const RestingFrame<> rest;
   const auto same = [](const Names& a, const Names& b) {
     BOOST_CHECK_EQUAL_COLLECTIONS(a.begin(), a.end(), b.begin(), b.end());
@@ -578,7 +578,7 @@ BOOST_AUTO_TEST_CASE(is_told_of_each_kind) {
 
 // On any base: the momentum's rate in space is what the case gives; the kinetic energy's is the
 // power of all torques, the base's included.
-BOOST_AUTO_TEST_CASE(balances_momentum_and_energy_on_a_moving_base) {
+BOOST_AUTO_TEST_CASE(balance_momentum_and_energy_on_a_moving_base) {
   const HarmonicFrame<> base({{0.3, -0.2, 0.5}, {{{0.1, 0.2, -0.1}, 3, 0.4}}}, {}, 0, 2);
   const CardanGyro gyro(unsymmetric, brakes, base, RegulatedRotor{0.001});
   Integrator run(gyro, 0, {0.1, -0.2, 0.3, 0.5, -0.4, 60});
@@ -695,7 +695,7 @@ BOOST_AUTO_TEST_CASE(has_the_digits_of_long_double) {
 }
 
 // A guide of double gives ou, so that only the rate of ou is missing in df/dt.
-BOOST_AUTO_TEST_CASE(has_nearly_all_of_it_on_a_guide_of_doubles) {
+BOOST_AUTO_TEST_CASE(has_most_derivatives_on_a_guide_of_doubles) {
   const RotatingFrame<> turntable{{0.3, -0.2, 0.5}};
   const CardanGyro gyro(symmetric, {}, turntable);
   const auto jacobian =
@@ -715,7 +715,7 @@ BOOST_AUTO_TEST_CASE(has_nearly_all_of_it_on_a_guide_of_doubles) {
   BOOST_TEST((mine.of_time - difference).norm() < 1e-7 * difference.norm());
 }
 
-BOOST_AUTO_TEST_CASE(is_the_same_at_rest_by_whatever_guide) {
+BOOST_AUTO_TEST_CASE(is_the_same_on_all_guides_at_rest) {
   const HarmonicFrame<> still({{0, 0, 0}, {{{0, 0, 0}, 3, 0}}}, {}, 0, 10);
   for (const CardanMoments& m : {symmetric, unsymmetric}) {
     const CardanGyro a(m, {}, RestingFrame<>{});

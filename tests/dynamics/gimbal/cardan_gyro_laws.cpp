@@ -56,7 +56,7 @@ CardanGyro<RestingFrame<>>::State drift_start(const Json& c) {
 BOOST_AUTO_TEST_SUITE(laws_of_the_cardan_gyro)
 
 // The drift measured over one nutation, whose length the reference gives, and over a hundred.
-BOOST_AUTO_TEST_CASE(drifts_as_the_reference_says) {
+BOOST_AUTO_TEST_CASE(drift_agrees_with_the_reference) {
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   double worst = 0;
   for (const Json& c : reference().at("drift").at("data")) {
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(drifts_as_the_reference_says) {
 }
 
 // The law leaves out what is of second order in the amplitude, no more: a quarter at half of it.
-BOOST_AUTO_TEST_CASE(drifts_by_the_law_to_second_order) {
+BOOST_AUTO_TEST_CASE(drift_law_has_second_order) {
   double before = 0;
   for (const Json& c : reference().at("drift").at("data")) {
     const auto start = drift_start(c);
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(drifts_by_the_law_to_second_order) {
 }
 
 // Both momenta are the gyro's own, with alpha' in them, so that along a motion the tilt stays.
-BOOST_AUTO_TEST_CASE(tilts_as_momenta_of_the_gyro_say) {
+BOOST_AUTO_TEST_CASE(tilt_follows_from_the_momenta) {
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   for (const auto& start : {CardanGyro<RestingFrame<>>::State{0, 0.5, 0, 7, 1, 50},
                             {0, -0.9, 0.3, 5, -2, 60},
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(tilts_as_momenta_of_the_gyro_say) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(has_no_drift_without_mass_in_the_rings) {
+BOOST_AUTO_TEST_CASE(massless_rings_cause_no_drift) {
   const CardanMoments bare{symmetric.rotor};
   BOOST_TEST(gimbal_drift(bare, 0.5, 0, 1, 50).drift == 0);
   // Nor if alpha' makes up for the tilt: the gyro stands.
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(has_no_drift_without_mass_in_the_rings) {
   BOOST_CHECK_THROW((void)gimbal_drift(symmetric, 2, 0, 1, 50), InvalidInput);
 }
 
-BOOST_AUTO_TEST_CASE(nutates_and_precesses_at_foeppls_frequencies) {
+BOOST_AUTO_TEST_CASE(frequencies_are_foeppls) {
   const Json& foeppl = reference().at("foeppl_T4");
   const CardanBearings springs{{2}, {1.5}};
   const CardanFrequencies f = cardan_frequencies(symmetric, springs, 50);
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(nutates_and_precesses_at_foeppls_frequencies) {
 
 // Rings without mass follow the rotor's axis, which stays in space: on a turntable at u the axis is
 // exp(-u t) n for those who turn with it.
-BOOST_AUTO_TEST_CASE(shows_the_kinematic_gimbal_error) {
+BOOST_AUTO_TEST_CASE(kinematic_gimbal_error_appears) {
   const Json* c = nullptr;
   for (const Json& t : reference().at("trajectories")) {
     if (t.at("name") == "T10_kinematic_gimbal_error") c = &t;
@@ -356,7 +356,7 @@ BOOST_AUTO_TEST_CASE(equations_35_to_39_corrected_are_the_scene) {
 }
 
 // E1: two rings at rest turn with the rotor, by (38) third line and (39) as printed.
-BOOST_AUTO_TEST_CASE(kinematics_38_39_as_printed_turn_rings_at_rest) {
+BOOST_AUTO_TEST_CASE(printed_38_39_turn_rings_at_rest) {
   const double u_c = 100, b = 30 * degree;
   BOOST_TEST(close(u_c * std::sin(b), 50, 1e-15));  // u'_A3 by (39); u'_C2 = 100 by (38)
   // and what that does to the acceleration

@@ -72,7 +72,7 @@ Outcome run(const char* name, double stiffness, double damping, bool deviations,
 }  // namespace
 
 // E12: no more work for 1e12 N m/rad than for 1e3.
-BOOST_AUTO_TEST_CASE(is_no_more_work_the_stiffer_it_is) {
+BOOST_AUTO_TEST_CASE(costs_the_same_at_any_stiffness) {
   struct Case {
     const char* name;
     double stiffness, damping;
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(has_its_moment_to_ten_digits) {
 }
 
 // Whichever bearing it is in, or friction of the rotor alone.
-BOOST_AUTO_TEST_CASE(is_looked_at_for_stiffness_wherever_it_is_damped) {
+BOOST_AUTO_TEST_CASE(is_stiff_wherever_it_is_damped) {
   const auto taken = [](const CardanBearings& bearings, double friction) {
     const CardanGyro gyro(moments, bearings, RestingFrame<>{}, FreeRotor{friction});
     BOOST_TEST(gyro.may_be_stiff() ==
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(is_looked_at_for_stiffness_wherever_it_is_damped) {
 
 // Half a last digit that a sum of moments is rounded by is 2.4e-12 rad after 7e4 rad of a spring's
 // oscillation, in every run alike.
-BOOST_AUTO_TEST_CASE(without_damping_knows_what_rounding_makes_of_its_phase) {
+BOOST_AUTO_TEST_CASE(reports_phase_rounding_without_damping) {
   const Json truth = scene("S4d_cardan_k1e6_d0");
   const CardanGyro gyro(moments, {{0.5, 1e-3}, {1e6, 0, reference_angle}}, RestingFrame<>{});
   for (const double tolerance : {1e-10, 1e-12}) {

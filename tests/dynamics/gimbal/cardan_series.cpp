@@ -54,21 +54,21 @@ void hold_gyros(const std::string& what, const M& guide) {
 
 BOOST_AUTO_TEST_SUITE(cardan_series)
 
-BOOST_AUTO_TEST_CASE(is_that_of_gyros_on_guides_that_do_not_turn) {
+BOOST_AUTO_TEST_CASE(agrees_on_guides_without_rotation) {
   hold_gyros("at rest", RestingFrame<>{});
   hold_gyros("in a lift", TranslatingFrame([](double t) {
                return Translation<>{{0, 0, t * t}, {0, 0, 2 * t}, {0, 0, 2}};
              }));
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_gyros_on_guides_in_steady_motion) {
+BOOST_AUTO_TEST_CASE(agrees_on_guides_in_steady_motion) {
   hold_gyros("on a turntable", RotatingFrame<>{{0.3, -0.8, 0.5}});
   SteadyFrame<> screw;
   screw.V.value = {{0.2, 0.1, -0.4}, {1, 2, 3}};
   hold_gyros("in a steady screw", screw);
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_gyros_on_analytic_guides) {
+BOOST_AUTO_TEST_CASE(agrees_on_analytic_guides) {
   const HarmonicSeries<> u{{0.1, -0.2, 0.3},
                            {{{0.3, 0.1, -0.2}, 1.3, 0.4}, {{0.1, 0.5, 0.2}, 2.9, 1}}};
   hold_gyros("on a harmonic guide", HarmonicFrame<>(u, {}, 0, 2));
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_gyros_on_analytic_guides) {
 }
 
 // Rings that weigh nothing leave only what the rotor resists with.
-BOOST_AUTO_TEST_CASE(is_that_of_gyros_in_rings_without_mass) {
+BOOST_AUTO_TEST_CASE(agrees_for_massless_rings) {
   for (const bool round : {true, false}) {
     hold_samples("without rings", CardanGyro({moments(round).rotor}, {}, RestingFrame<>{}));
     hold_samples("without rings on a turntable",
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_gyros_in_rings_without_mass) {
   }
 }
 
-BOOST_DATA_TEST_CASE(goes_through_gimbal_lock,
+BOOST_DATA_TEST_CASE(passes_through_gimbal_lock,
                      boost::unit_test::data::make({0.0, 1e-8, -1e-8, 1e-2}), aside) {
   const CardanBearings upright{{}, {.reference = std::numbers::pi / 2}};
   CardanGyro<RestingFrame<>>::Vector y;
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_speed_of_regulated_rotors) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(stops_where_the_field_does) {
+BOOST_AUTO_TEST_CASE(stops_with_the_field) {
   const CardanBearings upright{{}, {.reference = std::numbers::pi / 2}};
   CardanGyro<RestingFrame<>>::Vector y;
   y << 0.1, 0, 0.3, 0.5, -0.4, 1.2;
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(stops_where_the_field_does) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(is_none_where_the_drive_is_a_function) {
+BOOST_AUTO_TEST_CASE(is_absent_if_the_drive_is_a_function) {
   const auto torque = [](double, auto rate) { return -0.1 * rate; };
   using Driven = CardanGyro<RestingFrame<>, DrivenRotor<decltype(torque)>>;
   static_assert(!KnowsSeries<Driven>);

@@ -85,14 +85,14 @@ double largest(const Eigen::MatrixXd& m) { return m.cwiseAbs().maxCoeff<Eigen::P
 
 BOOST_AUTO_TEST_SUITE(the_gyro_platform)
 
-BOOST_AUTO_TEST_CASE(is_the_model_of_the_reference) {
+BOOST_AUTO_TEST_CASE(agrees_with_the_reference_model) {
   const Json& truth = test::rotors_reference()["snapshots"]["platform_regulated"];
   const RotorMatrices m = matrices(RotorMode::regulated, numbers(truth["q"]), numbers(truth["u"]));
   BOOST_TEST(largest(m.A_eff - test::rows(truth["A_eff"])) <= 1e-15);
   BOOST_TEST(largest(m.G_R - test::rows(truth["G_R"])) <= 1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(has_the_matrices_21_to_24_and_26_to_first_order) {
+BOOST_AUTO_TEST_CASE(has_matrices_21_to_24_and_26) {
   const GyroPlatform p = platform();
   const Angles q = some_angles();
   const Vector8 none = Vector8::Zero();
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(swings_at_the_frequencies_of_the_reference) {
 }
 
 // At any motion of the platform: the complete equations against bodies on a guide that moves so.
-BOOST_AUTO_TEST_CASE(has_complete_equations_that_are_the_linear_ones) {
+BOOST_AUTO_TEST_CASE(complete_equations_contain_the_linear_ones) {
   const GyroPlatform p = platform();
   double worst = 0;
   double wrong = 0;

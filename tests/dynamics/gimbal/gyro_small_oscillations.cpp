@@ -56,7 +56,7 @@ struct Law {
 
 BOOST_AUTO_TEST_SUITE(small_oscillations_of_a_gyro)
 
-BOOST_AUTO_TEST_CASE(err_in_the_order_that_is_stated) {
+BOOST_AUTO_TEST_CASE(err_in_the_stated_order) {
   using enum GuideMomentum;
   const std::array laws = {
       Law{"first order, constant u, symmetric", symmetric, first_order, 0, false, 3},
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(err_in_the_order_that_is_stated) {
 }
 
 // Of first order in the angles they are exact, however fast the guide turns.
-BOOST_AUTO_TEST_CASE(hold_on_a_guide_that_turns_fast) {
+BOOST_AUTO_TEST_CASE(hold_on_a_fast_turning_guide) {
   const Turning turning{0.3, 30, true};
   for (const double t : {0.0137, 0.31}) {
     const GyroSmallOscillations gyro(unsymmetric, springs, speed, turning);
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(hold_on_a_guide_that_turns_fast) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(rub_in_both_bearings) {
+BOOST_AUTO_TEST_CASE(have_friction_in_both_bearings) {
   const Turning turning{0.1, 30, false};
   const GyroSmallOscillations smooth(unsymmetric, springs, speed, turning);
   const GyroSmallOscillations rubbed(unsymmetric, {{2, 0.02}, {1.5, 0.03}}, speed, turning);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(need_the_torque_of_the_drive) {
 }
 
 // (46): J against the exact momentum of the rotor, at one moment.
-BOOST_AUTO_TEST_CASE(have_the_momentum_in_third_and_fourth_order) {
+BOOST_AUTO_TEST_CASE(have_the_momentum_to_fourth_order) {
   const CardanGyro exact({unsymmetric}, {}, RestingFrame<>{}, RegulatedRotor{});
   const GyroSmallOscillations gyro(unsymmetric, {}, speed, RestingFrame<>{});
   const double t = 0.0137;
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(have_the_momentum_in_third_and_fourth_order) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuse_angles_that_are_not_small) {
+BOOST_AUTO_TEST_CASE(refuse_large_angles) {
   const CardanBearings tilted{{2, 0, 0.5}, {}};
   const auto make = [](const CardanBearings& bearings, double omega) {
     return GyroSmallOscillations(symmetric, bearings, omega, RestingFrame<>{});

@@ -80,7 +80,7 @@ struct WithoutRings : FoepplGyro<> {
 
 BOOST_AUTO_TEST_SUITE(linear_equations_of_a_gyro)
 
-BOOST_AUTO_TEST_CASE(of_foeppl_err_in_third_order) {
+BOOST_AUTO_TEST_CASE(foeppls_err_in_third_order) {
   errs_as("(50) Foeppl, massless rings, free spin, u=0",
           FoepplGyro<>({symmetric.rotor}, springs, speed), 3);
   errs_as("(50) Foeppl, massless rings, regulated spin, u=0",
@@ -91,12 +91,12 @@ BOOST_AUTO_TEST_CASE(of_foeppl_err_in_third_order) {
           FoepplGyro(symmetric, springs, speed, RegulatedRotor{}), 3);
 }
 
-BOOST_AUTO_TEST_CASE(of_foeppl_err_in_first_order_without_the_rings) {
+BOOST_AUTO_TEST_CASE(foeppls_without_rings_err_in_first_order) {
   errs_as("(50) WITHOUT ring terms, massive rings (model error)",
           WithoutRings({symmetric.rotor}, springs, speed), 1);
 }
 
-BOOST_AUTO_TEST_CASE(with_an_unsymmetric_rotor_err_in_third_order) {
+BOOST_AUTO_TEST_CASE(unsymmetric_rotor_errs_in_third_order) {
   errs_as("(49) corrected, massless rings, regulated, asym",
           UnsymmetricRotor<>({unsymmetric.rotor}, springs, speed), 3);
   errs_as("(49) corrected + ring terms, regulated, asym",
@@ -105,13 +105,13 @@ BOOST_AUTO_TEST_CASE(with_an_unsymmetric_rotor_err_in_third_order) {
           UnsymmetricRotor(unsymmetric, springs, speed, FreeRotor{}), 3);
 }
 
-BOOST_AUTO_TEST_CASE(with_an_unsymmetric_rotor_err_in_first_order_as_printed) {
+BOOST_AUTO_TEST_CASE(printed_equations_err_in_first_order) {
   errs_as("(49) PRINTED (factor 1/2), massless, regulated, asym",
           Printed({unsymmetric.rotor}, springs, speed), 1);
 }
 
 // With A = B both scenes are one.
-BOOST_AUTO_TEST_CASE(are_foeppls_for_a_symmetric_rotor) {
+BOOST_AUTO_TEST_CASE(symmetric_rotor_gives_foeppls_equations) {
   const UnsymmetricRotor<> one(symmetric, {{2, 0.01}, {1.5, 0.02}}, speed);
   const FoepplGyro<> other(symmetric, {{2, 0.01}, {1.5, 0.02}}, speed);
   const Eigen::Vector4d y(0.1, -0.2, 3, 5);
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(are_foeppls_for_a_symmetric_rotor) {
   BOOST_TEST((one.rates(0.3, y) - expected).norm() < 1e-14 * expected.norm());
 }
 
-BOOST_AUTO_TEST_CASE(refuse_what_they_do_not_hold_for) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_gyros) {
   BOOST_CHECK_THROW(FoepplGyro<>(unsymmetric, springs, speed), InvalidInput);
   BOOST_CHECK_THROW(FoepplGyro<>(symmetric, {{2, 0, 0.1}, {}}, speed), InvalidInput);
   BOOST_CHECK_THROW(UnsymmetricRotor<>(unsymmetric, {{2, 0, 0.1}, {}}, speed), InvalidInput);

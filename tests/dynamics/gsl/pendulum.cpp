@@ -90,7 +90,7 @@ const auto amplitudes = data::make(
 
 BOOST_AUTO_TEST_SUITE(plain_pendulum)
 
-BOOST_DATA_TEST_CASE(period_is_gausss, amplitudes, amplitude) {
+BOOST_DATA_TEST_CASE(period_agrees_with_gauss, amplitudes, amplitude) {
   const exact::PlainPendulum pendulum(amplitude, 1);
   // d(log T)/d amplitude grows like 1/(pi - amplitude).
   const double condition = 4 + 1 / (std::numbers::pi - amplitude);
@@ -101,14 +101,14 @@ BOOST_DATA_TEST_CASE(period_is_gausss, amplitudes, amplitude) {
 }
 
 // Anchor: amplitude 90 degrees, K(1/sqrt 2) = Gamma(1/4)^2/(4 sqrt pi).
-BOOST_AUTO_TEST_CASE(quarter_turn_has_the_lemniscates_period) {
+BOOST_AUTO_TEST_CASE(quarter_turn_has_the_lemniscate_period) {
   const double gamma = gsl_sf_gamma(0.25);
   const exact::PlainPendulum pendulum(std::numbers::pi / 2, 2);
   BOOST_TEST(near(pendulum.period(), gamma * gamma / std::sqrt(std::numbers::pi) / 2, 4, 8));
 }
 
 // Quadrature and elliptic integral know nothing of one another.
-BOOST_DATA_TEST_CASE(period_is_that_of_the_quadrature, amplitudes, amplitude) {
+BOOST_DATA_TEST_CASE(period_agrees_with_quadrature, amplitudes, amplitude) {
   const PendulumBody<double> body = PendulumBody<double>::thin_rod(1.0, 3.0);
   const PendulumCoefficients<double> c{4.0, 0, 0, 0, 0};
   const auto all = equilibria(c);
@@ -121,7 +121,7 @@ BOOST_DATA_TEST_CASE(period_is_that_of_the_quadrature, amplitudes, amplitude) {
             << std::abs(swing.period / pendulum.period() - 1) / u << " u\n";
 }
 
-BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series, data::make({0.1, 1.0, 2.0, 3.0}),
+BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series, data::make({0.1, 1.0, 2.0, 3.0}),
                      amplitude) {
   const exact::PlainPendulum pendulum(amplitude, 1);
   Motion truth{amplitude, 0};
@@ -142,7 +142,7 @@ BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series, data::make({0.1, 1.0, 
   BOOST_TEST(worst_rate < bound);
 }
 
-BOOST_AUTO_TEST_CASE(motion_starts_at_rest_and_comes_back) {
+BOOST_AUTO_TEST_CASE(motion_starts_at_rest_and_returns) {
   const exact::PlainPendulum pendulum(-2, 3);
   BOOST_TEST(near(pendulum.at(0).angle, -2, 2, 2));
   BOOST_TEST(pendulum.at(0).rate == 0);
@@ -152,7 +152,7 @@ BOOST_AUTO_TEST_CASE(motion_starts_at_rest_and_comes_back) {
   BOOST_TEST(near(pendulum.at(-0.3).angle, pendulum.at(0.3).angle, 2, 0));
 }
 
-BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_arguments_are_refused) {
   const auto message = [](double amplitude, double omega) -> std::string {
     try {
       (void)exact::PlainPendulum(amplitude, omega);
@@ -184,7 +184,7 @@ struct Start {
 };
 
 // Swings, turns over both ways, starts turns away, comes close to the top from both sides, rests.
-BOOST_DATA_TEST_CASE(motion_is_that_of_the_taylor_series,
+BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series,
                      data::make(std::vector<Start>{{0, 0},
                                                    {1e-9, 0},
                                                    {2, 0},
@@ -235,7 +235,7 @@ BOOST_DATA_TEST_CASE(fall_from_near_the_top_takes_logarithmic_time, data::make({
   BOOST_TEST(std::abs(pendulum.at(time).angle) <= 4 * (time * 2 * u + left_out));
 }
 
-BOOST_AUTO_TEST_CASE(motion_upon_the_separatrix_ends_at_the_top) {
+BOOST_AUTO_TEST_CASE(separatrix_ends_at_the_top) {
   const exact::PendulumMotion pendulum(1, 0, -2);
   BOOST_TEST(std::isinf(pendulum.period()));
   BOOST_TEST(pendulum.at(1e6).angle == -std::numbers::pi);
@@ -250,7 +250,7 @@ BOOST_AUTO_TEST_CASE(turns_are_counted) {
   BOOST_TEST(near(pendulum.at(turns).rate, 3, 3, 4 * 1000));
 }
 
-BOOST_AUTO_TEST_CASE(release_at_rest_is_the_plain_pendulum) {
+BOOST_AUTO_TEST_CASE(release_at_rest_gives_the_plain_pendulum) {
   const exact::PendulumMotion motion(9, -2, 0);
   const exact::PlainPendulum plain(-2, 3);
   BOOST_TEST(near(motion.period(), plain.period(), plain.period(), 4));
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(release_at_rest_is_the_plain_pendulum) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(other_arguments_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_arguments_are_refused) {
   BOOST_CHECK_THROW((void)exact::PendulumMotion(0, 1, 1), InvalidInput);
   BOOST_CHECK_THROW((void)exact::PendulumMotion(1, std::nan(""), 1), InvalidInput);
   BOOST_CHECK_THROW((void)exact::PendulumMotion(1, 1, std::nan("")), InvalidInput);
@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_SUITE(gsl)
 
 int calls = 0;
 
-BOOST_AUTO_TEST_CASE(errors_become_exceptions_and_the_callers_handler_stays) {
+BOOST_AUTO_TEST_CASE(errors_become_exceptions) {
   gsl_error_handler_t* const before =
       gsl_set_error_handler([](const char*, const char*, int, int) { ++calls; });
   BOOST_CHECK_EXCEPTION(

@@ -55,7 +55,7 @@ bool starts_with(const Error& e, const char* words) {
 BOOST_AUTO_TEST_SUITE(gsl_steps)
 
 // msbdf, of order 5 at most, is not made for the last line.
-BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for_there_and_back) {
+BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     for (const GslMethod method : methods) {
       if (method == GslMethod::msbdf && tolerance < 1e-8) continue;
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for_there_and_back) {
 }
 
 // Explicit steps are limited by stability to some 1/k, so would take 1e9 of them.
-BOOST_AUTO_TEST_CASE(take_no_notice_of_stiffness_if_implicit) {
+BOOST_AUTO_TEST_CASE(ignore_stiffness_if_implicit) {
   for (const double k : {1e3, 1e6, 1e9}) {
     for (const GslMethod method : {GslMethod::msbdf, GslMethod::bsimp}) {
       const Stiff field{k};
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(take_no_notice_of_stiffness_if_implicit) {
 }
 
 // y'' + k y' + k y = 0: the Jacobian is not symmetric, and the transposed one would not do.
-BOOST_AUTO_TEST_CASE(follow_the_slow_one_of_two_stiffly_coupled) {
+BOOST_AUTO_TEST_CASE(follow_the_slow_part_of_a_stiff_pair) {
   for (const double k : {1e4, 1e8}) {
     const auto field = [k](const auto& /*t*/, const auto& y) {
       using S = typename std::decay_t<decltype(y)>::Scalar;
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(follow_the_slow_one_of_two_stiffly_coupled) {
 }
 
 // GSL's own answer is success, with a NaN.
-BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
+BOOST_AUTO_TEST_CASE(keep_the_last_state_at_the_field_edge) {
   const auto ends = [](double t, const State<2>& y) {
     return t > 1 ? State<2>(not_a_number, not_a_number) : circle(t, y);
   };
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
 }
 
 // sqrt(y) has no value below y = 0: a step that lands there is taken back, not passed on.
-BOOST_AUTO_TEST_CASE(take_back_a_step_that_leaves_the_field) {
+BOOST_AUTO_TEST_CASE(retry_a_step_that_leaves_the_field) {
   const auto field = [](double, const State<1>& y) { return State<1>(-std::sqrt(y[0])); };
   const auto jacobian = [](double, const State<1>& y) {
     return Jacobian<1>{State<1>(-0.5 / std::sqrt(y[0])), State<1>(0.0)};
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(take_back_a_step_that_leaves_the_field) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(pass_on_what_the_field_throws) {
+BOOST_AUTO_TEST_CASE(pass_on_exceptions_of_the_field) {
   const auto field = [](double t, const State<2>& y) {
     if (t > 1) throw std::out_of_range("beyond the table");
     return circle(t, y);
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(pass_on_what_the_field_throws) {
 }
 
 // A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
-BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
+BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   const auto field = [](double, const State<4>& y) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
   };
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
 }
 
 // msadams and msbdf ask for what is allowed of each component, and steer by it themselves.
-BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size_with_several_steps_too) {
+BOOST_AUTO_TEST_CASE(measure_blocks_in_multistep_methods) {
   const auto field = [](const auto& /*t*/, const auto& y) {
     using S = typename std::decay_t<decltype(y)>::Scalar;
     return Eigen::Matrix<S, 4, 1>(-y[1], y[0], -3 * y[3], 3 * y[2]);
@@ -195,13 +195,13 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size_with_several_steps_too) 
   }
 }
 
-BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
+BOOST_AUTO_TEST_CASE(stay_if_the_end_is_the_start) {
   GslSteps steps(GslMethod::rkf45, circle, 5.0, State<2>(1, 0));
   BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
   BOOST_TEST(steps.effort().evaluations == 0);
 }
 
-BOOST_AUTO_TEST_CASE(tell_at_once_of_a_field_that_is_no_number) {
+BOOST_AUTO_TEST_CASE(refuse_a_field_that_is_not_finite) {
   const auto field = [](double, const State<1>&) { return State<1>(not_a_number); };
   GslSteps steps(GslMethod::rkf45, field, 3.0, State<1>(1.0));
   BOOST_CHECK_EXCEPTION(steps.advance_to(4), ComputationFailed, [](const ComputationFailed& e) {
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(tell_at_once_of_a_field_that_is_no_number) {
   BOOST_TEST(steps.effort().evaluations == 1);
 }
 
-BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_accuracies) {
   const auto with = [](const Accuracy& accuracy) {
     GslSteps steps(GslMethod::rkf45, circle, 0.0, State<2>(1, 0), accuracy);
     return steps.t();
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(forward_jacobians)
 
-BOOST_AUTO_TEST_CASE(are_those_computed_by_hand) {
+BOOST_AUTO_TEST_CASE(agree_with_hand_computed_ones) {
   const auto field = [](const auto& t, const auto& y) {
     using std::sin;
     using S = std::decay_t<decltype(t)>;

@@ -61,7 +61,7 @@ void hold_guide(const M& guide) {
 
 BOOST_AUTO_TEST_SUITE(analytic_guides)
 
-BOOST_AUTO_TEST_CASE(knows_its_functions) {
+BOOST_AUTO_TEST_CASE(have_correct_functions) {
   using std::cos, std::cosh, std::exp, std::log, std::pow, std::sin, std::sinh, std::sqrt, std::tan,
       std::tanh;
   hold("sin, cos", [](const auto& t) { return sin(3 * t + 1) * cos(t * t); });
@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(knows_its_functions) {
   hold("a constant", [](const auto& t) { return std::decay_t<decltype(t)>(0.5); });
 }
 
-BOOST_AUTO_TEST_CASE(gives_what_a_body_feels) {
+BOOST_AUTO_TEST_CASE(give_the_apparent_field) {
   hold_guide(analytic([](const auto& t) {
     using std::exp;
     using std::sin;
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(gives_what_a_body_feels) {
 }
 
 // Of a formula in which nothing moves all but the first coefficients are 0.
-BOOST_AUTO_TEST_CASE(may_stand_still) {
+BOOST_AUTO_TEST_CASE(may_be_at_rest) {
   const auto still = analytic([](const auto& t) {
     using T = std::decay_t<decltype(t)>;
     return Pose<T>{Matrix3<T>::Identity(), Vector3<T>(T(1), T(2), T(3))};

@@ -57,7 +57,7 @@ EarthSite<double> random_site(unsigned seed) {
 
 BOOST_AUTO_TEST_SUITE(sine_and_cosine_of_degrees)
 
-BOOST_AUTO_TEST_CASE(are_exact_where_they_can_be) {
+BOOST_AUTO_TEST_CASE(are_exact_if_possible) {
   const double half_root = std::sqrt(0.5);
   struct Row {
     double angle, sine, cosine;
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(east_west_axis_in_the_north) {
   BOOST_TEST((guide.effective_gravity == Vector3<double>(9.81, 0, 0)));
 }
 
-BOOST_AUTO_TEST_CASE(default_rotation_rate_is_the_decimal_in_every_scalar) {
+BOOST_AUTO_TEST_CASE(default_rotation_rate_is_the_decimal) {
   BOOST_TEST(EarthSite<double>{}.rotation_rate == 7.292115e-5);
   BOOST_TEST(EarthSite<long double>{}.rotation_rate == 7.292115e-5L);
   BOOST_TEST(abs(Exact(EarthSite<Exact>{}.rotation_rate - Exact("7.292115e-5"))) < Exact("1e-53"));
@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_CASE(default_rotation_rate_is_the_decimal_in_every_scalar) {
 
 // Axes from the compass: z level with the azimuth, x down, y = z x x; the earth's axis points north
 // and up.
-BOOST_DATA_TEST_CASE(rotation_is_the_earths_axis_on_the_guides_axes, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(rotation_follows_the_earths_axis, data::xrange(100u), seed) {
   const EarthSite<double> site = random_site(seed);
   const double degree = std::numbers::pi / 180;
   const double azimuth = site.azimuth * degree;
@@ -134,7 +134,7 @@ BOOST_DATA_TEST_CASE(rotation_is_the_earths_axis_on_the_guides_axes, data::xrang
   BOOST_TEST(near(w.z(), axis.dot(z), 1, 16));
 }
 
-BOOST_AUTO_TEST_CASE(sites_that_are_none_are_refused) {
+BOOST_AUTO_TEST_CASE(invalid_sites_are_refused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refusal = [](const EarthSite<double>& site, double gravity = 9.81) {
     return message_of([&] { (void)earth_guide(site, gravity); });
@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(wgs84)
 
-BOOST_DATA_TEST_CASE(on_the_ellipsoid_it_is_somiglianas_along_the_normal,
+BOOST_DATA_TEST_CASE(gravity_on_the_ellipsoid_is_somiglianas,
                      data::make({-90.0, -47.3, 0.0, 30.0, 45.0, 52.38, 90.0}), latitude) {
   EarthSite<double> site{.latitude = latitude};
   const auto& wgs84 = GeographicLib::NormalGravity::WGS84();
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(equator_and_pole_have_the_published_values) {
   BOOST_TEST(std::abs(normal_gravity(pole).magnitude - 9.8321849378) < 1e-9);
 }
 
-BOOST_DATA_TEST_CASE(gravitation_and_centrifugal_part_make_it, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(gravity_is_gravitation_and_centrifugal, data::xrange(50u), seed) {
   EarthSite<double> site = random_site(seed);
   const auto& wgs84 = GeographicLib::NormalGravity::WGS84();
   site.rotation_rate = wgs84.AngularVelocity();
@@ -309,7 +309,7 @@ BOOST_DATA_TEST_CASE(spherical_gradient_is_right_to_one_per_cent, data::xrange(5
 }
 
 // Eastward, nothing changes sides: the meridian is a plane of symmetry.
-BOOST_AUTO_TEST_CASE(gradient_of_an_east_west_axis_lies_in_the_meridian) {
+BOOST_AUTO_TEST_CASE(east_west_gradient_lies_in_the_meridian) {
   const auto gradient =
       normal_gravity({.latitude = 40, .azimuth = 90, .height = 500}).guide.gravity_gradient;
   BOOST_TEST(gradient(0, 2) == 0);

@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_SUITE(a_chain_from_earth_to_device)
 
 // earth -> ship -> device against ONE pose, the product of the three, differentiated in 50 digits.
 // Lengths count in earth radii for what the earth's centre sees: 6.4e6 m and 465 m/s.
-BOOST_DATA_TEST_CASE(moves_as_the_product_of_the_poses, data::xrange(60u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_the_product_of_poses, data::xrange(60u), seed) {
   test::Sample sample(seed);
   const Swing ship = Swing::random(sample, 20);
   const Swing device = Swing::random(sample, 0.5);
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(a_harmonic_frame)
 
 // q' = q u / 2 and x'' = q a q^-1 integrated step by step in long double, another way to the pose.
-BOOST_DATA_TEST_CASE(is_what_gyros_and_accelerometers_say, data::xrange(8u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_gyros_and_accelerometers, data::xrange(8u), seed) {
   test::Sample sample(seed);
   const auto series = [&](double size) {
     HarmonicSeries<> s{size * sample.direction(), {}};
@@ -303,7 +303,7 @@ BOOST_DATA_TEST_CASE(is_what_gyros_and_accelerometers_say, data::xrange(8u), see
 }
 
 // Rolling about one axis has a closed form: the angle is the integral of c + A sin(w t + p).
-BOOST_AUTO_TEST_CASE(rolls_about_one_axis_as_the_integral_says) {
+BOOST_AUTO_TEST_CASE(rolls_by_the_integral_of_its_rate) {
   const HarmonicFrame<> frame({{0.1, 0, 0}, {{{0.3, 0, 0}, 0.7, 0.2}}}, {}, 0, 2000);
   for (const double t : {0.0, 1.0, 123.4, 2000.0}) {
     const Digits50 T = t;
@@ -320,7 +320,7 @@ BOOST_AUTO_TEST_CASE(differentiates_its_series) {
   BOOST_TEST(near(s.rate(0.7), Vector3<double>(std::cos(1.7), 2 * std::cos(1.35), 0), 2.0, 4));
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_no_motion) {
+BOOST_AUTO_TEST_CASE(refuses_invalid_motions) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const HarmonicSeries<> none;
   BOOST_CHECK_THROW((HarmonicFrame<>(none, none, 1, 0)), InvalidInput);
@@ -345,7 +345,7 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_motion) {
 BOOST_AUTO_TEST_SUITE_END()
 
 // u and ou without the pose are those of the whole motion to the last bit.
-BOOST_DATA_TEST_CASE(a_frame_turns_as_it_moves, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(rotation_agrees_with_the_whole_motion, data::xrange(20u), seed) {
   test::Sample sample(seed);
   const double t = sample.uniform(0, 10);
   const auto compare = [t](const auto& frame) {

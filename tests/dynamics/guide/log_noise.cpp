@@ -171,7 +171,7 @@ Logger any_logger(test::Sample& sample) {
 BOOST_AUTO_TEST_SUITE(the_noise_of_a_log)
 
 // 300 logs of all kinds, against the motion that was logged.
-BOOST_AUTO_TEST_CASE(moves_the_end_by_as_much_as_told) {
+BOOST_AUTO_TEST_CASE(has_the_estimated_effect_on_the_end) {
   test::Sample sample(11);
   constexpr int logs = 300;
   int within = 0;

@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(adds_coriolis_and_centripetal_acceleration) {
 }
 
 // Whether the ship joins the earth first or the device the ship makes no difference.
-BOOST_DATA_TEST_CASE(may_be_joined_from_either_end, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(is_associative, data::xrange(50u), seed) {
   struct Device {};
   const Chain<Digits50> first = chain<Digits50>(seed);
   const Chain<Digits50> second = chain<Digits50>(seed + 1000);

@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(agree_with_another_integrator) {
   BOOST_TEST(off < 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(are_refused_if_they_are_none) {
+BOOST_AUTO_TEST_CASE(are_refused_if_invalid) {
   const auto motion = posed(swell);
   const auto refused = [&](const std::string& why, const std::function<void(RatesLog&)>& spoil) {
     RatesLog log = logged(motion, 2, 20);

@@ -100,7 +100,7 @@ BOOST_DATA_TEST_CASE(is_followed_to_the_sixth_order, data::make({0.0, 0.3}), une
 }
 
 // Honest: never under the true error, and not over fifteen times it.
-BOOST_DATA_TEST_CASE(tells_its_interpolation_error,
+BOOST_DATA_TEST_CASE(reports_its_interpolation_error,
                      data::make({41, 101, 401, 1001}) * data::make({0.0, 0.3}), samples, uneven) {
   const TabulatedFrame<> frame(logged(20, samples, uneven));
   const auto truth = errors(frame);
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(passes_through_its_samples) {
 }
 
 // The same motion seen from other axes, and written on other axes of the guide.
-BOOST_AUTO_TEST_CASE(does_not_depend_on_the_choice_of_axes) {
+BOOST_AUTO_TEST_CASE(does_not_depend_on_its_axes) {
   test::Sample sample(3);
   const Eigen::Quaterniond outer(sample.rotation());
   const Eigen::Quaterniond inner(sample.rotation());
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_the_choice_of_axes) {
 }
 
 // Angular velocity and acceleration are derivatives of the attitude given, at the knots too.
-BOOST_AUTO_TEST_CASE(has_rates_that_fit_its_attitude) {
+BOOST_AUTO_TEST_CASE(has_the_rates_of_its_attitude) {
   const TabulatedFrame<> frame(logged(20, 41));
   constexpr double h = 1e-5;
   for (const double t : {0.5, 1.0, 7.77, 19.0}) {  // 0.5, 1 and 19 are knots
@@ -160,7 +160,7 @@ BOOST_AUTO_TEST_CASE(has_rates_that_fit_its_attitude) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(that_rests_rests_exactly) {
+BOOST_AUTO_TEST_CASE(at_rest_is_exactly_at_rest) {
   test::Sample sample(5);
   const Eigen::Quaterniond q(sample.rotation());
   MotionLog<> log;
@@ -207,7 +207,7 @@ void refused(const std::string& why, const std::function<void(MotionLog<>&)>& sp
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(is_refused_if_it_is_none) {
+BOOST_AUTO_TEST_CASE(is_refused_if_invalid) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   refused("3 samples", [](MotionLog<>& log) { log.times.resize(3); });
   refused("41 times, 40 attitudes", [](MotionLog<>& log) { log.attitudes.pop_back(); });

@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(add_up_to_the_reference_momentum) {
   }
 }
 
-BOOST_DATA_TEST_CASE(are_those_of_the_masses, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(agree_with_the_masses, data::xrange(200u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
   const Typed<Terms> t = body.terms();
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(dJ_f.value, Motor<>{{0, 10, 0}, {0, 0, 30}}));
 }
 
-BOOST_DATA_TEST_CASE(is_that_of_the_masses_in_the_guide, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_the_masses_in_the_guide, data::xrange(200u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
   const Typed<Terms> t = body.terms();
@@ -87,7 +87,7 @@ BOOST_DATA_TEST_CASE(is_that_of_the_masses_in_the_guide, data::xrange(200u), see
 }
 
 // (1): seen from the inertial frame, the rate of T (V' + F) is the force.
-BOOST_DATA_TEST_CASE(of_the_whole_momentum_is_the_force, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(whole_momentum_rate_is_the_force, data::xrange(200u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
   const Typed<Terms> t = body.terms();

@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
 }
 
 // Relative: what would be needed if the guide were inertial, the guide's rate of T V'.
-BOOST_DATA_TEST_CASE(called_relative_knows_no_guide, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(relative_part_does_not_depend_on_the_guide, data::xrange(100u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
   const Typed<Terms> t = body.terms();
@@ -183,7 +183,7 @@ BOOST_DATA_TEST_CASE(called_relative_knows_no_guide, data::xrange(100u), seed) {
 }
 
 // Guide, in form (5): what the body would need if it were at rest in the guide.
-BOOST_DATA_TEST_CASE(called_guide_is_what_a_body_at_rest_needs, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(guide_part_is_the_force_of_a_body_at_rest, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const std::vector<test::PointMass> masses = sample.solid_masses();
   const test::Motion guide = test::motion(sample);
@@ -204,7 +204,7 @@ BOOST_DATA_TEST_CASE(called_guide_is_what_a_body_at_rest_needs, data::xrange(100
   });
 }
 
-BOOST_DATA_TEST_CASE(called_guide_does_not_ask_how_the_body_moves, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(guide_part_does_not_depend_on_the_body, data::xrange(20u), seed) {
   const Typed<double> b = test::moving_body(seed).numbers();
   const Typed<double> other = test::moving_body(seed + 1000).numbers();
   const auto one = equation_of_motion(b.T, b.V_rel, b.F, b.dV_rel.body, b.dF.guide);
@@ -212,7 +212,7 @@ BOOST_DATA_TEST_CASE(called_guide_does_not_ask_how_the_body_moves, data::xrange(
   BOOST_TEST(same(one.guide.value, two.guide.value));
 }
 
-BOOST_DATA_TEST_CASE(called_coriolis_vanishes_where_one_of_both_rests, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(coriolis_part_vanishes_if_either_rests, data::xrange(20u), seed) {
   const Typed<double> b = test::moving_body(seed).numbers();
   const auto in_rest =
       equation_of_motion(b.T, Velocity<Body, Guide, Body>{}, b.F, b.dV_rel.body, b.dF.guide);
@@ -255,7 +255,7 @@ void check_acceleration(const MovingBody& body, const Rate<OfF, DF>& dF) {
   BOOST_TEST(near(dV.value.moment, exact.moment, angular * r.norm() + push / T.mass, 24));
 }
 
-BOOST_DATA_TEST_CASE(is_that_of_the_motion_for_all_observers, data::xrange(200u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_the_motion_for_all_observers, data::xrange(200u), seed) {
   const MovingBody body = test::moving_body(seed);
   const auto& dF = body.numbers().dF;
   check_acceleration<Body>(body, dF.body);
@@ -280,7 +280,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(dV.value, Motor<>{{0, 0, 0}, {3, 0, 0}}));
 }
 
-BOOST_AUTO_TEST_CASE(of_a_point_is_refused) {
+BOOST_AUTO_TEST_CASE(refuses_a_point_body) {
   const InertiaTensor<Body> point{{2, {0, 0, 0}, {}}};
   const Rate<Guide, Velocity<Guide, Inertial, Body>> dF{};
   BOOST_CHECK_THROW(

@@ -136,7 +136,7 @@ BOOST_AUTO_TEST_CASE(hold_without_mass) {
 }
 
 // (19a), (19b) with the plain derivative of v at the moving O': the factor 2 of u x v' is 1.
-BOOST_DATA_TEST_CASE(nineteen_with_the_plain_derivative_counts_once, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(equation_19_needs_the_true_derivative, data::xrange(100u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
   const Typed<Terms> t = body.terms();
@@ -149,7 +149,7 @@ BOOST_DATA_TEST_CASE(nineteen_with_the_plain_derivative_counts_once, data::xrang
 }
 
 // The same equation with true rates, the moments of o(T V') and o(T F), in which no v' is left.
-BOOST_DATA_TEST_CASE(twenty_as_printed_holds_for_true_rates, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(printed_20_holds_for_true_rates, data::xrange(100u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
   const Motor<> sum = momentum(body.truth.J.value).value + momentum(body.truth.J_f.value).value;
@@ -162,7 +162,7 @@ BOOST_DATA_TEST_CASE(twenty_as_printed_holds_for_true_rates, data::xrange(100u),
 
 // (48) as printed leaves v x (G + G_f), the momentum times the velocity of the fixed point: 0 only if
 // that point rests or the body is held at its centre of mass.
-BOOST_AUTO_TEST_CASE(forty_eight_needs_the_velocity_of_the_guide) {
+BOOST_AUTO_TEST_CASE(equation_48_needs_the_guide_velocity) {
   double largest = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     const MovingBody body = fixed_point_body(seed);
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(forty_eight_needs_the_velocity_of_the_guide) {
 // Counterexample L: the guide is inertial, nothing acts; S goes with (1, 0, 0), the body spins with
 // (0, 0, 1), S at (1, 0, 0) from O'. So O' has (1, 0, 0) - z cross x = (1, -1, 0), and the momentum
 // about it turns by -v' x G. The printed (20b) has no v' x G and demands a torque of -1.
-BOOST_AUTO_TEST_CASE(twenty_as_printed_demands_a_torque_from_nothing) {
+BOOST_AUTO_TEST_CASE(printed_20_has_a_spurious_torque) {
   const InertiaTensor<Body> T{{1, {1, 0, 0}, {0, 1, 1, 0, 0, 0}}};
   const Velocity<Body, Guide, Body> V_rel{{{0, 0, 1}, {1, -1, 0}}};
   const Velocity<Guide, Inertial, Body> F{};
@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
 
 // Anchor: a guide whose origin moves with 10 along x while it turns with 1 about z needs 10 along y
 // for what it carries there; started with 1 rad/s^2, it needs 3 along y for what is at (3, 0, 0).
-BOOST_AUTO_TEST_CASE(by_hand_when_the_guide_goes_and_starts) {
+BOOST_AUTO_TEST_CASE(by_hand_with_an_accelerated_guide) {
   BOOST_TEST(same(particle_force<double>(1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
                                          Motor<>{{0, 0, 1}, {10, 0, 0}}, Motor<>{}),
                   Vector3<double>(0, 10, 0)));
@@ -265,7 +265,7 @@ BOOST_DATA_TEST_CASE(gives_the_newtonian_force, data::xrange(200u), seed) {
 }
 
 // The motor form that it spells out: T oF + [F (T F)].
-BOOST_DATA_TEST_CASE(is_the_guide_part, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(equals_the_guide_part, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Inertia<> T = test::inertia(sample.masses());
   const Motor<> F = sample.motor();

@@ -39,7 +39,7 @@ BOOST_AUTO_TEST_CASE(gives_a_body_at_rest_its_weight) {
 }
 
 // It turns with the site's rotation on the guide's axes, up, north and east of the same sign as there.
-BOOST_AUTO_TEST_CASE(turns_as_the_pendulum_has_it) {
+BOOST_AUTO_TEST_CASE(turns_as_the_pendulum_guide) {
   const auto motion = earth_frame(munich)(0);
   BOOST_TEST(
       near(motion.V.value.resultant, normal_gravity(munich).guide.angular_velocity, 1e-4, 4));
@@ -61,7 +61,7 @@ BOOST_AUTO_TEST_CASE(deflects_a_falling_body_to_the_east) {
 }
 
 // The same fall watched from a frame that does not turn.
-BOOST_AUTO_TEST_CASE(shows_the_fall_that_the_inertial_frame_shows) {
+BOOST_AUTO_TEST_CASE(shows_the_same_fall_as_the_inertial_frame) {
   const auto earth = earth_frame(munich);
   const FreeBody on_earth(ball, earth, EarthGravitation{});
   const FreeBody in_space(ball, RestingFrame<>{}, EarthGravitation{});
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_energy_of_an_orbit) {
 
 // In linear equations: the free-air gradient, with the centrifugal part of the guide in it, and half
 // of it back to the plumb line on either side.
-BOOST_AUTO_TEST_CASE(grows_downwards_by_the_free_air_gradient) {
+BOOST_AUTO_TEST_CASE(has_the_free_air_gradient) {
   const FreeBody body(ball, earth_frame(munich), EarthGravitation{});
   const auto linear = linearize<Guide, Body>(body, 0, body.to_vector({}));
   const auto at = [&](Eigen::Index k) { return linear.A(9 + k, 3 + k); };
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(grows_downwards_by_the_free_air_gradient) {
 }
 
 // Of the ellipsoid's field, J2 leaves the terms from J4 on: 3 parts in a million.
-BOOST_AUTO_TEST_CASE(has_a_field_that_j2_describes_but_for_little) {
+BOOST_AUTO_TEST_CASE(field_is_nearly_that_of_j2) {
   for (const double latitude : {0.0, 30.0, 48.1, 90.0}) {
     const auto X = earth_frame(EarthSite<double>{.latitude = latitude})(0).X;
     const Vector3<double> p = X.value.translation;

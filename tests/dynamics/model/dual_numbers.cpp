@@ -82,7 +82,7 @@ constexpr double h4 = 0x1p-40;  // the fourth power of the difference's step
 BOOST_AUTO_TEST_SUITE(scenes_in_dual_numbers)
 
 // Within its time, and where it begins and ends.
-BOOST_DATA_TEST_CASE(know_how_a_guide_of_doubles_changes,
+BOOST_DATA_TEST_CASE(differentiate_a_guide_of_doubles,
                      data::make({-0.7, 0.4, 1.9}) * data::xrange(3), now, side) {
   OfDoubles guide;
   if (side == 1) guide.begin = now;
@@ -104,12 +104,12 @@ BOOST_DATA_TEST_CASE(know_how_a_guide_of_doubles_changes,
   }
 }
 
-BOOST_AUTO_TEST_CASE(leave_a_guide_as_it_is_where_time_is_a_number) {
+BOOST_AUTO_TEST_CASE(leave_a_guide_unchanged_at_constant_time) {
   const auto motion = all_of(detail::guide_at<Dual>(OfDoubles{}, Dual(0.4)));
   for (int i = 0; i < 24; ++i) BOOST_TEST(motion[i].derivatives().isZero(0));
 }
 
-BOOST_AUTO_TEST_CASE(refuse_a_guide_known_at_one_moment) {
+BOOST_AUTO_TEST_CASE(refuse_a_guide_known_at_one_time) {
   Dual t(0.4);
   t.derivatives() << 1, 0;
   BOOST_CHECK_THROW((void)detail::guide_at<Dual>(OfDoubles{0.4, 0.4}, t), InvalidInput);
@@ -126,7 +126,7 @@ BOOST_DATA_TEST_CASE(differentiate_by_differences, data::xrange(3), side) {
   BOOST_TEST(abs(detail::slope_in_time(f, now) - expected) <= 16 * u * 0x1p10);
 }
 
-BOOST_AUTO_TEST_CASE(go_through_a_linear_map) {
+BOOST_AUTO_TEST_CASE(pass_through_a_linear_map) {
   test::Sample sample(5);
   Matrix3<double> A;
   for (double& a : A.reshaped()) a = sample.uniform(-1, 1);

@@ -136,7 +136,7 @@ void check_on(const M& guide, test::Sample& sample, const Vector3<double>& gravi
 
 BOOST_AUTO_TEST_SUITE(the_terms_of_a_scene)
 
-BOOST_DATA_TEST_CASE(are_those_its_field_computes, data::xrange(10u), seed) {
+BOOST_DATA_TEST_CASE(agree_with_the_field, data::xrange(10u), seed) {
   test::Sample sample(seed);
   const RotatingFrame<> table{sample.direction(), sample.direction()};
   const SteadyFrame<> steady{{exp(Motor<>{sample.direction(), {}})},
@@ -165,7 +165,7 @@ BOOST_DATA_TEST_CASE(are_those_its_field_computes, data::xrange(10u), seed) {
 }
 
 // A Cardan gyro's: the field on the guide against that on one at rest, and so on.
-BOOST_AUTO_TEST_CASE(of_a_cardan_gyro_do_what_they_are_said_to) {
+BOOST_AUTO_TEST_CASE(cardan_gyro_terms_have_their_stated_effect) {
   const auto y = CardanGyro<RestingFrame<>>::to_vector({0.2, 0.3, 0.7, 1, 2, 200});
   const CardanMoments round{{5, 5, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
   const CardanMoments oval{{5, 6, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
@@ -218,7 +218,7 @@ BOOST_AUTO_TEST_CASE(of_a_cardan_gyro_do_what_they_are_said_to) {
   BOOST_TEST(du.why == "the guide moves steadily");
 }
 
-BOOST_AUTO_TEST_CASE(of_a_top_are_weight_and_rotor) {
+BOOST_AUTO_TEST_CASE(top_terms_are_weight_and_rotor) {
   for (const double k : {0.0, 1.0}) {
     for (const double h : {0.0, 2.0}) {
       const Terms all = terms(EulerTop({1, 2, 2.5}, {0, 0, k}, {h, 0, 0}));
@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(of_a_top_are_weight_and_rotor) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_a_plane_pendulum_do_what_they_are_said_to) {
+BOOST_AUTO_TEST_CASE(pendulum_terms_have_their_stated_effect) {
   const PendulumState<> y(0.4, 1);
   PendulumBody<> crooked = PendulumBody<>::thin_rod(1);
   crooked.theta_a = 0.1;
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(of_a_plane_pendulum_do_what_they_are_said_to) {
 }
 
 // Its spin turns nothing but the angle beside.
-BOOST_AUTO_TEST_CASE(of_a_body_of_revolution_know_no_angle_of_spin) {
+BOOST_AUTO_TEST_CASE(axisymmetric_terms_do_not_depend_on_spin) {
   const AxisymmetricBody top(1, 0.1, 0.02, 0.01, {0, 0, 0}, RestingFrame<>{},
                              UniformGravity<Guide>{{0, 0, -9.81}});
   const auto y = top.to_vector({Eigen::Quaterniond(1, 0.1, 0.2, 0), {1, 2, 3}, 0});
@@ -270,7 +270,7 @@ BOOST_AUTO_TEST_CASE(of_a_body_of_revolution_know_no_angle_of_spin) {
   holds(terms(top), "s x g'", 0.1 * 9.81);
 }
 
-BOOST_AUTO_TEST_CASE(of_small_oscillations_at_rest_are_rotor_and_rings) {
+BOOST_AUTO_TEST_CASE(small_oscillations_at_rest_have_two_terms) {
   const CardanMoments oval{{5, 6, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
   const CardanMoments round{{5, 5, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
   const auto check = [](const auto& gyro, const auto& bare) {
@@ -285,7 +285,7 @@ BOOST_AUTO_TEST_CASE(of_small_oscillations_at_rest_are_rotor_and_rings) {
   check(FoepplGyro<>(round, {}, 2), FoepplGyro<>({round.rotor}, {}, 2));
 }
 
-BOOST_AUTO_TEST_CASE(of_small_oscillations_on_a_guide_are_as_many_as_are_asked_for) {
+BOOST_AUTO_TEST_CASE(small_oscillations_have_the_chosen_terms) {
   const auto shaken = [](double t) {
     PoseDerivatives<> p;
     p.q = Eigen::Quaterniond(1, t * t, t, 0.1 * t * t);
@@ -311,7 +311,7 @@ BOOST_AUTO_TEST_CASE(of_small_oscillations_on_a_guide_are_as_many_as_are_asked_f
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_a_gyro_platform_are_those_of_its_equations) {
+BOOST_AUTO_TEST_CASE(platform_terms_are_those_of_its_equations) {
   GyroPlatform p;
   p.frame_4.moments = {1, 2, 4};
   p.housing_5.moments = {3, 5, 6};
@@ -337,7 +337,7 @@ BOOST_AUTO_TEST_CASE(of_a_gyro_platform_are_those_of_its_equations) {
 }
 
 // It does not vanish: that it is left out is what somebody said.
-BOOST_AUTO_TEST_CASE(lack_a_centrifugal_force_that_is_left_out) {
+BOOST_AUTO_TEST_CASE(omit_a_dropped_centrifugal_force) {
   const RotatingFrame<> table{{0, 0, 2}};
   const FreeBody whole(body({0, 0, 0}, 0), table);
   const FreeBody less(body({0, 0, 0}, 0), table, Without<CentrifugalForce>{});

@@ -25,7 +25,7 @@ BOOST_AUTO_TEST_SUITE(derivation)
 
 // (23) against Newton's law for every point mass, in the inertial frame written on guide axes:
 //   sum m [r, g + G r - (dv + [u v] + [du r] + [u [u r]] + 2 [u r'] + r'')]_z = 0.
-BOOST_DATA_TEST_CASE(field_is_newtons_law_for_point_masses, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(field_agrees_with_newtons_law, data::xrange(100u), seed) {
   Sample sample(seed);
   const std::vector<PointMass> points = random_points(sample);
   const Vector3<Exact> rotation = vector(sample, 5);
@@ -74,7 +74,7 @@ BOOST_DATA_TEST_CASE(field_is_newtons_law_for_point_masses, data::xrange(100u), 
 }
 
 // E, F, H, K as the paper prints them, without g', weight or gradients.
-BOOST_DATA_TEST_CASE(coefficients_are_those_printed_below_23, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(coefficients_are_those_below_23, data::xrange(50u), seed) {
   Sample sample(seed);
   const PendulumBody<Exact> b = body_of(random_points(sample));
   const Vector3<Exact> w = vector(sample, 5);
@@ -104,7 +104,7 @@ BOOST_DATA_TEST_CASE(coefficients_are_those_printed_below_23, data::xrange(50u),
 }
 
 // A guide that turns with u pulls like a guide at rest in the gradient u^2 - u u^t.
-BOOST_DATA_TEST_CASE(centrifugal_terms_are_those_of_a_gradient, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(centrifugal_terms_equal_those_of_a_gradient, data::xrange(20u), seed) {
   Sample sample(seed);
   const PendulumBody<Exact> body = body_of(random_points(sample));
   const Vector3<Exact> w = vector(sample, 5);
@@ -145,7 +145,7 @@ BOOST_AUTO_TEST_CASE(damping_takes_its_power_from_the_energy) {
   BOOST_TEST(near(power, -damping(1.7) * 1.7, 10, 4));
 }
 
-BOOST_AUTO_TEST_CASE(automatic_derivatives_give_stiffness_and_energy_rate) {
+BOOST_AUTO_TEST_CASE(derivatives_give_stiffness_and_power) {
   using Dual = Eigen::AutoDiffScalar<Eigen::Vector2d>;
   const Given<double> in = given<double>(cases()[11]);
   const PendulumField<double> f(in.body, in.guide);

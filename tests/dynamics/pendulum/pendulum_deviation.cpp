@@ -161,7 +161,7 @@ BOOST_DATA_TEST_CASE(every_equilibrium_is_found, data::xrange(cases().size()), i
 }
 
 // The scene knows no integrator: any stepper takes its field.
-BOOST_DATA_TEST_CASE(trajectory_is_that_of_the_reference, data::xrange(cases().size()), index) {
+BOOST_DATA_TEST_CASE(trajectory_agrees_with_the_reference, data::xrange(cases().size()), index) {
   namespace odeint = boost::numeric::odeint;
   using Real = long double;
   using State = std::vector<Real>;
@@ -212,7 +212,7 @@ BOOST_AUTO_TEST_CASE(lower_end_swings_north_in_the_north) {
   BOOST_TEST(at(90) == 0);
 }
 
-BOOST_DATA_TEST_CASE(guide_form_is_the_latitude_form, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(guide_form_equals_the_latitude_form, data::xrange(50u), seed) {
   Sample sample(seed);
   const EarthSite<double> site{.latitude = sample.uniform(-90, 90),
                                .azimuth = sample.uniform(-360, 360)};
@@ -390,7 +390,7 @@ BOOST_AUTO_TEST_SUITE(gravity_gradient)
 const PendulumBody<double> rod_of_paper = PendulumBody<double>::from_reduced_length(0.5);
 
 // 1.5 GM/R^3 (Theta_B - Theta_A) in K: 870 times the rotation's 1.36e-10.
-BOOST_AUTO_TEST_CASE(of_a_round_earth_shortens_the_period_by_1_2e_7) {
+BOOST_AUTO_TEST_CASE(round_earth_shortens_the_period_by_1e_7) {
   const EarthSite<double> site{.latitude = 0, .azimuth = 0};
   const auto earth = earth_guide(site, 9.81);
   const auto with = deviation(rod_of_paper, pendulum_guide(earth, GravityGradient::taken_in));
@@ -417,7 +417,7 @@ std::string refusal(const PendulumBody<double>& body,
   return message_of([&] { (void)deviation(body, guide, 0.1); });
 }
 
-BOOST_AUTO_TEST_CASE(bodies_that_cannot_be) {
+BOOST_AUTO_TEST_CASE(impossible_bodies) {
   const PendulumBody<double> good = PendulumBody<double>::thin_rod(0.75);
   BOOST_TEST(refusal(good) == "nothing was thrown");
   PendulumBody<double> body = good;
@@ -484,7 +484,7 @@ std::string listed(const std::vector<PendulumTerm<double>>& terms) {
   return all;
 }
 
-BOOST_AUTO_TEST_CASE(of_the_papers_pendulum) {
+BOOST_AUTO_TEST_CASE(papers_pendulum) {
   const Given<double> in = given<double>(cases().front());
   const auto answer = deviation(in.body, in.guide);
   BOOST_TEST_REQUIRE(answer.terms_kept.size() == 2u);
@@ -502,7 +502,7 @@ BOOST_AUTO_TEST_CASE(of_the_papers_pendulum) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(kept_ones_carry_their_size) {
+BOOST_AUTO_TEST_CASE(kept_terms_have_their_size) {
   const Given<double> in = given<double>(cases()[12]);
   PendulumGuide<double> guide = in.guide;
   guide.gravity_gradient = spherical_gravity_gradient(0.0);
@@ -525,7 +525,7 @@ BOOST_AUTO_TEST_CASE(kept_ones_carry_their_size) {
 }
 
 // About an upright axis gravity changes as much to one side as to the other.
-BOOST_AUTO_TEST_CASE(name_what_a_gradient_lacks) {
+BOOST_AUTO_TEST_CASE(name_terms_that_a_gradient_lacks) {
   PendulumGuide<double> guide = refused::hanging;
   guide.gravity_gradient = Eigen::Vector3d(-1e-6, -1e-6, 2e-6).asDiagonal();
   const std::string dropped =
@@ -538,7 +538,7 @@ BOOST_AUTO_TEST_CASE(name_what_a_gradient_lacks) {
 }
 
 // Turned about the line between its axes A and B.
-BOOST_AUTO_TEST_CASE(name_what_a_rotation_lacks) {
+BOOST_AUTO_TEST_CASE(name_terms_that_a_rotation_lacks) {
   PendulumGuide<double> guide = refused::hanging;
   guide.angular_velocity = {1e-3, 1e-3, 0};
   const std::string dropped =
@@ -547,7 +547,7 @@ BOOST_AUTO_TEST_CASE(name_what_a_rotation_lacks) {
 }
 
 // What two products make up for is told from what is not there.
-BOOST_AUTO_TEST_CASE(name_what_cancels) {
+BOOST_AUTO_TEST_CASE(name_terms_that_cancel) {
   // H = -G_xy (Theta_B - Theta_A) - (G_yy - G_xx) Phi_C = -1/4 + 2/8
   PendulumBody<double> body{1, 0.25, 0.5, 0.75, 0.75, 0, 0, 0.125};
   PendulumGuide<double> guide = refused::hanging;
@@ -563,7 +563,7 @@ BOOST_AUTO_TEST_CASE(name_what_cancels) {
              std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(of_a_guide_at_rest) {
+BOOST_AUTO_TEST_CASE(guide_at_rest) {
   const auto answer = deviation(PendulumBody<double>::thin_rod(0.75), refused::hanging);
   BOOST_TEST(answer.terms_kept.size() == 1u);
   BOOST_TEST(answer.equilibrium.exact.value == 0);
@@ -573,7 +573,7 @@ BOOST_AUTO_TEST_CASE(of_a_guide_at_rest) {
 }
 
 // Beside what rounding makes of it, which the same period in long double tells.
-BOOST_AUTO_TEST_CASE(of_a_great_swing_tells_the_error_of_the_quadrature) {
+BOOST_AUTO_TEST_CASE(great_swings_report_the_quadrature_error) {
   const auto rod = PendulumBody<double>::thin_rod(0.75);
   const auto swing = [](const auto& body, const auto& guide, double amplitude) {
     const auto c = coefficients(parts(body, guide));

@@ -88,8 +88,8 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
 }
 
 // Both parts together are the disturbed pendulum, which a brake holds by its whole rate.
-BOOST_AUTO_TEST_CASE(is_what_the_disturbed_pendulum_has_more) {
-  const EnckePendulum pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
+BOOST_AUTO_TEST_CASE(adds_up_to_the_disturbed_pendulum) {
+  const PendulumDeparture pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
     return S(t - S(0.3) * angle - S(0.2) * rate);
   });
   const double a = 0.7, da = -1.1, d = 0.2, dd = 0.4;
@@ -99,14 +99,14 @@ BOOST_AUTO_TEST_CASE(is_what_the_disturbed_pendulum_has_more) {
   BOOST_TEST(rates[1] == -k * std::sin(a));
 }
 
-BOOST_AUTO_TEST_CASE(does_not_depart_undisturbed) {
-  const EnckePendulum pendulum(
+BOOST_AUTO_TEST_CASE(is_zero_without_disturbance) {
+  const PendulumDeparture pendulum(
       k, []<class S>(const S& /*t*/, const S& /*angle*/, const S& /*rate*/) -> S { return S(0); });
   const auto run = solve(pendulum, {0.3}, {.output_times = {10}, .tolerance = 1e-10});
   BOOST_TEST(run.states[0].deviation == 0);
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_does_not_swing) {
+BOOST_AUTO_TEST_CASE(refuses_motions_that_do_not_swing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   BOOST_CHECK_THROW(EnckePendulum(-1, earth), InvalidInput);
   BOOST_CHECK_THROW(EnckePendulum(nan, earth), InvalidInput);

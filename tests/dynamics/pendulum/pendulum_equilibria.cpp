@@ -41,7 +41,7 @@ int roots_on_the_unit_circle(double e, double f, double h, double k, bool& clear
   return count;
 }
 
-BOOST_AUTO_TEST_CASE(are_as_many_as_the_quartics_roots_on_the_unit_circle) {
+BOOST_AUTO_TEST_CASE(agree_in_number_with_the_quartic) {
   Sample sample(1);
   int unclear = 0;
   std::array<int, 5> seen{};
@@ -76,7 +76,7 @@ BOOST_AUTO_TEST_CASE(are_as_many_as_the_quartics_roots_on_the_unit_circle) {
 }
 
 // Against Newton's method in 64 bits, wherever on the circle and however small the terms are there.
-BOOST_AUTO_TEST_CASE(have_all_the_digits_that_their_terms_have) {
+BOOST_AUTO_TEST_CASE(have_all_the_digits_of_their_terms) {
   using L = long double;
   Sample sample(2);
   double worst = 0;
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(are_no_clusters_where_the_circle_is_halved) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_one_coefficient_alone) {
+BOOST_AUTO_TEST_CASE(exist_for_a_single_coefficient) {
   const auto count = [](double e, double f, double h, double k) {
     return equilibria(PendulumCoefficients<double>{e, 0, f, h, k}).size();
   };
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(of_one_coefficient_alone) {
 }
 
 // E sin x + K sin 2x with E = -2K: the hanging position loses its stability (case P9's pitchfork).
-BOOST_AUTO_TEST_CASE(the_pitchfork_point_itself) {
+BOOST_AUTO_TEST_CASE(are_found_at_the_pitchfork_point) {
   const auto at = [](double k) { return equilibria(PendulumCoefficients<double>{1, 0, 0, 0, k}); };
   const auto merged = at(-0.5);
   BOOST_TEST_REQUIRE(merged.size() == 2u);
@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(the_pitchfork_point_itself) {
   BOOST_TEST(near(split[2].angle, std::acos(1 / 1.000002), 1, 1 / std::sqrt(u) / 100));
 }
 
-BOOST_AUTO_TEST_CASE(a_merged_pair_of_exact_numbers) {
+BOOST_AUTO_TEST_CASE(merged_pairs_of_exact_numbers_are_found) {
   // a = 0, b = 0: (1 - cos x)(1/2 + cos x) = cos(x)/2 - cos(2x)/2, roots 0 (double), +-2 pi/3.
   const auto found = equilibria(PendulumCoefficients<double>{0, 0, 0.5, -0.5, 0});
   BOOST_TEST_REQUIRE(found.size() == 3u);
@@ -191,7 +191,7 @@ BOOST_AUTO_TEST_CASE(a_merged_pair_of_exact_numbers) {
   BOOST_TEST(near(found[2].angle, 2 * std::acos(-1.0) / 3, 2, 2));
 }
 
-BOOST_AUTO_TEST_CASE(the_positive_one_of_two_equally_near_is_taken) {
+BOOST_AUTO_TEST_CASE(positive_one_of_two_equally_near_is_used) {
   const auto found = equilibria(PendulumCoefficients<double>{1, 0, 0, 0, -0.9});
   BOOST_TEST_REQUIRE(found.size() == 4u);
   BOOST_TEST(nearest_stable(found).angle > 0);
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(tiny_angles_keep_their_digits) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_terms_that_cancel_at_0_one_is_0) {
+BOOST_AUTO_TEST_CASE(terms_that_cancel_at_0_give_exactly_0) {
   for (const double f : {0.3, -0.7, 1e-10}) {
     const auto found = equilibria(PendulumCoefficients<double>{1, 0, f, -f, 0.2});
     BOOST_TEST(nearest_stable(found).angle == 0);
@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(of_terms_that_cancel_at_0_one_is_0) {
 }
 
 // F = H: they cancel at pi, not at 0, beside which the root lies.
-BOOST_AUTO_TEST_CASE(of_terms_that_cancel_at_pi_one_is_pi) {
+BOOST_AUTO_TEST_CASE(terms_that_cancel_at_pi_give_exactly_pi) {
   for (const double f : {1e-3, -1e-3, 1e-10}) {
     const PendulumCoefficients<double> c{1, 0, f, f, 0};
     const auto found = equilibria(c);
@@ -224,7 +224,7 @@ BOOST_AUTO_TEST_CASE(of_terms_that_cancel_at_pi_one_is_pi) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_root_takes_as_few_looks_as_newtons_method) {
+BOOST_AUTO_TEST_CASE(a_root_costs_as_little_as_newtons_method) {
   int looks = 0;
   const auto look = [&looks](double x) {
     ++looks;

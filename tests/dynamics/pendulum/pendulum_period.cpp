@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(a_release_at_another_equilibrium_is_refused) {
 
 // The slope is  m (E' + 2 K') + F' (3 m^2 + d^2)/2  next to the equilibrium: where m and d are off by
 // a part delta, it is off by no more than  delta (|m| |E' + 2 K'| + |F'| (3 m^2 + d^2)).
-BOOST_DATA_TEST_CASE(rounding_is_magnified_as_foretold, data::xrange(100u), seed) {
+BOOST_DATA_TEST_CASE(rounding_is_amplified_as_predicted, data::xrange(100u), seed) {
   Sample sample(seed);
   const bool third = seed % 2 == 0;  // E' + 2 K' = 0: the moment is of second order
   const detail::ShiftedMoment<double> moment{
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(size_bounds_the_moment) {
 }
 
 // Two equal barriers of K alone: E and F have no part in what counts as equally high.
-BOOST_AUTO_TEST_CASE(so_near_two_equal_barriers_that_they_are_as_high) {
+BOOST_AUTO_TEST_CASE(release_at_barrier_height_is_refused) {
   BOOST_CHECK_EXCEPTION((void)swing({0, 0, 0, 0, 1}, std::acos(0.0) - 1e-9), ComputationFailed,
                         [](const auto& error) {
                           BOOST_TEST_MESSAGE(error.what());
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(near_a_barrier_the_error_reached_is_named) {
 }
 
 // So near a barrier that rounding outgrows what a doubling of the nodes still changes.
-BOOST_AUTO_TEST_CASE(ends_where_rounding_hides_what_is_left) {
+BOOST_AUTO_TEST_CASE(quadrature_ends_at_rounding) {
   const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
   const auto all = equilibria(wells);
   const auto rest = nearest_stable(all);
@@ -198,13 +198,13 @@ BOOST_AUTO_TEST_CASE(ends_where_rounding_hides_what_is_left) {
   BOOST_TEST(found.quadrature_error < 1e-6 * found.period);
 }
 
-BOOST_AUTO_TEST_CASE(a_small_swing_takes_few_nodes) {
+BOOST_AUTO_TEST_CASE(a_small_swing_needs_few_nodes) {
   BOOST_TEST(swing({1, 0, 0, 0, 0}, 1e-9).nodes == 17);  // 8 intervals and twice as many
 }
 
 // By the arithmetic-geometric mean, T = 2 pi/agm(1, cos(amplitude/2)): sums of many terms are not
 // rounded as often as there are terms.
-BOOST_AUTO_TEST_CASE(periods_of_great_swings_do_not_add_up_rounding) {
+BOOST_AUTO_TEST_CASE(great_swings_do_not_accumulate_rounding) {
   using L = long double;
   const PendulumCoefficients<double> c{1, 0, 0, 0, 0};
   const auto all = equilibria(c);
@@ -226,7 +226,7 @@ BOOST_AUTO_TEST_CASE(periods_of_great_swings_do_not_add_up_rounding) {
 }
 
 // Upside down nothing is stable, and without weight there is nothing to compare with.
-BOOST_AUTO_TEST_CASE(periods_that_are_none) {
+BOOST_AUTO_TEST_CASE(undefined_periods_are_refused) {
   const PendulumCoefficients<double> c{.weight = 3};
   const double up = std::acos(-1.0);
   BOOST_CHECK_THROW((void)stiffness_excess(PendulumCoefficients<double>{}, 0.1), InvalidInput);

@@ -44,7 +44,7 @@ concept KnowsSeries = requires(const Scene& scene) {
 
 BOOST_AUTO_TEST_SUITE(pendulum_series)
 
-BOOST_AUTO_TEST_CASE(is_that_of_its_field) {
+BOOST_AUTO_TEST_CASE(agrees_with_its_field) {
   hold_samples("at rest", PhysicalPendulum(crooked, RestingPendulumGuide<>{9.81}));
   hold_samples("in a turn", PhysicalPendulum(crooked, in_a_turn));
   hold_samples("with a gradient", PhysicalPendulum(crooked, with_a_gradient()));
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_its_field) {
                PhysicalPendulum(rod, in_a_turn, NoDamping{}, Without<ProductsOfInertia>{}));
 }
 
-BOOST_AUTO_TEST_CASE(is_not_known_of_what_changes_or_is_damped) {
+BOOST_AUTO_TEST_CASE(is_unavailable_with_damping_or_changes) {
   const auto turning = [](double /*t*/) { return in_a_turn; };
   const auto brake = [](const auto& rate) { return 0.1 * rate; };
   static_assert(KnowsSeries<PhysicalPendulum<PendulumGuide<>>>);
@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(is_not_known_of_what_changes_or_is_damped) {
 
 // In a frame about to turn faster nothing is conserved and no closed form is known. Held against
 // Verner's steps, which take the field.
-BOOST_AUTO_TEST_CASE(moves_the_pendulum_in_a_turn) {
+BOOST_AUTO_TEST_CASE(moves_the_pendulum_on_a_turning_guide) {
   const PhysicalPendulum pendulum(crooked, in_a_turn);
   const auto by = [&](Method method) {
     return solve(pendulum, {.angle = 0.5, .rate = 2},

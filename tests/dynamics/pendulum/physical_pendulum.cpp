@@ -113,7 +113,7 @@ BOOST_DATA_TEST_CASE(on_the_earth_reaches_the_reference,
   BOOST_TEST(run.report.invariants[0].largest <= 16 * u * run.report.invariants[0].start);
 }
 
-BOOST_AUTO_TEST_CASE(errs_at_the_start_by_what_its_numbers_are_rounded) {
+BOOST_AUTO_TEST_CASE(errs_at_the_start_by_rounding_only) {
   const PhysicalPendulum pendulum(rod, room);
   const SteadyPendulumMotion<exact::Real> motion(rod.cast<exact::Real>(),
                                                  pendulum.coefficients<exact::Real>(), 0.1, 0.1);
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(errs_at_the_start_by_what_its_numbers_are_rounded) {
   BOOST_TEST(told < 2.2 * u);
 }
 
-BOOST_AUTO_TEST_CASE(begins_when_it_is_told_to) {
+BOOST_AUTO_TEST_CASE(begins_at_the_given_time) {
   const PhysicalPendulum pendulum(rod, room);
   const auto start = decltype(pendulum)::State{1.5, 0.5};
   const auto now = solve(pendulum, start, {.output_times = {0.25, 7}, .tolerance = 1e-13});
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(begins_when_it_is_told_to) {
 }
 
 // Elliptic functions, which know nothing of phases and series: swings of 1e-9 to 3 rad, and turning over.
-BOOST_AUTO_TEST_CASE(held_still_moves_as_elliptic_functions_say) {
+BOOST_AUTO_TEST_CASE(agrees_with_elliptic_functions_at_rest) {
   const PhysicalPendulum pendulum(rod, room);
   using State = decltype(pendulum)::State;
   double worst = 0;
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(held_still_moves_as_elliptic_functions_say) {
 }
 
 // Before the phase has gone far, half a unit in the last place of each answer is all that is off.
-BOOST_AUTO_TEST_CASE(tells_what_rounding_leaves) {
+BOOST_AUTO_TEST_CASE(reports_its_rounding) {
   const PhysicalPendulum pendulum(rod, room);
   std::vector<double> times;
   for (int i = 1; i <= 40; ++i) times.push_back(0.02 * i);
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(counts_from_the_nearest_well) {
 }
 
 // A barrier at -2.04 rad parts it from the well that is nearest, at -2.29 rad: it swings in the other.
-BOOST_AUTO_TEST_CASE(swings_in_the_well_that_it_is_in) {
+BOOST_AUTO_TEST_CASE(stays_in_its_well) {
   const PendulumCoefficients<> c{1, 0, -0.7, -0.7, 0.2};
   const double angle = -2;
   const SteadyPendulumMotion<double> motion({.arm = 1, .theta_c = 1}, c, angle, 0);
@@ -221,7 +221,7 @@ BOOST_AUTO_TEST_CASE(swings_in_the_well_that_it_is_in) {
 }
 
 // After eight turns either way it swings as before them; 16 pi is rounded by 7e-15.
-BOOST_AUTO_TEST_CASE(swings_alike_many_turns_away) {
+BOOST_AUTO_TEST_CASE(does_not_depend_on_whole_turns) {
   const PendulumCoefficients<> c{1, 0, 0.1, -0.2, -0.9};
   const double turns = 32 * std::acos(0.0);
   for (const double angle : {2.5, -0.4, 0.3}) {
@@ -236,7 +236,7 @@ BOOST_AUTO_TEST_CASE(swings_alike_many_turns_away) {
 }
 
 // Hardly over the barrier its phase runs so unevenly that Newton's steps for it leave their bracket.
-BOOST_AUTO_TEST_CASE(nearly_stands_as_elliptic_functions_say) {
+BOOST_AUTO_TEST_CASE(agrees_near_the_unstable_rest) {
   const PhysicalPendulum pendulum(rod, room);
   for (const double over : {1.001, 1.003, 1.01}) {
     const double rate = over * 2 * std::sqrt(19.62);
@@ -254,7 +254,7 @@ BOOST_AUTO_TEST_CASE(nearly_stands_as_elliptic_functions_say) {
 }
 
 // Any E, F, H and K: one well or two, swings over one or both, and turning over, against Taylor series.
-BOOST_AUTO_TEST_CASE(moves_as_taylor_series_say) {
+BOOST_AUTO_TEST_CASE(agrees_with_taylor_series) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
   double worst = 0;
@@ -290,7 +290,7 @@ BOOST_AUTO_TEST_CASE(moves_as_taylor_series_say) {
 }
 
 // phi = a cos theta, phi. = -a sin theta for E = Theta_C = 1.
-BOOST_AUTO_TEST_CASE(tells_what_a_phase_is_worth) {
+BOOST_AUTO_TEST_CASE(reports_the_angle_of_a_phase) {
   const double amplitude = 1e-3;
   const SteadyPendulumMotion<double> motion({.arm = 1, .theta_c = 1}, {1, 0, 0, 0, 0}, amplitude,
                                             0);
@@ -299,7 +299,7 @@ BOOST_AUTO_TEST_CASE(tells_what_a_phase_is_worth) {
 }
 
 // So near a barrier that the Fourier series is too long, steps take over; so they do at rest and in a fall without end.
-BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_the_series_ends) {
+BOOST_AUTO_TEST_CASE(is_solved_by_steps_beyond_the_series) {
   const PhysicalPendulum pendulum(rod, room);
   for (const double rate : {2 * std::sqrt(19.62), 2 * std::sqrt(19.62) * (1 + 1e-9), 0.0}) {
     const auto run = solve(pendulum, {.rate = rate}, {.output_times = {0.1, 3}, .tolerance = 1e-8});
@@ -311,7 +311,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_the_series_ends) {
 }
 
 // With damping, and on a guide that moves, there are steps; the equation is that of PendulumField.
-BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
+BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
   const auto brake = [](const auto& rate) { return 0.1 * rate; };
   const PhysicalPendulum damped(rod, room, brake);
   const auto slow = solve(damped, {.angle = 1e-6},
@@ -367,7 +367,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_where_no_energy_is_kept) {
 }
 
 // Without gravity, on a guide that turns about an axis across, twice its angle is a pendulum's.
-BOOST_AUTO_TEST_CASE(swings_about_across_the_axis_that_its_guide_turns_about) {
+BOOST_AUTO_TEST_CASE(swings_on_a_guide_that_turns_across) {
   constexpr double u = 2;
   const exact::PendulumMotion truth(u * u, 0.8, 0);  // Theta_B = Theta_C, Theta_A = 0
   for (const double axis : {std::acos(0.0), std::acos(0.0) / 2}) {
@@ -384,7 +384,7 @@ BOOST_AUTO_TEST_CASE(swings_about_across_the_axis_that_its_guide_turns_about) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_no_body) {
+BOOST_AUTO_TEST_CASE(refuses_impossible_bodies) {
   BOOST_CHECK_THROW(PhysicalPendulum({.arm = -1}, room), InvalidInput);
   BOOST_CHECK_THROW(PhysicalPendulum({.arm = 1, .theta_c = 0.5}, room), InvalidInput);
   for (const auto& [angle, rate] : {std::pair(NAN, 0.0), {0.1, HUGE_VAL}}) {

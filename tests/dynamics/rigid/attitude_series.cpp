@@ -47,7 +47,7 @@ InertiaTensor<Body> principal_inertia() {
 
 BOOST_AUTO_TEST_SUITE(attitude_series)
 
-BOOST_AUTO_TEST_CASE(is_that_of_held_bodies) {
+BOOST_AUTO_TEST_CASE(agrees_for_bodies_with_a_fixed_point) {
   const Vector3<double> none = Vector3<double>::Zero();
   hold_samples("at rest, free", FixedPointBody(inertia(), point, RestingFrame<>{}));
   hold_samples("at rest, heavy", FixedPointBody(inertia(), point, RestingFrame<>{}, inertial));
@@ -67,7 +67,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_held_bodies) {
   hold_samples("in a steady screw", FixedPointBody(inertia(), point, screw, in_guide));
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_bodies_on_analytic_guides) {
+BOOST_AUTO_TEST_CASE(agrees_for_bodies_on_analytic_guides) {
   HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}, {{0.1, 0.5, 0.2}, 2.9, 1}}};
   HarmonicSeries<> a{{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, 0.2}}};
   const HarmonicFrame<> harmonic(u, a, 0, 2);
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_bodies_on_analytic_guides) {
 }
 
 // A series of the guide serves the steps of the body that lie within its reach, and no others.
-BOOST_AUTO_TEST_CASE(follows_a_guide_beyond_the_reach_of_its_series) {
+BOOST_AUTO_TEST_CASE(continues_beyond_the_guides_series) {
   const HarmonicFrame<> slow({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}},
                              {{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, 0.2}}}, 0, 60);
   const FixedPointBody body(inertia(), point, slow, inertial);
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(follows_a_guide_beyond_the_reach_of_its_series) {
 
 // The same from the motion of the guide itself: at whatever times in whatever order, with steps that
 // are nearly as long as the series reaches, and where every other coefficient vanishes.
-BOOST_AUTO_TEST_CASE(knows_what_a_guide_makes_felt_wherever_it_is_asked) {
+BOOST_AUTO_TEST_CASE(gives_the_apparent_field_at_any_time) {
   const HarmonicSeries<> heave{{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, std::numbers::pi / 2}}};
   const HarmonicFrame<> even({{0.1, -0.2, 0.3}, {}}, heave, -60, 60);
   const HarmonicFrame<> uneven({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}}, heave, -60, 60);
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(knows_what_a_guide_makes_felt_wherever_it_is_asked) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(leaves_out_what_the_body_does) {
+BOOST_AUTO_TEST_CASE(omits_terms_that_the_body_omits) {
   using Principal = Without<ProductsOfInertia>;
   const InertiaTensor<Body> balanced{
       {1, Vector3<double>::Zero(), {0.25, 0.27, 0.06, 0.01, 0.02, 0.03}}};
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(leaves_out_what_the_body_does) {
                                             in_guide, Without<GuideRate, Axis::x, Axis::y>{}));
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_bodies_of_revolution) {
+BOOST_AUTO_TEST_CASE(agrees_for_axisymmetric_bodies) {
   const auto body = [](const auto& guide, const auto&... loads) {
     return AxisymmetricBody(1, -0.3, 0.25, 0.06, point, guide, loads...);
   };
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_bodies_of_revolution) {
   hold_samples("turning, gravity turns", body(turntable, inertial));
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_tops) {
+BOOST_AUTO_TEST_CASE(agrees_for_tops) {
   hold_samples("free", EulerTop({1, 1.7, 2.4}));
   hold_samples("heavy", EulerTop({1, 1.7, 2.4}, {0.5, -0.3, 2}));
   hold_samples("with a rotor", EulerTop({1, 1.7, 2.4}, {0.5, -0.3, 2}, {0.3, 1, -0.4}));

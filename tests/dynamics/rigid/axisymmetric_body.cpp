@@ -39,7 +39,7 @@ const Vector3<double> place(0.3, -0.2, 1);
 BOOST_AUTO_TEST_SUITE(axisymmetric_body)
 
 // The same body in its own axes, on a ship that rolls and heaves, with weight and drag.
-BOOST_AUTO_TEST_CASE(moves_as_a_body_in_its_own_axes_does) {
+BOOST_AUTO_TEST_CASE(agrees_with_a_body_on_its_own_axes) {
   const InertiaTensor<Body> inertia{{0.1, {0, 0, 5e-3}, {3e-4, 3e-4, 1e-4}}};
   const FixedPointBody held(inertia, place, rolling_ship(), weight, drag);
   const AxisymmetricBody<HarmonicFrame<>, UniformGravity<Guide>, ViscousDrag<>> round(
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(does_not_resolve_the_spin) {
 }
 
 // With the spin ten times as fast and its momentum the same, nothing changes but the spin.
-BOOST_AUTO_TEST_CASE(costs_what_the_nutation_costs) {
+BOOST_AUTO_TEST_CASE(costs_as_much_as_its_nutation) {
   const Eigen::Quaterniond q(std::cos(0.25), std::sin(0.25), 0, 0);
   double slow = 0;
   for (const double spin : {1e2, 1e4, 1e6}) {

@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_CASE(turns_for_ever_about_a_principal_axis) {
 }
 
 // Spherical: w constant to the last bit. Symmetric: the axial spin.
-BOOST_AUTO_TEST_CASE(keeps_what_its_symmetry_keeps) {
+BOOST_AUTO_TEST_CASE(keeps_the_invariants_of_its_symmetry) {
   const Vector3<double> w(0.1, 0.7, -0.3);
   const EulerTop sphere({2, 2, 2});
   BOOST_TEST(Integrator(sphere, 0, {tilted, w}).to(100).angular_velocity == w);
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(keeps_kovalevskayas_invariant) {
 }
 
 // With the weight and a rotor's momentum in no special direction.
-BOOST_AUTO_TEST_CASE(keeps_energy_and_vertical_momentum_whatever_it_bears) {
+BOOST_AUTO_TEST_CASE(keeps_energy_and_vertical_momentum) {
   const auto d =
       drift(EulerTop({1, 2, 2.5}, {0.7, -0.3, 1.1}, {0.2, -1, 0.5}), {tilted, {0.5, 1, 2}}, 100);
   BOOST_TEST_MESSAGE("over 100 s: energy " << d.energy << ", L_z " << d.vertical_momentum);
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(keeps_energy_and_vertical_momentum_whatever_it_bears) {
   BOOST_TEST(d.vertical_momentum < 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(names_what_it_keeps) {
+BOOST_AUTO_TEST_CASE(names_its_invariants) {
   using Names = std::vector<std::string>;
   const auto kept = [](const EulerTop& top) {
     Names names;
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(sleeps_above_the_critical_spin) {
 }
 
 // With a rotor at constant relative speed the whole momentum stays in space, not the carrier's.
-BOOST_AUTO_TEST_CASE(carries_a_regulated_rotor) {
+BOOST_AUTO_TEST_CASE(may_carry_a_regulated_rotor) {
   const Vector3<double> h(0.2, -1, 0.5);
   const EulerTop gyrostat({1, 2, 2.5}, {0, 0, 0}, h);
   const auto d = drift(gyrostat, {tilted, {0.3, 0.2, -0.4}}, 100);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(carries_a_regulated_rotor) {
 }
 
 // The same top as a body held in a guide at rest.
-BOOST_AUTO_TEST_CASE(is_the_held_body_on_a_guide_at_rest) {
+BOOST_AUTO_TEST_CASE(agrees_with_a_body_on_a_guide_at_rest) {
   const Vector3<double> moments(0.45, 0.47, 0.08), r_s(0.05, -0.02, 0.3);
   const double m = 2, g = 9.81;
   const auto T = InertiaTensor<Body>::about_origin(m, r_s, Matrix3<double>(moments.asDiagonal()));
@@ -160,7 +160,7 @@ BOOST_AUTO_TEST_CASE(is_the_held_body_on_a_guide_at_rest) {
                   1e-12 / test::u<>));
 }
 
-BOOST_AUTO_TEST_CASE(is_refused_if_no_body_has_such_moments) {
+BOOST_AUTO_TEST_CASE(is_refused_with_impossible_moments) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   BOOST_CHECK_THROW(EulerTop({1, 2, 4}), InvalidInput);
   BOOST_CHECK_THROW(EulerTop({-1, 2, 2}), InvalidInput);

@@ -104,10 +104,10 @@ InertiaTensor<Body> lopsided_body() {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(a_held_body)
+BOOST_AUTO_TEST_SUITE(a_body_with_a_fixed_point)
 
 // Final attitude and angular velocity of the 25-digit trajectories.
-BOOST_AUTO_TEST_CASE(moves_as_the_references_say) {
+BOOST_AUTO_TEST_CASE(agrees_with_the_references) {
   const std::vector<Json> cases = reference_cases();
   BOOST_TEST(cases.size() == 3U);
   for (const Json& c : cases) {
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(moves_as_the_references_say) {
 }
 
 // The joint carries force but no torque, and the parts add up to what acts.
-BOOST_AUTO_TEST_CASE(reads_out_its_parts) {
+BOOST_AUTO_TEST_CASE(gives_the_parts_of_its_reaction) {
   const Json c = reference_cases().at(2);
   const auto body = reference_body(c);
   const auto r = body.body_outputs(1.3, reference_start(body, c));
@@ -173,7 +173,7 @@ BOOST_DATA_TEST_CASE(balances_its_power, data::xrange(3), number) {
 }
 
 // Guide at rest, and no loads: Euler's equations.
-BOOST_DATA_TEST_CASE(is_eulers_top_on_a_guide_at_rest, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(agrees_with_eulers_top_on_a_guide_at_rest, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const auto T = lopsided_body();
   const FixedPointBody body(T, {1, 2, 3}, RestingFrame<>{});
@@ -185,7 +185,7 @@ BOOST_DATA_TEST_CASE(is_eulers_top_on_a_guide_at_rest, data::xrange(50u), seed) 
 }
 
 // With its centre of mass in the fixed point and no loads, a body does not feel the guide.
-BOOST_AUTO_TEST_CASE(does_not_feel_the_guide_when_held_at_its_centre_of_mass) {
+BOOST_AUTO_TEST_CASE(ignores_the_guide_if_fixed_at_its_centre) {
   const auto swing = [](const auto& t) {
     using std::sin;
     using S = std::decay_t<decltype(t)>;
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(does_not_feel_the_guide_when_held_at_its_centre_of_mass) {
 }
 
 // (22): a body at rest in the guide needs the force of the guide part, and nothing else.
-BOOST_DATA_TEST_CASE(at_rest_in_the_guide_needs_what_22_says, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(at_rest_in_the_guide_obeys_22, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const auto T = lopsided_body();
   const RotatingFrame<> guide{sample.direction(), sample.direction(), {}, sample.direction()};
@@ -236,7 +236,7 @@ Eigen::Matrix<double, 7, 1> swung(M guide) {
 }  // namespace
 
 // u = 0 in any kind of guide: not nearly the same numbers but the same.
-BOOST_AUTO_TEST_CASE(moves_the_same_on_guides_of_every_kind_that_rest) {
+BOOST_AUTO_TEST_CASE(moves_alike_on_all_guides_at_rest) {
   struct Ship {};
   const auto rest = swung(RestingFrame<>{});
   BOOST_TEST(swung(RotatingFrame<>{}) == rest);
@@ -255,7 +255,7 @@ BOOST_AUTO_TEST_CASE(moves_the_same_on_guides_of_every_kind_that_rest) {
 }
 
 // Slowly, down to numbers that only just exist: no division by |u|, nothing but rounding changes.
-BOOST_AUTO_TEST_CASE(bears_a_guide_that_hardly_turns) {
+BOOST_AUTO_TEST_CASE(is_exact_on_a_guide_that_hardly_turns) {
   const auto rest = swung(RestingFrame<>{});
   for (const double u : {1e-20, 1e-160, 1e-300, 1e-320}) {
     const auto y = swung(RotatingFrame<>{{0, u, u}, {0, 0, 0}, {}, {0, 0, 0}});
@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(bears_a_guide_that_hardly_turns) {
 
 // Of a guide in steady motion gravity and acceleration are made up beforehand, of any other when they
 // are felt.
-BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
+BOOST_AUTO_TEST_CASE(has_the_same_field_on_a_known_guide) {
   const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
   const auto on = [](const auto& guide) {
     return FixedPointBody(lopsided_body(), Vector3<double>(0.4, -0.1, 0.2), guide,
@@ -281,7 +281,7 @@ BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
 }
 
 // The guide stops as it stands at 2 s; what its motion makes felt at the fixed point stays.
-BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
+BOOST_AUTO_TEST_CASE(without_guide_rate_it_is_as_on_one_at_rest) {
   const Vector3<double> u(0.3, -0.2, 0.5);
   const Vector3<double> a(1, 2, 3);
   const Vector3<double> point(0.4, -0.1, 0.2);
@@ -294,7 +294,7 @@ BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
   BOOST_TEST(near(body.without(GuideRate{}, 1, 3).rates(0, y), same.rates(0, y), 10.0, 8));
 }
 
-BOOST_AUTO_TEST_CASE(is_refused_when_its_rotation_is_not_determined) {
+BOOST_AUTO_TEST_CASE(is_refused_if_its_rotation_is_undetermined) {
   const RestingFrame<> guide;
   const auto held = [&](const InertiaTensor<Body>& T) {
     return FixedPointBody(T, {0, 0, 0}, guide);

@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_SUITE(a_free_body)
 
 // Without loads the centre of mass goes straight and the momentum stays, in the inertial frame; from
 // the rough guide that is a wild motion, and the guide's own motion must drop out of it.
-BOOST_AUTO_TEST_CASE(goes_straight_whatever_the_guide_does) {
+BOOST_AUTO_TEST_CASE(moves_straight_for_any_guide_motion) {
   const auto guide = posed(rough);
   const FreeBody body(lopsided_body(), guide);
   const decltype(body)::State start{
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(goes_straight_whatever_the_guide_does) {
 }
 
 // (21): a point mass. The centre of mass of a body that does not turn is one.
-BOOST_DATA_TEST_CASE(is_a_particle_when_all_mass_is_in_the_origin, data::xrange(50u), seed) {
+BOOST_DATA_TEST_CASE(is_a_particle_with_all_mass_at_the_origin, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const double m = sample.magnitude(-1, 1);
   const auto T = InertiaTensor<Body>::about_centre(m, {0, 0, 0}, Matrix3<double>::Identity());
@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_energy_on_springs) {
 
 // What loads give to a body is what their potentials lose, less what their dampers take: by lengths
 // and places a little before and after, whose differences err by (3 h)^2/6 and by 1e-14/h.
-BOOST_DATA_TEST_CASE(loses_to_dampers_what_they_resist, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(loses_the_power_of_its_dampers, data::xrange(20u), seed) {
   test::Sample sample(seed);
   LoadContext<> s;
   s.inertia = lopsided_body();
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_turntable) {
 }
 
 // The same load given on three kinds of axes, where they coincide.
-BOOST_AUTO_TEST_CASE(takes_loads_on_any_axes) {
+BOOST_AUTO_TEST_CASE(accepts_loads_on_any_axes) {
   const Pose<double> tilt{YawPitchRoll<>{0.3, -0.5, 1.1}.rotation(), {1, 2, 3}};
   const Pose<double> lean{YawPitchRoll<>{-0.7, 0.2, 0.4}.rotation(), {-1, 0, 2}};
   LoadContext<> s;
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(takes_loads_on_any_axes) {
                   UniformGravity<Guide>{to_guide * f}(s).value, 5.0, 8));
 }
 
-BOOST_AUTO_TEST_CASE(takes_a_users_function_as_a_load) {
+BOOST_AUTO_TEST_CASE(accepts_a_function_as_a_load) {
   const auto thrust = [](const LoadContext<>& s) { return Force<Body>{{{s.t, 0, 0}, {0, 0, 0}}}; };
   const auto T = InertiaTensor<Body>::about_centre(2, {0, 0, 0}, Matrix3<double>::Identity());
   const FreeBody body(T, RestingFrame<>{}, thrust);
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(takes_a_users_function_as_a_load) {
   BOOST_TEST(near(end.position, Vector3<double>(27.0 / 12, 0, 0), 2.25, 100));  // t^3 / (6 m)
 }
 
-BOOST_AUTO_TEST_CASE(is_refused_when_it_is_none) {
+BOOST_AUTO_TEST_CASE(is_refused_if_impossible) {
   BOOST_CHECK_THROW(FreeBody(InertiaTensor<Body>{}, RestingFrame<>{}), InvalidInput);
   const Matrix3<double> needle = Vector3<double>(1, 1, 0).asDiagonal();
   const auto T = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, needle);
@@ -218,7 +218,7 @@ BOOST_AUTO_TEST_CASE(is_refused_when_it_is_none) {
 
 // Of a guide in steady motion gravity and acceleration are made up beforehand, of any other when they
 // are felt.
-BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
+BOOST_AUTO_TEST_CASE(has_the_same_field_on_a_known_guide) {
   const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
   const auto on = [](const auto& guide) {
     return FreeBody(lopsided_body(), guide, UniformGravity<Inertial>{{0.1, 0.2, -9.81}},
@@ -234,7 +234,7 @@ BOOST_AUTO_TEST_CASE(feels_the_same_on_a_guide_whose_motion_is_known) {
 }
 
 // The guide stops as it stands at 2 s; what its origin's acceleration makes felt stays.
-BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
+BOOST_AUTO_TEST_CASE(without_guide_rate_it_is_as_on_one_at_rest) {
   const Vector3<double> a(1, 2, 3);
   const UniformGravity<Inertial> gravity{{0.1, 0.2, -9.81}};
   const RotatingFrame<> guide{{0.3, -0.2, 0.5}, a};
@@ -246,7 +246,7 @@ BOOST_AUTO_TEST_CASE(without_its_guides_turning_is_on_one_at_rest) {
   BOOST_TEST(near(body.without(GuideRate{}, 1, 3).rates(0, y), same.rates(0, y), 10.0, 8));
 }
 
-BOOST_AUTO_TEST_CASE(says_that_a_spring_without_length_has_no_direction) {
+BOOST_AUTO_TEST_CASE(reports_a_spring_without_direction) {
   LoadContext<> s;
   s.inertia = lopsided_body();
   BOOST_CHECK_THROW((void)(Spring<>{{0, 0, 0}, {0, 0, 0}, 10, 0.5}(s)), ComputationFailed);

@@ -70,7 +70,7 @@ const Spring<> spring{{2, 1, 1}, {0.1, 0.2, 0}, 30, 0.5};
 
 BOOST_AUTO_TEST_SUITE(jacobi_integral)
 
-BOOST_AUTO_TEST_CASE(stays_for_a_held_body) {
+BOOST_AUTO_TEST_CASE(is_constant_for_a_fixed_point_body) {
   const auto check = [](const auto& guide, const char* name) {
     const FixedPointBody body(lopsided_body(), {0.3, 0.1, -0.2}, guide, plumb, spring);
     holds(drift(body, {.angular_velocity = {1, -2, 3}}, name, of_body(body)));
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(stays_for_a_held_body) {
   check(SteadyFrame<>{{}, {{{0.7, -0.3, 0.5}, {3, -1, 2}}}}, "Jacobi integral");
 }
 
-BOOST_AUTO_TEST_CASE(stays_for_a_free_body) {
+BOOST_AUTO_TEST_CASE(is_constant_for_a_free_body) {
   const auto check = [](const auto& guide, const char* name) {
     const FreeBody body(lopsided_body(), guide, plumb, spring);
     holds(drift(body, {.velocity = {{{1, -2, 3}, {0.5, 0, 1}}}}, name, of_body(body)));
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(stays_for_a_free_body) {
   check(RotatingFrame<>{{0.7, -0.3, 0.5}, {0.4, 0.2, -1}, {}, {1, 0, 2}}, "Jacobi integral");
 }
 
-BOOST_AUTO_TEST_CASE(is_not_named_where_it_does_not_stay) {
+BOOST_AUTO_TEST_CASE(is_listed_only_if_constant) {
   const auto kept = [](const auto& guide, const auto&... loads) {
     const FixedPointBody body(lopsided_body(), {0.3, 0.1, -0.2}, guide, loads...);
     const auto all = body.conserved(0, {});
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(is_not_named_where_it_does_not_stay) {
   BOOST_TEST(kept([](double t) { return RotatingFrame<>{{0, 0, 1}}(t); }) == 0);
 }
 
-BOOST_AUTO_TEST_CASE(stays_for_a_cardan_gyro) {
+BOOST_AUTO_TEST_CASE(is_constant_for_a_cardan_gyro) {
   const CardanMoments unsymmetric{{0.2, 0.25, 0.3}, {0.1, 0.12, 0.15}, {0.2, 0.2, 0.1}};
   const CardanMoments symmetric{{0.2, 0.2, 0.3}, {0.1, 0.12, 0.15}, {0.2, 0.2, 0.1}};
   const CardanBearings springs{.outer = {.stiffness = 2}, .inner = {.stiffness = 3}};

@@ -51,14 +51,14 @@ BOOST_AUTO_TEST_CASE(have_the_same_gyroscopic_torque) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(know_a_body_of_revolution) {
-  const detail::PackedTensor<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
+BOOST_AUTO_TEST_CASE(recognise_a_body_of_revolution) {
+  const detail::TensorOfFour<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
   BOOST_TEST(T.across() == 2);
   BOOST_TEST(T.along() == 3);
 }
 
 // By four roundings, and neighbours the other way, so that their difference moves by as much.
-BOOST_AUTO_TEST_CASE(move_by_last_digits) {
+BOOST_AUTO_TEST_CASE(are_perturbed_by_ulps) {
   const detail::GeneralTensor T({2, 3, 4, 0, 0, 0});
   const detail::GeneralTensor moved = T.perturbed_by_ulps();
   const auto change = [&](const Vector3<double>& w) {
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(move_by_last_digits) {
   BOOST_TEST(std::abs(change({0, 1, 1}) - 4 * u * (3 + 4)) <= u);
 }
 
-BOOST_AUTO_TEST_CASE(solve) {
+BOOST_AUTO_TEST_CASE(solve_linear_equations) {
   test::Sample sample(3);
   for (int i = 0; i < 100; ++i) {
     const Symmetric3<double> T = random_tensor(sample);

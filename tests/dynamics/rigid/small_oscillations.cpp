@@ -64,7 +64,7 @@ auto engine(M guide, double stiffness, const Vector3<double>& gravity = {0, 0, 9
 BOOST_AUTO_TEST_SUITE(the_first_order_tensor)
 
 // Its error falls with the square of the angles.
-BOOST_DATA_TEST_CASE(leaves_an_error_of_second_order, data::xrange(20u), seed) {
+BOOST_DATA_TEST_CASE(has_an_error_of_second_order, data::xrange(20u), seed) {
   test::Sample sample(seed);
   const Symmetric3<double> T{2, 3, 4.5, 0.3, -0.2, 0.5};
   const Vector3<double> direction = sample.direction();
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearized) {
 }
 
 // A guide whose type says nothing gives them anew each time.
-BOOST_AUTO_TEST_CASE(are_the_same_whatever_the_guides_type_says) {
+BOOST_AUTO_TEST_CASE(do_not_depend_on_the_guides_type) {
   const auto hold = [](const auto& guide, const Vector3<double>& gravity) {
     const auto hidden = [guide](double t) { return guide(t); };
     const auto known = engine(guide, 2e5, gravity);
@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_CASE(are_the_same_whatever_the_guides_type_says) {
   hold(lift, gravity);
 }
 
-BOOST_AUTO_TEST_CASE(say_what_they_are_made_of) {
+BOOST_AUTO_TEST_CASE(list_their_terms) {
   const auto kept = [](const auto& scene) {
     std::string all;
     for (const Term& term : terms(scene)) {

@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(a_pendulum_at_rest_on_a_rolling_ship) {
 }
 
 // The angle has a series in t^2, t^6, t^10, ..: four terms in turn vanish.
-BOOST_AUTO_TEST_CASE(a_body_next_to_its_unstable_rest) {
+BOOST_AUTO_TEST_CASE(a_body_near_its_unstable_rest) {
   const RotatingFrame<> table{.angular_velocity = {0, 1, 1}};
   const BodySystem scene(table, {body({-1, 0, 0}, 1, {0, 0, 0}, {0.78, 1.02, 0.36})});
   for (const double start : {0.0, -1e-20, 1e-14, -1e-9}) {
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(a_body_at_rest_stays_there) {
 }
 
 // Right values: 60 digits of a Taylor series of order 60.
-BOOST_AUTO_TEST_CASE(two_pendulums_let_go_from_the_horizontal) {
+BOOST_AUTO_TEST_CASE(two_pendulums_released_horizontally) {
   auto upper = body({0, 1, 0}, 1, {0, 0, -1}, {0.1, 0.1, 0.1});
   auto lower = upper;
   lower.name = "lower";
@@ -234,7 +234,7 @@ BOOST_AUTO_TEST_CASE(lightly_damped_modes_cost_no_more) {
 
 // A gyrocompass of 2400 rad/s: it nutates at 2446 rad/s, which a damper takes away at 2.5 per second.
 // Each output is 10 s after the one before.
-BOOST_AUTO_TEST_CASE(a_nutation_that_dies_between_outputs_need_not_be_followed) {
+BOOST_AUTO_TEST_CASE(damped_nutations_need_not_be_resolved) {
   auto ring = body({1, 0, 0}, 0.2, {0, 0, 0}, {2e-3, 1e-3, 1e-3});
   auto housing = body({0, 1, 0}, 0.5, {0.005, 0, 0}, {1e-3, 1e-3, 1e-3});
   housing.name = "case";
@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(a_fast_round_wheel_costs_no_more_by_series) {
 }
 
 // The step before the last ended 7e-15 s before the end of the run.
-BOOST_AUTO_TEST_CASE(what_a_rounding_leaves_belongs_to_the_last_step) {
+BOOST_AUTO_TEST_CASE(a_remainder_of_rounding_joins_the_last_step) {
   auto bead = body({-1, 0, 0}, 1, {0, -0.5, 0}, {2, 1.2, 1.2});
   bead.joint.kind = JointKind::prismatic;
   const RotatingFrame<> guide{.angular_velocity = {0, 0, -0.1}};
@@ -285,7 +285,7 @@ BOOST_AUTO_TEST_CASE(what_a_rounding_leaves_belongs_to_the_last_step) {
 }
 
 // x'' = x in a frame that turns at 1 rad/s: exp(1000) m after 1000 s.
-BOOST_AUTO_TEST_CASE(what_grows_beyond_numbers_ends_there) {
+BOOST_AUTO_TEST_CASE(overflow_ends_the_run) {
   auto bead = body({1, 0, 0}, 1, {0, 0, 0}, {1, 1, 1});
   bead.joint.kind = JointKind::prismatic;
   const RotatingFrame<> guide{.angular_velocity = {0, 0, 1}};

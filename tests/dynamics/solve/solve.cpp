@@ -79,7 +79,7 @@ struct Honesty {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(solve_)
+BOOST_AUTO_TEST_SUITE(the_solver)
 
 // Against closed forms: free tops of all kinds and Lagrange's tops, from loose to the tightest.
 void tells_its_error_honestly(Method method) {
@@ -112,15 +112,11 @@ void tells_its_error_honestly(Method method) {
   BOOST_TEST(honesty.greatest <= 3);
   BOOST_TEST(honesty.promises_kept);
 }
-BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_stages) {
-  tells_its_error_honestly(Method::verner98);
-}
-BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
-  tells_its_error_honestly(Method::taylor);
-}
+BOOST_AUTO_TEST_CASE(reports_its_error_by_stages) { tells_its_error_honestly(Method::verner98); }
+BOOST_AUTO_TEST_CASE(reports_its_error_by_series) { tells_its_error_honestly(Method::taylor); }
 
 // Bodies on guides that move steadily know their series; held against steps that do not.
-BOOST_AUTO_TEST_CASE(takes_the_series_where_a_scene_knows_it) {
+BOOST_AUTO_TEST_CASE(uses_the_series_if_the_scene_has_one) {
   const Matrix3<double> Theta = Vector3<double>(0.25, 0.27, 0.06).asDiagonal();
   const FixedPointBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1},
                             RotatingFrame<>{{0.1, -0.3, 0.2}},
@@ -176,7 +172,7 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
 // Where the error comes out too great, the finer run takes over: a long way costs little more than
 // the pair that stands, 3.07 times the answer, and 0.76 to know what rounding grows to in both. This
 // top errs by some 30 times what a step may.
-BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
+BOOST_AUTO_TEST_CASE(continues_from_the_finer_run) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
   const Vector3<double> w(0, 0, 100);
   const auto run = solve(top, {tilted, w},
@@ -189,7 +185,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_what_it_has) {
 }
 
 // Near the separatrix an error grows by 1e3 and more; the promise is on the whole run all the same.
-BOOST_AUTO_TEST_CASE(keeps_its_promise_where_errors_grow) {
+BOOST_AUTO_TEST_CASE(keeps_its_tolerance_if_errors_grow) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const EulerTop top({1, 2, 3});
   const auto run =
@@ -206,7 +202,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_promise_where_errors_grow) {
 
 // The same by the closed form, which is what is taken unless steps are asked for: no evaluations, and
 // the last digits.
-BOOST_AUTO_TEST_CASE(takes_the_closed_form_where_there_is_one) {
+BOOST_AUTO_TEST_CASE(uses_the_closed_form_if_it_exists) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const auto check = [](const EulerTop& top, const Vector3<double>& start, const auto& truth) {
     const auto run =
@@ -229,7 +225,7 @@ BOOST_AUTO_TEST_CASE(takes_the_closed_form_where_there_is_one) {
 }
 
 // The estimates of closed forms against Taylor series in 50 digits, over up to a thousand turns.
-BOOST_AUTO_TEST_CASE(tells_how_far_closed_forms_are_off) {
+BOOST_AUTO_TEST_CASE(reports_the_error_of_closed_forms) {
   Honesty honesty;
   for (unsigned seed = 0; seed < 24; ++seed) {
     test::Sample sample(seed);
@@ -259,7 +255,7 @@ BOOST_AUTO_TEST_CASE(tells_how_far_closed_forms_are_off) {
 }
 
 // Where double precision ends, the best there is comes back, and says that it is not what was asked.
-BOOST_AUTO_TEST_CASE(says_when_a_tolerance_cannot_be_kept) {
+BOOST_AUTO_TEST_CASE(reports_a_missed_tolerance) {
   const Vector3<double> w(1e-5, 2, 1e-5);
   const EulerTop top({1, 2, 3});
   const auto run =
@@ -272,7 +268,7 @@ BOOST_AUTO_TEST_CASE(says_when_a_tolerance_cannot_be_kept) {
   BOOST_TEST(run.states.size() == 20U);
 }
 
-BOOST_AUTO_TEST_CASE(watches_what_is_conserved) {
+BOOST_AUTO_TEST_CASE(monitors_invariants) {
   const EulerTop kovalevskaya({2, 2, 1}, {0.7, -0.3, 0});
   const auto run = solve(kovalevskaya, {tilted, {0.5, 1, 2}}, {.output_times = every(1, 20)});
   std::string names;
@@ -318,7 +314,7 @@ BOOST_AUTO_TEST_CASE(runs_backwards_too) {
   BOOST_TEST((back.states.back().angular_velocity - Vector3<double>(1, 2, 3)).norm() < 1e-11);
 }
 
-BOOST_AUTO_TEST_CASE(stops_when_told_and_keeps_what_it_has) {
+BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_cancelled) {
   const EulerTop top({1, 2, 2.5});
   SolveOptions options{.output_times = every(1, 100)};
   options.progress = [](double t) { return t < 30; };
@@ -329,7 +325,7 @@ BOOST_AUTO_TEST_CASE(stops_when_told_and_keeps_what_it_has) {
 }
 
 // A load that has no value after 3 s.
-BOOST_AUTO_TEST_CASE(tells_where_it_failed_and_keeps_what_it_has) {
+BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_it_fails) {
   const auto broken = [](const LoadContext<>& s) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     return Force<Body>{{{0, 0, 0}, {s.t > 3.25 ? none : 0, 0, 0}}};
@@ -368,7 +364,7 @@ BOOST_AUTO_TEST_CASE(splits_fast_tops) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(gives_way_where_a_field_proves_stiff) {
+BOOST_AUTO_TEST_CASE(changes_the_method_for_a_stiff_field) {
   const CardanMoments moments{
       .rotor = {5e-4, 5e-4, 8e-4}, .inner_ring = {2e-4, 3e-4, 2.5e-4}, .outer_ring = {4e-4, 1, 1}};
   double mild = 0;
@@ -412,7 +408,7 @@ struct Follower {
   }
 };
 
-BOOST_AUTO_TEST_CASE(gives_way_where_a_field_becomes_stiff_on_the_way) {
+BOOST_AUTO_TEST_CASE(changes_the_method_on_the_way) {
   const auto found = solve(Follower{}, {1.5}, {.output_times = every(0.5, 5), .tolerance = 1e-9});
   BOOST_TEST(found.report.method == "radau13");
   BOOST_TEST(found.report.tolerance_kept);
@@ -445,7 +441,7 @@ struct Walled {
 
 // The runs that tell what rounding grows to err by more than the answer, and may go where it does not:
 // what is thrown there is no fault of the answer.
-BOOST_AUTO_TEST_CASE(does_without_runs_that_go_astray) {
+BOOST_AUTO_TEST_CASE(tolerates_failing_companion_runs) {
   const Walled scene{.wall = 1 + 1e-4};
   const auto found = solve(scene, {1, 0}, {.output_times = {5, 10}, .tolerance = 1e-11});
   BOOST_TEST(scene.struck == 1);
@@ -457,7 +453,7 @@ BOOST_AUTO_TEST_CASE(does_without_runs_that_go_astray) {
 
 // Moments of which one is 1e-5 of the others leave the rates fewer digits than the state has: the
 // run beside begins with a body that is last digits another.
-BOOST_AUTO_TEST_CASE(knows_what_last_digits_of_a_body_do) {
+BOOST_AUTO_TEST_CASE(reports_the_effect_of_rounded_inertia) {
   const Vector3<double> moments(1, 1, 1e-5), w(1, 2, 3);
   const Matrix3<double> Theta = moments.asDiagonal();
   const FixedPointBody body(InertiaTensor<Body>::about_origin(1, {0, 0, 0}, Theta), {0, 0, 0},
@@ -471,7 +467,7 @@ BOOST_AUTO_TEST_CASE(knows_what_last_digits_of_a_body_do) {
 }
 
 // Undamped, the same bearing is an oscillation: it is resolved, not damped.
-BOOST_AUTO_TEST_CASE(resolves_what_is_fast_but_not_damped) {
+BOOST_AUTO_TEST_CASE(resolves_undamped_fast_motions) {
   const CardanMoments moments{
       .rotor = {5e-4, 5e-4, 8e-4}, .inner_ring = {2e-4, 3e-4, 2.5e-4}, .outer_ring = {4e-4, 1, 1}};
   const CardanBearings bearings{.inner = {1e4, 0, 0.3}};
@@ -489,7 +485,7 @@ BOOST_AUTO_TEST_CASE(resolves_what_is_fast_but_not_damped) {
 
 // In a bearing that is hardly stiff the last digits of implicit steps are worse than those of explicit
 // ones, which stability makes dearer, but not by much.
-BOOST_AUTO_TEST_CASE(comes_nearer_to_a_missed_tolerance_by_explicit_steps) {
+BOOST_AUTO_TEST_CASE(prefers_explicit_steps_for_last_digits) {
   const CardanMoments moments{.rotor = {5e-4, 5e-4, 8e-4},
                               .inner_ring = {2e-4, 3e-4, 2.5e-4},
                               .outer_ring = {4e-4, 4e-4, 4e-4}};
@@ -505,7 +501,7 @@ BOOST_AUTO_TEST_CASE(comes_nearer_to_a_missed_tolerance_by_explicit_steps) {
   BOOST_TEST(found(1e9).method == "radau13");
 }
 
-BOOST_AUTO_TEST_CASE(takes_fixed_steps_when_asked) {
+BOOST_AUTO_TEST_CASE(takes_fixed_steps_on_request) {
   const EulerTop top({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
   const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
@@ -517,7 +513,7 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_when_asked) {
 }
 
 // All steps end at the outputs, and between near ones two runs might be the same.
-BOOST_AUTO_TEST_CASE(tells_the_error_of_fixed_steps_between_near_outputs) {
+BOOST_AUTO_TEST_CASE(reports_fixed_step_errors_at_near_outputs) {
   const double A = 3e-4, C = 1e-4, k = 0.04905;
   const EulerTop top({A, A, C}, {0, 0, k});
   const Vector3<double> w(50, 0, 40);
@@ -531,7 +527,7 @@ BOOST_AUTO_TEST_CASE(tells_the_error_of_fixed_steps_between_near_outputs) {
 }
 
 // One output a billionth of the run before another: as many steps as each interval needs.
-BOOST_AUTO_TEST_CASE(takes_fixed_steps_between_outputs_of_any_distance) {
+BOOST_AUTO_TEST_CASE(takes_fixed_steps_to_uneven_outputs) {
   const EulerTop top({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
   const exact::FreeTop truth(top.moments(), start.angular_velocity, start.attitude);
@@ -544,7 +540,7 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_between_outputs_of_any_distance) {
 }
 
 // 1e-14 beside the separatrix steps of any length round the same digits away.
-BOOST_AUTO_TEST_CASE(knows_what_last_digits_grow_to) {
+BOOST_AUTO_TEST_CASE(reports_the_growth_of_rounding) {
   const Vector3<double> w(std::sqrt(2.0) * (1 + 1e-14), 1.5, 1);
   const EulerTop top({2, 3, 4});
   const exact::FreeTop truth(top.moments(), w, tilted);
@@ -561,7 +557,7 @@ BOOST_AUTO_TEST_CASE(knows_what_last_digits_grow_to) {
 // Rings without mass 1e-8 rad from gimbal lock, where the last digit of beta is worth 1e-8 of the
 // rate of alpha: by chance alone, pairs of runs would promise in a third of all cases what neither
 // of them keeps.
-BOOST_AUTO_TEST_CASE(takes_no_chance_agreement_of_noise_for_accuracy) {
+BOOST_AUTO_TEST_CASE(detects_chance_agreement_near_gimbal_lock) {
   using Gyro = CardanGyro<RestingFrame<>>;
   using LongVector = Eigen::Matrix<long double, 6, 1>;
   const Gyro gyro({Vector3<double>(5e-4, 5e-4, 8e-4)}, {}, {});
@@ -598,7 +594,7 @@ BOOST_AUTO_TEST_CASE(takes_no_chance_agreement_of_noise_for_accuracy) {
 
 // Heavy tops without symmetry tumble irregularly: what steps err by grows by 1e3 and more, they have to
 // be as fine as rounding, and two runs may agree by chance: 40 of 800 would err by more than they tell.
-BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
+BOOST_AUTO_TEST_CASE(reports_its_error_in_chaotic_motion) {
   using LongVector = Eigen::Matrix<long double, 7, 1>;
   const std::vector<double> times = every(7, 70);
   int runs = 0;
@@ -659,7 +655,7 @@ BOOST_AUTO_TEST_CASE(tells_its_error_where_motion_is_irregular) {
 
 // Tops that turn about their middle axis but for 1e-1 to 1e-6: rounding has grown to some 1e-10, and a
 // tolerance of 1e-14 is out of reach. Two runs agree by chance in 20 of 159 cases.
-BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
+BOOST_AUTO_TEST_CASE(reports_grown_rounding) {
   test::Sample sample(7);
   int runs = 0;
   int beyond = 0;
@@ -693,7 +689,7 @@ BOOST_AUTO_TEST_CASE(tells_what_rounding_has_grown_to) {
 // Bodies that turn about their middle axis but for 1e-4: what rounding grows to, some 1e-8, is more than
 // what steps err by, and about the tolerance. Were it not looked for, 29 of 312 promises would be
 // broken, for two runs agree by chance.
-BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
+BOOST_AUTO_TEST_CASE(keeps_its_tolerance_if_rounding_grows) {
   const EulerTop top({1, 2, 3});
   const FixedPointBody body(
       InertiaTensor<Body>::about_origin(1, Vector3<double>::Zero(),
@@ -734,7 +730,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_promise_where_rounding_grows_more_than_errors) {
 
 // A top that does not nutate, though it could: of 3000 rad/s, which nothing but stability has the steps
 // follow. Cheap ones that are shaken go ways of their own there, 1e5 times too far for rounding.
-BOOST_AUTO_TEST_CASE(takes_no_noise_of_cheap_steps_for_growth) {
+BOOST_AUTO_TEST_CASE(ignores_instability_of_coarse_steps) {
   const AxisymmetricBody top(0.1, 0.05, 3e-4, 1e-4, {0, 0, 0}, RestingFrame<>{},
                              UniformGravity<Guide>{{0, 0, -9.81}});
   const exact::LagrangeTop truth(3e-4, 1e-4, 0.1 * 9.81 * 0.05, {0, 0, 3000}, tilted);
@@ -751,7 +747,7 @@ BOOST_AUTO_TEST_CASE(takes_no_noise_of_cheap_steps_for_growth) {
 
 // Ten times finer steps err by a tenth. By much more it is rounding, and by much less rounding too, of
 // which two runs agree by chance; of an error as great as the motion nothing is known.
-BOOST_AUTO_TEST_CASE(takes_an_error_that_does_not_fall_as_steps_do_for_rounding) {
+BOOST_AUTO_TEST_CASE(recognises_rounding_by_its_order) {
   const SolveOptions options{.output_times = {1}, .tolerance = 1e-8};
   const detail::AdaptiveRuns runs(options);
   const auto judged = [&](double error, double now) {
@@ -767,7 +763,7 @@ BOOST_AUTO_TEST_CASE(takes_an_error_that_does_not_fall_as_steps_do_for_rounding)
 
 // A tolerance of 1e-6 is about what rounding has grown to. Pairs that are tried until two agree do so in
 // the end: 24 of 50 runs erred by more than they told, by up to 24 times as much.
-BOOST_AUTO_TEST_CASE(does_not_try_until_two_agree) {
+BOOST_AUTO_TEST_CASE(does_not_repeat_until_runs_agree) {
   const EulerTop top({1, 2, 3});
   int beyond = 0;
   double greatest = 0;
@@ -789,7 +785,7 @@ BOOST_AUTO_TEST_CASE(does_not_try_until_two_agree) {
 
 // What each step errs by adds up with the square of time, what is rounded hardly does: at 4e-16 a step
 // this top erred by 1.4e-10 in the end.
-BOOST_AUTO_TEST_CASE(goes_below_rounding_where_the_way_is_long) {
+BOOST_AUTO_TEST_CASE(refines_steps_below_rounding_in_long_runs) {
   const Vector3<double> w(0.2, 0.1, 5);
   const auto run =
       solve(EulerTop({1, 1, 0.5}, {0, 0, 1}), {tilted, w},
@@ -803,7 +799,7 @@ BOOST_AUTO_TEST_CASE(goes_below_rounding_where_the_way_is_long) {
 
 // Over many steps the start of the run beside is moved by what rounding takes; what that grows to had
 // hidden half of what Radau's steps err by at their finest: 6e-12 after 3000 rad, told as 3e-12.
-BOOST_AUTO_TEST_CASE(tells_what_steps_err_by_where_rounding_does_as_much) {
+BOOST_AUTO_TEST_CASE(separates_truncation_from_rounding) {
   const Vector3<double> w(1, -2, 300);
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
   std::vector<double> times;
@@ -818,7 +814,7 @@ BOOST_AUTO_TEST_CASE(tells_what_steps_err_by_where_rounding_does_as_much) {
 }
 
 // Errors are relative to sizes, and the size of a quaternion means nothing.
-BOOST_AUTO_TEST_CASE(steps_attitudes_of_any_norm) {
+BOOST_AUTO_TEST_CASE(accepts_attitudes_of_any_norm) {
   const EulerTop top({1, 2, 3});
   const Vector3<double> w(1, 2, 3);
   const exact::FreeTop truth(top.moments(), w, tilted);
@@ -831,7 +827,7 @@ BOOST_AUTO_TEST_CASE(steps_attitudes_of_any_norm) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(spends_no_more_than_it_may) {
+BOOST_AUTO_TEST_CASE(keeps_the_limit_of_evaluations) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.05});
   for (const Method method : {Method::splitting, Method::gauss16, Method::verner98}) {
     const auto run =
@@ -843,7 +839,7 @@ BOOST_AUTO_TEST_CASE(spends_no_more_than_it_may) {
 }
 
 // A start whose squares leave the range of double.
-BOOST_AUTO_TEST_CASE(measures_attitudes_of_any_norm) {
+BOOST_AUTO_TEST_CASE(normalises_attitudes_of_extreme_norm) {
   detail::ErrorMeasure<EulerTop> distance(1e-3);
   const EulerTop::State a{Eigen::Quaterniond(1, 0, 0, 0), {1, 2, 3}};
   const EulerTop::State b{Eigen::Quaterniond(std::cos(0.5), std::sin(0.5), 0, 0), {1, 2, 3}};
@@ -854,7 +850,7 @@ BOOST_AUTO_TEST_CASE(measures_attitudes_of_any_norm) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_methods_that_do_not_fit) {
+BOOST_AUTO_TEST_CASE(refuses_unsuitable_methods) {
   const EulerTop free({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
   BOOST_CHECK_THROW((void)solve(free, start, {.output_times = {1}, .method = Method::splitting}),
@@ -878,7 +874,7 @@ BOOST_AUTO_TEST_CASE(refuses_methods_that_do_not_fit) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_a_task_that_is_none) {
+BOOST_AUTO_TEST_CASE(refuses_invalid_options) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const EulerTop top({1, 2, 2.5});
   const auto with = [&](const SolveOptions& options) {

@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(solves_trees_of_bodies) {
 }
 
 // A tree in which nothing can move has states without a number, which no method minds.
-BOOST_AUTO_TEST_CASE(solves_trees_that_stand_still) {
+BOOST_AUTO_TEST_CASE(solves_trees_without_motion) {
   const InertiaTensor<Body> block{{2, {0, 0, -1}, {2.6, 2.6, 0.1}}};
   const BodySystem system(RestingFrame<>{}, {{.name = "block", .inertia = block}},
                           UniformGravity<Guide>{{0, 0, -9.81}});
@@ -61,7 +61,7 @@ BOOST_AUTO_TEST_CASE(solves_trees_that_stand_still) {
 }
 
 // The Cardan gyro with the stiff bearing once more, as three bodies.
-BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
+BOOST_AUTO_TEST_CASE(changes_the_method_for_stiff_trees) {
   const Vector3<double> rotor(5e-4, 5e-4, 8e-4), inner(2e-4, 3e-4, 2.5e-4), outer(4e-4, 1, 1);
   const auto body = [](const char* name, const char* parent, const Vector3<double>& axis,
                        const Vector3<double>& moments, const JointForce& force) {
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(gives_way_in_stiff_trees_too) {
 }
 
 // Random trees against finer steps of another kind. The error that is told is that of the steps.
-BOOST_AUTO_TEST_CASE(tells_its_error_honestly_by_series) {
+BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
   using Scene = BodySystem<RestingFrame<>>;
   int runs = 0;
   int within = 0;
@@ -171,7 +171,7 @@ const Gravity weight = UniformGravity<Guide>{{0, 0, -9.81}};
 
 // Against steps, which know nothing of it. Steps take the tensor about an axis and the arm as rounded:
 // 1e-13 are 100 such roundings of the angles turned through.
-BOOST_AUTO_TEST_CASE(knows_a_pendulum_and_a_top_among_systems) {
+BOOST_AUTO_TEST_CASE(recognises_pendulums_and_tops) {
   test::Sample sample(11);
   const auto vector = [&sample] {
     return Vector3<double>(sample.uniform(0.3, 1.5) * sample.direction());
@@ -227,7 +227,7 @@ BOOST_AUTO_TEST_CASE(knows_a_pendulum_and_a_top_among_systems) {
   BOOST_TEST(worst <= 1e-13);
 }
 
-BOOST_AUTO_TEST_CASE(leaves_to_steps_what_is_more_than_that) {
+BOOST_AUTO_TEST_CASE(uses_steps_for_other_systems) {
   const auto by_steps = [](BodyDescription body, auto guide, const Gravity& gravity = weight) {
     const BodySystem system(std::move(guide), {std::move(body)}, gravity);
     auto start = system.rest();
@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(leaves_to_steps_what_is_more_than_that) {
   BOOST_TEST(solve(two, two.rest(), {.output_times = {0.1}}).report.all_evaluations > 0);
 }
 
-BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_as_long_as_one_likes) {
+BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_any_time) {
   const BodySystem system(RestingFrame<>{},
                           {one(JointKind::revolute, {{2, {0, 0, -1}, {0.6, 0.6, 0.1}}})}, weight);
   auto start = system.rest();
@@ -286,7 +286,7 @@ BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_as_long_as_one_likes) {
 }
 
 // From whichever output, of whichever attempt: the same states and the same report.
-BOOST_AUTO_TEST_CASE(go_on_from_a_bookmark_to_the_last_bit) {
+BOOST_AUTO_TEST_CASE(continues_from_a_checkpoint_exactly) {
   const InertiaTensor<Body> bob{{2, {0, 0, -1}, {0.6, 0.6, 0.1}}};
   const BodyDescription swinging{
       .name = "rod", .joint = {.kind = JointKind::revolute, .axis = {1, 0, 0}}, .inertia = bob};

@@ -32,10 +32,10 @@ void set(const std::vector<double>& numbers) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(a_bookmark)
+BOOST_AUTO_TEST_SUITE(a_checkpoint)
 
 // Sizes first, then what there is of numbers; other sizes are those of another run.
-BOOST_AUTO_TEST_CASE(sets_what_it_took_down_and_refuses_other_shapes) {
+BOOST_AUTO_TEST_CASE(restores_its_numbers_and_refuses_others) {
   Checkpoint taken;
   Numbers from;
   from.pass(taken);

@@ -33,7 +33,7 @@ bool starts_with(const Error& e, const std::string& words) {
 BOOST_AUTO_TEST_SUITE(cvode_steps)
 
 // bdf, of order 5 at most, is not made for the last line.
-BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for_there_and_back) {
+BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     for (const CvodeMethod method : methods) {
       if (method == CvodeMethod::bdf && tolerance < 1e-8) continue;
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for_there_and_back) {
 }
 
 // y' = -k (y - cos t) - sin t leads back to cos t. Explicit steps are limited by stability to 1/k.
-BOOST_AUTO_TEST_CASE(take_no_notice_of_stiffness_by_bdf) {
+BOOST_AUTO_TEST_CASE(ignore_stiffness_by_bdf) {
   for (const double k : {1e3, 1e6, 1e9}) {
     const auto field = [k](const auto& t, const auto& y) {
       using std::cos, std::sin;
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(take_no_notice_of_stiffness_by_bdf) {
 }
 
 // y'' + k y' + k y = 0: the Jacobian is not symmetric, and the transposed one would not do.
-BOOST_AUTO_TEST_CASE(follow_the_slow_one_of_two_stiffly_coupled) {
+BOOST_AUTO_TEST_CASE(follow_the_slow_part_of_a_stiff_pair) {
   constexpr double k = 1e6;
   const auto field = [](const auto& /*t*/, const auto& y) {
     using S = typename std::decay_t<decltype(y)>::Scalar;
@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(follow_the_slow_one_of_two_stiffly_coupled) {
   BOOST_TEST(steps.effort().evaluations < 2000);
 }
 
-BOOST_AUTO_TEST_CASE(tell_the_state_between_their_ends_and_go_on_as_if_nobody_had_asked) {
+BOOST_AUTO_TEST_CASE(give_output_that_does_not_change_the_steps) {
   for (const CvodeMethod method : methods) {
     CvodeSteps asked(method, circle, 0.0, State<2>(1, 0), {.relative = 1e-8});
     CvodeSteps alone(method, circle, 0.0, State<2>(1, 0), {.relative = 1e-8});
@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(tell_the_state_between_their_ends_and_go_on_as_if_nobody_ha
   }
 }
 
-BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
+BOOST_AUTO_TEST_CASE(keep_the_last_state_at_the_field_edge) {
   const auto ends = [](double t, const State<2>& y) {
     return t > 1 ? State<2>(not_a_number, not_a_number) : circle(t, y);
   };
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(pass_on_what_the_field_throws) {
+BOOST_AUTO_TEST_CASE(pass_on_exceptions_of_the_field) {
   const auto field = [](double t, const State<2>& y) {
     if (t > 1) throw std::out_of_range("beyond the table");
     return circle(t, y);
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(pass_on_what_the_field_throws) {
 }
 
 // A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
-BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
+BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   const auto field = [](double, const State<4>& y) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
   };
@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
   BOOST_TEST(error(std::array{4}) > 1e-5);
 }
 
-BOOST_AUTO_TEST_CASE(take_fields_that_write_in_place_of_a_size_known_when_they_run) {
+BOOST_AUTO_TEST_CASE(accept_fields_of_dynamic_size) {
   const auto field = [](double, const Eigen::VectorXd& y, Eigen::VectorXd& rate) { rate = -y; };
   for (const CvodeMethod method : methods) {
     CvodeSteps steps(method, field, 0.0, Eigen::VectorXd(Eigen::VectorXd::Ones(3)),
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(take_fields_that_write_in_place_of_a_size_known_when_they_r
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_accuracies) {
   const auto with = [](const Accuracy& accuracy) {
     CvodeSteps steps(CvodeMethod::adams, circle, 0.0, State<2>(1, 0), accuracy);
     return steps.t();

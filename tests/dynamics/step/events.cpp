@@ -26,7 +26,7 @@ auto turning() { return ExplicitRungeKutta(circle, 0.0, State(1, 0)); }
 
 BOOST_AUTO_TEST_SUITE(dense_output)
 
-BOOST_AUTO_TEST_CASE(is_of_full_order_within_a_step) {
+BOOST_AUTO_TEST_CASE(has_full_order_within_a_step) {
   ExplicitRungeKutta steps(circle, 0.0, State(1, 0), {.relative = 1e-12});
   double worst = 0;
   while (steps.t() < 10) {
@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(is_of_full_order_within_a_step) {
 }
 
 // A million outputs do not shorten the steps.
-BOOST_AUTO_TEST_CASE(does_not_disturb_the_steps) {
+BOOST_AUTO_TEST_CASE(does_not_change_the_steps) {
   auto alone = turning();
   alone.advance_to(100);
   auto watched = turning();
@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(jumps_of_the_field)
 
 // A thrust of 1 from t = 1 on: y = (t - 1)^2 / 2. Told of the jump, the steps lose nothing by it.
-BOOST_AUTO_TEST_CASE(cost_nothing_when_announced) {
+BOOST_AUTO_TEST_CASE(cost_nothing_if_declared) {
   const auto thrust = [](double t, const State& y) { return State(y[1], t < 1 ? 0 : std::cos(t)); };
   const auto run = [&](bool told) {
     ExplicitRungeKutta steps(thrust, 0.0, State(0, 0), {.relative = 1e-12});
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(are_not_stepped_over) {
   BOOST_TEST(near(steps.y()[1], 1 + 1000 * (50.001 - 50), 2.0, 8));
 }
 
-BOOST_AUTO_TEST_CASE(are_stopped_at_on_the_way_back) {
+BOOST_AUTO_TEST_CASE(are_hit_backwards_too) {
   const auto thrust = [](double t, const State& y) { return State(y[1], t <= 1 ? 0 : 1); };
   ExplicitRungeKutta steps(thrust, 3.0, State(2, 2));
   steps.stop_at({1});
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(are_found_to_the_last_places) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(count_in_the_direction_asked_for) {
+BOOST_AUTO_TEST_CASE(count_in_the_given_direction) {
   auto steps = turning();
   const auto height = [](double, const State& y) { return y[1]; };
   BOOST_TEST(near(*advance_to_event(steps, height, 100, Crossing::rising), 2 * pi, 7.0, 64));
@@ -151,13 +151,13 @@ BOOST_AUTO_TEST_CASE(are_found_backwards) {
   BOOST_TEST(near(*advance_to_event(steps, height, 0), 3 * pi, 10.0, 64));
 }
 
-BOOST_AUTO_TEST_CASE(that_touch_without_crossing_are_none) {
+BOOST_AUTO_TEST_CASE(do_not_include_touching_zeros) {
   auto steps = turning();
   const auto square = [](double, const State& y) { return y[1] * y[1]; };
   BOOST_TEST(!advance_to_event(steps, square, 10).has_value());
 }
 
-BOOST_AUTO_TEST_CASE(are_refused_where_their_function_is_no_number) {
+BOOST_AUTO_TEST_CASE(are_refused_if_the_function_is_not_finite) {
   auto steps = turning();
   const auto ends = [](double t, const State& y) { return t > 1 ? std::sqrt(-1.0) : y[1] + 2; };
   BOOST_CHECK_THROW((void)advance_to_event(steps, ends, 10), ComputationFailed);

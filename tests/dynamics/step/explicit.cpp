@@ -40,7 +40,7 @@ Turn turn_of_a_circle(double tolerance) {
 
 BOOST_AUTO_TEST_SUITE(verners_coefficients)
 
-BOOST_AUTO_TEST_CASE(have_rows_that_add_up_to_the_nodes) {
+BOOST_AUTO_TEST_CASE(have_rows_that_sum_to_the_nodes) {
   for (std::size_t i = 0; i < Verner98::stages; ++i) {
     long double sum = 0;
     for (const long double a : Verner98::a[i]) sum += a;
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time_within_the_step) {
 
 // A nonlinear field at fixed steps (a wide-open tolerance lets every step stand): halving the step
 // divides the error by 2^9.
-BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_of_the_step) {
+BOOST_AUTO_TEST_CASE(converge_with_order_nine) {
   using Wide = Eigen::Matrix<long double, 1, 1>;
   const auto error = [](int n) {
     const auto riccati = [](long double t, const Wide& y) {
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_of_the_step) {
 }
 
 // The same within the steps: no worse than at their ends.
-BOOST_AUTO_TEST_CASE(converge_with_the_ninth_power_within_steps_too) {
+BOOST_AUTO_TEST_CASE(converge_with_order_nine_within_steps) {
   using Wide = Eigen::Matrix<long double, 1, 1>;
   const auto riccati = [](long double t, const Wide& y) {
     return Wide(1 + y[0] * y[0] * std::cos(t));
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(explicit_steps)
 
-BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for) {
+BOOST_AUTO_TEST_CASE(keep_the_accuracy) {
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
     const Turn turn = turn_of_a_circle(tolerance);
     BOOST_TEST_MESSAGE(tolerance << ": " << turn.error << " for " << turn.evaluations);
@@ -168,7 +168,7 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_asked_for) {
 // A fast angle on which nothing depends runs on beside a circle. A step of Euler's for every
 // hundredfold of its rate, and as rounding of so large a change lets steps grow more slowly, a step
 // or two of 16 evaluations: 165 in place of 1442 for steps that begin as small as the rate is great.
-BOOST_AUTO_TEST_CASE(begin_as_the_motion_bends_not_as_an_angle_runs) {
+BOOST_AUTO_TEST_CASE(start_by_curvature_not_by_a_running_angle) {
   const auto evaluations = [](double rate) {
     const auto field = [rate](double, const State<3>& y) { return State<3>(-y[1], y[0], rate); };
     ExplicitRungeKutta steps(field, 0.0, State<3>(1, 0, 0), {.relative = 1e-12},
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(begin_as_the_motion_bends_not_as_an_angle_runs) {
 }
 
 // From rest, or where a step of Euler's leaves the field: sqrt(1 - y^2) has no value beyond y = 1.
-BOOST_AUTO_TEST_CASE(begin_where_a_step_ahead_tells_nothing) {
+BOOST_AUTO_TEST_CASE(start_at_rest_and_at_the_field_edge) {
   const auto from_rest = [](double t, const State<1>& /*y*/) { return State<1>(t * t); };
   ExplicitRungeKutta resting(from_rest, 0.0, State<1>(0.0), {.relative = 1e-12});
   BOOST_TEST(near(resting.advance_to(3)[0], 9.0, 9.0, 64));
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(go_there_and_back) {
   BOOST_TEST(near(steps.y()[1], -std::sin(3), 1.0, 2000));
 }
 
-BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
+BOOST_AUTO_TEST_CASE(stay_if_the_end_is_the_start) {
   ExplicitRungeKutta steps(circle, 5.0, State<2>(1, 0));
   BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
   steps.step_towards(5);
@@ -243,7 +243,7 @@ BOOST_AUTO_TEST_CASE(do_not_drift) {
 }
 
 // sqrt(1 - y) has no value beyond y = 1: a step that lands there is taken back, not passed on.
-BOOST_AUTO_TEST_CASE(take_back_a_step_that_leaves_the_field) {
+BOOST_AUTO_TEST_CASE(retry_a_step_that_leaves_the_field) {
   const auto field = [](double, const State<1>& y) { return State<1>(-std::sqrt(y[0])); };
   ExplicitRungeKutta steps(field, 0.0, State<1>(1.0), {.relative = 1e-10});
   steps.advance_to(1.8);  // y = (1 - t/2)^2
@@ -251,7 +251,7 @@ BOOST_AUTO_TEST_CASE(take_back_a_step_that_leaves_the_field) {
 }
 
 // The same of a field that throws there; where it does so at every step, however short, that is told.
-BOOST_AUTO_TEST_CASE(take_back_a_step_that_the_field_refuses) {
+BOOST_AUTO_TEST_CASE(retry_a_step_at_which_the_field_throws) {
   const auto field = [](double, const State<1>& y) {
     if (y[0] < 0) throw ComputationFailed("no root below 0");
     return State<1>(-std::sqrt(y[0]));
@@ -271,7 +271,7 @@ BOOST_AUTO_TEST_CASE(take_back_a_step_that_the_field_refuses) {
   BOOST_TEST(std::abs(last.t() - 1) < 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
+BOOST_AUTO_TEST_CASE(keep_the_last_state_at_the_field_edge) {
   const auto field = [](double t, const State<1>& y) {
     return t > 1 ? State<1>(std::numeric_limits<double>::quiet_NaN()) : State<1>(y);
   };
@@ -284,7 +284,7 @@ BOOST_AUTO_TEST_CASE(stop_where_the_field_ends_and_keep_the_last_state) {
   BOOST_TEST(steps.effort().evaluations < 1e4);
 }
 
-BOOST_AUTO_TEST_CASE(tell_at_once_of_a_field_that_is_no_number) {
+BOOST_AUTO_TEST_CASE(refuse_a_field_that_is_not_finite) {
   const auto field = [](double, const State<1>&) {
     return State<1>(std::numeric_limits<double>::quiet_NaN());
   };
@@ -296,7 +296,7 @@ BOOST_AUTO_TEST_CASE(tell_at_once_of_a_field_that_is_no_number) {
 }
 
 // A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
-BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
+BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   const auto field = [](double, const State<4>& y) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
   };
@@ -306,7 +306,7 @@ BOOST_AUTO_TEST_CASE(measure_each_block_by_its_own_size) {
   BOOST_TEST(near(steps.y()[2], 1e-9, 1e-9, 1e5));
 }
 
-BOOST_AUTO_TEST_CASE(tell_a_stiff_field_from_a_fast_one) {
+BOOST_AUTO_TEST_CASE(distinguish_stiff_from_fast_fields) {
   const auto with = [](double spring, double damping, double accuracy) {
     const auto field = [=](double, const State<2>& y) {
       return State<2>(y[1], -spring * y[0] - damping * y[1]);
@@ -342,7 +342,7 @@ BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
 }
 
 // 10 digits of the change in each step, up or down, are a random walk; what rests is left at rest.
-BOOST_AUTO_TEST_CASE(go_off_by_the_digits_that_they_are_shaken_by) {
+BOOST_AUTO_TEST_CASE(deviate_by_their_perturbation) {
   const auto made = [](double digits) {
     const auto field = [](double, const Eigen::Vector3d& y) {
       return Eigen::Vector3d(y[1], -y[0], y[2]);
@@ -358,7 +358,7 @@ BOOST_AUTO_TEST_CASE(go_off_by_the_digits_that_they_are_shaken_by) {
   BOOST_TEST(made(10).advance_to(500)[2] == 0);
 }
 
-BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_accuracies) {
   const auto with = [](const Accuracy& accuracy) {
     return ExplicitRungeKutta(circle, 0.0, State<2>(1, 0), accuracy);
   };
@@ -432,7 +432,7 @@ auto steps_by_value() {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(give_what_those_of_fixed_size_give) {
+BOOST_AUTO_TEST_CASE(agree_with_steps_of_fixed_size) {
   auto fixed = fixed_steps();
   auto in_place = steps_in_place();
   auto by_value = steps_by_value();
@@ -469,7 +469,7 @@ BOOST_AUTO_TEST_CASE(give_what_those_of_fixed_size_give) {
   BOOST_TEST((in_place.y() - start()).norm() < 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(write_a_fixed_state_in_place_too) {
+BOOST_AUTO_TEST_CASE(accept_fields_that_write_in_place) {
   const auto field = [](double t, const State<10>& y, State<10>& rate) { chain(t, y, rate); };
   ExplicitRungeKutta in_place(field, 0.0, start(), {.relative = 1e-12}, ones);
   auto by_value = fixed_steps();
@@ -497,7 +497,7 @@ BOOST_AUTO_TEST_CASE(find_events_and_stop_at_jumps) {
   BOOST_TEST(steps.effort().rejected == 0);
 }
 
-BOOST_AUTO_TEST_CASE(tell_a_stiff_field) {
+BOOST_AUTO_TEST_CASE(recognise_a_stiff_field) {
   for (const double damping : {0.0, 1e4}) {
     const auto field = [=](double, const VectorXd& y, VectorXd& rate) {
       rate[0] = y[1];
@@ -509,7 +509,7 @@ BOOST_AUTO_TEST_CASE(tell_a_stiff_field) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuse_blocks_and_rates_that_do_not_fit) {
+BOOST_AUTO_TEST_CASE(refuse_wrong_blocks_and_rates) {
   const auto field = [](double, const VectorXd& y) { return VectorXd(y.head(2)); };
   const VectorXd y = VectorXd::Ones(3);
   BOOST_CHECK_THROW(ExplicitRungeKutta(field, 0.0, y, {}, std::vector<int>{2, 2}), InvalidInput);

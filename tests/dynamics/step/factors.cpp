@@ -39,7 +39,7 @@ void solve_systems() {
 BOOST_AUTO_TEST_CASE(solve_real_systems) { solve_systems<double>(); }
 BOOST_AUTO_TEST_CASE(solve_complex_systems) { solve_systems<std::complex<double>>(); }
 
-BOOST_AUTO_TEST_CASE(of_a_singular_matrix_solve_nothing) {
+BOOST_AUTO_TEST_CASE(give_no_solution_of_singular_systems) {
   detail::Factors<double> f;
   f.matrix = Eigen::MatrixXd::Ones(3, 3);
   f.compute();

@@ -109,7 +109,7 @@ double observed_order(long double amplitude, double coarse) {
   return order;
 }
 
-BOOST_AUTO_TEST_CASE(converge_with_twice_as_many_powers_of_the_step_as_stages) {
+BOOST_AUTO_TEST_CASE(converge_with_order_two_s) {
   BOOST_TEST(std::abs(observed_order<2>(1, 0.5) - 4) < 0.1);
   BOOST_TEST(std::abs(observed_order<6>(1, 0.5) - 12) < 0.5);
   BOOST_TEST(std::abs(observed_order<8>(2, 2) - 16) < 1);
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(keep_energy_and_phase_over_many_swings) {
 
 // Six steps a swing, and no more than rounding to be seen; the energy of the explicit steps is off
 // by ten times as much after a fifth of the time.
-BOOST_AUTO_TEST_CASE(beat_the_explicit_steps_over_10000_swings) {
+BOOST_AUTO_TEST_CASE(are_better_than_explicit_in_long_runs) {
   const Pendulum pendulum;
   GaussIRK gauss(pendulum, 0.0, State<2>(0.1, 0), 0.236);
   const Drift implicit = drift(gauss, pendulum, 0.1, 10000);
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(go_there_and_back) {
 }
 
 // 20000 additions of 0.1 in plain double are off by 1e-10: neither the sum nor the clock may be.
-BOOST_AUTO_TEST_CASE(add_up_state_and_time_without_loss) {
+BOOST_AUTO_TEST_CASE(sum_state_and_time_without_loss) {
   const auto field = [](double t, const State<2>&) { return State<2>(1, 2 * t); };
   GaussIRK steps(field, 0.0, State<2>(0, 0), 0.1);
   steps.advance_to(2000);
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(take_time_into_account) {
   BOOST_TEST(steps.effort().steps == 40);
 }
 
-BOOST_AUTO_TEST_CASE(take_equal_steps_no_longer_than_asked) {
+BOOST_AUTO_TEST_CASE(take_equal_steps_up_to_the_limit) {
   GaussIRK steps(circle, 0.0, State<2>(1, 0), 0.3);
   steps.advance_to(1);
   BOOST_TEST(steps.effort().steps == 4);
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(take_equal_steps_no_longer_than_asked) {
   BOOST_CHECK_THROW(steps.take_steps_of(not_a_number), InvalidInput);
 }
 
-BOOST_AUTO_TEST_CASE(stop_where_the_stages_do_not_converge) {
+BOOST_AUTO_TEST_CASE(stop_if_the_stages_do_not_converge) {
   GaussIRK wide(circle, 0.0, State<2>(1, 0), 50);
   BOOST_CHECK_THROW(wide.advance_to(50), ComputationFailed);
   BOOST_TEST(wide.t() == 0);
@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(stop_where_the_stages_do_not_converge) {
   BOOST_TEST(steps.effort().evaluations < 2000);
 }
 
-BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_steps) {
   const auto with = [](double t, double y, double step) {
     return GaussIRK(circle, t, State<2>(y, 0), step);
   };
@@ -226,7 +226,7 @@ BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
   BOOST_CHECK_THROW(with(1e16, 1, 0.1).advance_to(1e16 + 100), ComputationFailed);
 }
 
-BOOST_AUTO_TEST_CASE(give_up_when_told) {
+BOOST_AUTO_TEST_CASE(give_up_at_the_limit) {
   GaussIRK steps(circle, 0.0, State<2>(1, 0), 0.125);
   steps.give_up_after(1000);
   BOOST_CHECK_THROW(steps.advance_to(1e9), ComputationFailed);

@@ -124,7 +124,7 @@ double observed_order(double coarse) {
   return order;
 }
 
-BOOST_AUTO_TEST_CASE(converge_with_twice_as_many_powers_as_stages_less_one) {
+BOOST_AUTO_TEST_CASE(converge_with_order_two_s_minus_one) {
   BOOST_TEST(std::abs(observed_order<3>(1e-4) - 5) < 0.5);
   BOOST_TEST(std::abs(observed_order<5>(1e-6) - 9) < 0.9);
   BOOST_TEST(observed_order<7>(1e-7) > 12);
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(converge_with_twice_as_many_powers_as_stages_less_one) {
 
 // The estimate of a step is far above its error where the field is smooth, and only there: across a
 // jump that nobody declared it let 4e-7 to 2e-6 pass.
-BOOST_AUTO_TEST_CASE(hold_a_jump_that_nobody_declared_to_the_error_itself) {
+BOOST_AUTO_TEST_CASE(keep_the_accuracy_at_undeclared_jumps) {
   for (const double jump : {0.7314, 1.234, 2.11}) {
     const auto pushed = [jump](const auto& t, const auto& y) {
       std::decay_t<decltype(y)> rate = y;
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(hold_a_jump_that_nobody_declared_to_the_error_itself) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(follow_a_stiff_spring_at_no_more_cost_the_stiffer_it_is) {
+BOOST_AUTO_TEST_CASE(cost_the_same_at_any_stiffness) {
   double mild = 0;
   for (const double stiffness : {1e2, 1e5, 1e8, 1e12}) {
     auto steps =
@@ -171,14 +171,14 @@ BOOST_AUTO_TEST_CASE(solve_robertsons_reactions) {
   BOOST_TEST(std::abs(y.sum() - 1) <= 1e-14);
 }
 
-BOOST_AUTO_TEST_CASE(run_back_to_where_they_began) {
+BOOST_AUTO_TEST_CASE(run_back_to_the_start) {
   auto steps = radau<7>(Pendulum{9}, 0, State<2>(0.3, 0.1), {.relative = 1e-13});
   steps.advance_to(7);
   const State<2> y = steps.advance_to(0);
   BOOST_TEST(std::hypot(y[0] - 0.3, y[1] - 0.1) <= 1e-11);
 }
 
-BOOST_AUTO_TEST_CASE(give_output_within_a_step_that_does_not_disturb_it) {
+BOOST_AUTO_TEST_CASE(give_output_that_does_not_change_the_steps) {
   const exact::PendulumMotion truth(4, 0.7, 0);
   auto steps = radau<7>(Pendulum{4}, 0, State<2>(0.7, 0), {.relative = 1e-12});
   auto alone = steps;
@@ -205,7 +205,7 @@ BOOST_AUTO_TEST_CASE(find_events) {
   BOOST_TEST(std::abs(*time - truth.period() / 4) <= 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(take_a_jacobian_by_differences_as_well) {
+BOOST_AUTO_TEST_CASE(accept_a_jacobian_by_differences) {
   const Follower field{1e8};
   const auto jacobian = difference_jacobian<1>(field);
   BOOST_TEST(std::abs(jacobian(0.3, State<1>(0.9)).of_state(0, 0) / -1e8 - 1) <= 1e-6);
@@ -226,7 +226,7 @@ BOOST_AUTO_TEST_CASE(stop_at_jumps) {
   BOOST_TEST(std::abs(steps.advance_to(1 + 1e-6)[0] - (1 - std::exp(-1.0))) <= 1e-7);
 }
 
-BOOST_AUTO_TEST_CASE(keep_the_last_good_state_where_the_field_ends) {
+BOOST_AUTO_TEST_CASE(keep_the_last_state_at_the_field_edge) {
   const auto field = []<class S>(const S& t, const State<1, S>& y) {
     using std::sqrt;
     return State<1, S>(-1e4 * y[0] + sqrt(S(1) - t));
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(keep_the_last_good_state_where_the_field_ends) {
   BOOST_TEST(std::isfinite(steps.y()[0]));
 }
 
-BOOST_AUTO_TEST_CASE(say_what_stops_them) {
+BOOST_AUTO_TEST_CASE(give_the_reason_of_a_stop) {
   const auto says = [](auto field, auto jacobian, const Accuracy& accuracy, const char* why) {
     RadauSteps<State<1>, decltype(field), decltype(jacobian)> steps(field, jacobian, 3, State<1>(1),
                                                                     accuracy);
@@ -270,14 +270,14 @@ BOOST_AUTO_TEST_CASE(say_what_stops_them) {
   says(throws_elsewhere, with(0), {}, "there is no rate but here");
 }
 
-BOOST_AUTO_TEST_CASE(stay_where_they_are_when_time_does) {
+BOOST_AUTO_TEST_CASE(stay_if_the_end_is_the_start) {
   auto steps = radau<7>(Pendulum{}, 5, State<2>(1, 0), {});
   steps.step_towards(5);
   BOOST_TEST(steps.advance_to(5) == State<2>(1, 0));
   BOOST_TEST(steps.effort().evaluations == 0);
 }
 
-BOOST_AUTO_TEST_CASE(refuse_nonsense) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_arguments) {
   const Pendulum field;
   const State<2> y(1, 0);
   BOOST_CHECK_THROW((void)radau<7>(field, 0, y, {.relative = 0}), InvalidInput);

@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(cancel_odd_powers_of_the_steps) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(read_the_same_backwards) {
+BOOST_AUTO_TEST_CASE(are_symmetric) {
   for (std::size_t i = 0; i < 8; ++i) BOOST_TEST(Blanes864::drift[i] == Blanes864::drift[7 - i]);
   for (std::size_t i = 0; i < 7; ++i) BOOST_TEST(Blanes864::kick[i] == Blanes864::kick[6 - i]);
   for (std::size_t i = 0; i < 17; ++i) BOOST_TEST(KahanLi8::kick[i] == KahanLi8::kick[16 - i]);
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(converge_with_their_order) {
 }
 
 // To the last digits after 30000 rad of spin.
-BOOST_AUTO_TEST_CASE(beat_explicit_steps_on_fast_tops) {
+BOOST_AUTO_TEST_CASE(are_better_than_explicit_on_fast_tops) {
   const Top fast{.spin = 3000};
   const Work coarse = work<Strang>("Strang", fast, 2e-3);
   const Work blanes = work<Blanes864>("Blanes864", fast, 1e-3);
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(turn_a_free_body_exactly_in_one_step) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(take_a_flow_of_the_users) {
+BOOST_AUTO_TEST_CASE(accept_a_flow_of_the_user) {
   const Vector moments(3e-4, 2.5e-4, 1e-4);
   const Top top{.spin = 300, .end = 1};
   SplittingSteps<AsymmetricFlow, Gravity, KahanLi8> steps(AsymmetricFlow(moments), Gravity{0.049},
@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(go_there_and_back) {
   BOOST_TEST(steps.angular_velocity().z() == 300);
 }
 
-BOOST_AUTO_TEST_CASE(stop_where_the_torque_ends_and_keep_the_last_state) {
+BOOST_AUTO_TEST_CASE(keep_the_last_state_if_the_torque_fails) {
   const Top top{.spin = 300, .end = 1};
   const auto ends = [](double t, const Quaternion& q) {
     return t > 1 ? Vector(not_a_number, 0, 0) : Gravity{0.049}(t, q);
@@ -254,7 +254,7 @@ BOOST_AUTO_TEST_CASE(stop_where_the_torque_ends_and_keep_the_last_state) {
   BOOST_TEST(angle(steps.attitude(), exact.attitude) < 1e-11);
 }
 
-BOOST_AUTO_TEST_CASE(give_up_when_told) {
+BOOST_AUTO_TEST_CASE(give_up_at_the_limit) {
   const Top top{.spin = 300};
   for (const double evaluations : {0.0, 700.0}) {
     auto steps = top.steps<Blanes864>(1e-3);
@@ -269,7 +269,7 @@ BOOST_AUTO_TEST_CASE(give_up_when_told) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(become_shorter_when_told) {
+BOOST_AUTO_TEST_CASE(become_shorter_on_request) {
   const Top top{.spin = 300};
   auto steps = top.steps<Blanes864>(4e-3);
   steps.advance_to(0.4);
@@ -280,7 +280,7 @@ BOOST_AUTO_TEST_CASE(become_shorter_when_told) {
   BOOST_CHECK_THROW(steps.take_steps_of(0), InvalidInput);
 }
 
-BOOST_AUTO_TEST_CASE(refuse_what_they_cannot_keep) {
+BOOST_AUTO_TEST_CASE(refuse_invalid_steps) {
   const auto with = [](double t, double q, double w, double step) {
     return SplittingSteps(SymmetricFreeFlow(2, 1), Gravity{1}, t, Quaternion(q, 0, 0, 0), {0, 0, w},
                           step);

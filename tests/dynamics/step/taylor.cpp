@@ -80,7 +80,7 @@ struct Late {
 BOOST_AUTO_TEST_SUITE(taylor)
 
 // A hundred turns. What a step errs by adds up, at worst.
-BOOST_AUTO_TEST_CASE(keeps_the_accuracy_asked_for) {
+BOOST_AUTO_TEST_CASE(keeps_the_accuracy) {
   for (const double accuracy : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
     TaylorSteps steps(Circle{}, 0, Vector(1, 0), {.relative = accuracy});
     const Vector y = steps.advance_to(628);
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_accuracy_asked_for) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(goes_backwards_to_where_it_came_from) {
+BOOST_AUTO_TEST_CASE(runs_back_to_the_start) {
   TaylorSteps steps(Circle{}, 3, Vector(1, 0.5));
   steps.advance_to(20);
   const Vector y = steps.advance_to(3);
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(goes_backwards_to_where_it_came_from) {
 }
 
 // Output is the series itself: as good as the steps, and it does not disturb them.
-BOOST_AUTO_TEST_CASE(gives_output_on_the_way) {
+BOOST_AUTO_TEST_CASE(gives_output_within_steps) {
   TaylorSteps undisturbed(Circle{}, 0, Vector(1, 0));
   undisturbed.advance_to(10);
   TaylorSteps steps(Circle{}, 0, Vector(1, 0));
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(finds_events) {
 
 // Where the series ends steps get ever shorter: the way to there is right, and there they stop. What
 // errs in time by a last digit errs in y by y^2 times that.
-BOOST_AUTO_TEST_CASE(comes_near_a_pole_and_stops_before_it) {
+BOOST_AUTO_TEST_CASE(stops_just_before_a_pole) {
   TaylorSteps steps(Pole{}, 0, Vector(1, 0));
   const std::array<int, 2> blocks = {1, 1};
   TaylorSteps apart(Pole{}, 0, Vector(1, 0), {}, blocks);
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(comes_near_a_pole_and_stops_before_it) {
   BOOST_TEST(steps.t() < 1);
 }
 
-BOOST_AUTO_TEST_CASE(ends_steps_where_the_field_jumps) {
+BOOST_AUTO_TEST_CASE(ends_steps_at_jumps_of_the_field) {
   TaylorSteps steps(Switched{}, 0, Vector(0, 1));
   steps.stop_at({1});
   BOOST_TEST(near(steps.advance_to(3)[0], 2.0, 1.0, 2));
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(takes_no_more_steps_than_needed) {
 }
 
 // A state of 1e-200 among units of 1, and one at the upper end of the range.
-BOOST_AUTO_TEST_CASE(does_not_mind_the_size_of_the_state) {
+BOOST_AUTO_TEST_CASE(does_not_depend_on_the_size_of_the_state) {
   for (const double size : {1e-200, 1e200}) {
     TaylorSteps steps(Circle{}, 0, Vector(size, 0), {.absolute_scale = 0});
     BOOST_TEST(
@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(goes_back_within_a_step) {
   BOOST_TEST(near(steps.advance_to(6), Vector(std::cos(6), -std::sin(6)), 1.0, 20));
 }
 
-BOOST_AUTO_TEST_CASE(goes_on_from_a_bookmark_to_the_last_bit) {
+BOOST_AUTO_TEST_CASE(continues_from_a_checkpoint_exactly) {
   TaylorSteps whole(Circle{}, 0, Vector(1, 0));
   for (int i = 0; i < 5; ++i) whole.step_towards(100);
   detail::Checkpoint taken;
@@ -196,7 +196,7 @@ BOOST_AUTO_TEST_CASE(goes_on_from_a_bookmark_to_the_last_bit) {
 }
 
 // Its series is in units of the last step, powers of which may leave the range.
-BOOST_AUTO_TEST_CASE(takes_another_unit_where_a_motion_sets_in_after_a_long_rest) {
+BOOST_AUTO_TEST_CASE(changes_its_unit_after_a_long_rest) {
   TaylorSteps steps(Late{}, -1e21, Vector(0, 0), {.relative = 1e-15});
   steps.stop_at({0});
   steps.advance_to(10);
@@ -205,7 +205,7 @@ BOOST_AUTO_TEST_CASE(takes_another_unit_where_a_motion_sets_in_after_a_long_rest
 }
 
 // 10 digits of the change in each step, up or down, are a random walk.
-BOOST_AUTO_TEST_CASE(goes_off_by_the_digits_that_it_is_shaken_by) {
+BOOST_AUTO_TEST_CASE(deviates_by_its_perturbation) {
   const auto made = [](double digits) {
     return TaylorSteps(Circle{}, 0, Vector(1, 0), {.relative = 1e-12, .shaken = digits});
   };
@@ -216,7 +216,7 @@ BOOST_AUTO_TEST_CASE(goes_off_by_the_digits_that_it_is_shaken_by) {
   BOOST_TEST(test::shaken_off(made) == off);
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_none) {
+BOOST_AUTO_TEST_CASE(refuses_invalid_arguments) {
   const Vector y(1, 0);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.shaken = -1}), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.shaken = not_a_number}), InvalidInput);

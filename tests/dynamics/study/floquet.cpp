@@ -100,7 +100,7 @@ double distance(const Json& expected, const Multipliers& multipliers) {
 
 BOOST_AUTO_TEST_SUITE(multipliers_over_a_period)
 
-BOOST_AUTO_TEST_CASE(are_those_of_the_reference) {
+BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   double worst = 0;
   int points = 0;
   for (const Json& c : reference().at("points")) {
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(are_the_same_in_the_axes_of_the_rotor) {
 
 // The exact gyro about its steady rotation, by its variational equations in dual numbers: four of
 // its six multipliers are the linear rotor's, the two of phi are 1.
-BOOST_AUTO_TEST_CASE(are_those_of_the_exact_gyro) {
+BOOST_AUTO_TEST_CASE(agree_with_the_exact_gyro) {
   for (const Json& c : reference().at("points")) {
     if (c.at("printed").get<bool>()) continue;
     const UnsymmetricRotor<> rotor = rotor_of(c, parameter(c, "Om"));
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(are_those_of_the_exact_gyro) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(grow_in_closed_form_between_equal_springs) {
+BOOST_AUTO_TEST_CASE(have_a_closed_form_with_equal_springs) {
   const Vector3<double> J(1.1, 0.9, 0.5);
   for (const double speed : {0.6, 1.2, 1.35, 1.4, 1.5, 1.7, 3.0}) {
     const double k_1 = 1 + speed * speed * (J.z() - J.y());
@@ -202,7 +202,7 @@ BOOST_AUTO_TEST_CASE(grow_in_closed_form_between_equal_springs) {
 }
 
 // On the boundary the answer is that there is none.
-BOOST_AUTO_TEST_CASE(say_nothing_on_the_boundary) {
+BOOST_AUTO_TEST_CASE(are_undecided_on_the_boundary) {
   const Vector3<double> J(1.1, 0.9, 0.5);
   const double begin = EqualSpringsRange::of(J, 1).begin;
   const auto verdict = [&](double speed) {
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(are_stable_on_the_circle_only) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(come_in_no_pairs_with_damping) {
+BOOST_AUTO_TEST_CASE(are_no_pairs_with_damping) {
   const UnsymmetricRotor<> rotor({{1.1, 0.9, 0.5}}, {{1, 0.1}, {1, 0.1}}, 1);
   BOOST_CHECK_THROW((void)paired_multipliers(rotor), InvalidInput);
   const auto A = [&](double t) { return rotor.state_matrix(t); };
@@ -290,7 +290,7 @@ BOOST_AUTO_TEST_CASE(have_the_boundaries_of_the_reference) {
   BOOST_TEST_MESSAGE("boundaries off by " << worst);
 }
 
-BOOST_AUTO_TEST_CASE(are_the_closed_forms_between_equal_springs) {
+BOOST_AUTO_TEST_CASE(agree_with_closed_forms_for_equal_springs) {
   const Vector3<double> J(1.1, 0.9, 0.5);
   const auto at = [&](double speed) {
     return paired_multipliers(UnsymmetricRotor<>({J}, {{1}, {1}}, speed));
@@ -308,7 +308,7 @@ BOOST_AUTO_TEST_CASE(are_the_closed_forms_between_equal_springs) {
 }
 
 // The tongues between unequal springs in this range, in order, and none besides.
-BOOST_AUTO_TEST_CASE(are_three_between_unequal_springs) {
+BOOST_AUTO_TEST_CASE(number_three_with_unequal_springs) {
   const auto at = [](double speed) {
     return paired_multipliers(UnsymmetricRotor<>({{1.05, 0.95, 0.5}}, {{1}, {1.5}}, speed), quick);
   };
@@ -321,7 +321,7 @@ BOOST_AUTO_TEST_CASE(are_three_between_unequal_springs) {
 }
 
 // One pair leaves the circle at 1, the other at 2: that is no end of the range.
-BOOST_AUTO_TEST_CASE(do_not_end_where_the_other_pair_leaves) {
+BOOST_AUTO_TEST_CASE(do_not_end_with_the_other_pair) {
   const auto at = [](double p) {
     return PairedMultipliers{2 * p + 1, p * (p + 1) + 2, 1e-14, 1e-14};
   };
@@ -337,7 +337,7 @@ BOOST_AUTO_TEST_CASE(do_not_end_where_the_other_pair_leaves) {
 
 // Higher orders lie at lower speeds, 1e-4 of the speed wide: found between samples that are two
 // thousand times as far apart, and confirmed on the rotor's axes. The reference's scan missed them.
-BOOST_AUTO_TEST_CASE(are_found_where_they_are_narrow) {
+BOOST_AUTO_TEST_CASE(are_found_even_if_narrow) {
   const Json c{{"params", {{"A", 1.2}, {"B", 0.8}, {"C", 0.5}, {"ca", 1}, {"cb", 1.5}}}};
   const auto at = [&](double speed) { return paired_multipliers(rotor_of(c, speed), quick); };
   const auto rotor_axes = [&](double speed) { return in_rotor_axes(c, speed); };

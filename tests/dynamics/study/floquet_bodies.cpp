@@ -47,10 +47,10 @@ BodySystem<RestingFrame<>> driven_oscillator() {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(motions_of_bodies_that_repeat)
+BOOST_AUTO_TEST_SUITE(periodic_motions_of_bodies)
 
 // The response of an oscillator to a harmonic drive, in closed form; its neighbours decay.
-BOOST_AUTO_TEST_CASE(are_found_from_a_start_that_does_not) {
+BOOST_AUTO_TEST_CASE(are_found_from_a_nearby_start) {
   const auto system = driven_oscillator();
   const auto found = periodic_motion(system, 0, period, system.to_vector(system.rest()));
   const std::complex<double> i(0, 1);
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(are_found_from_a_start_that_does_not) {
   BOOST_TEST(found.period.error.maxCoeff<Eigen::PropagateNaN>() <= 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(are_missed_where_too_few_steps_are_allowed) {
+BOOST_AUTO_TEST_CASE(are_missed_with_too_few_steps) {
   const auto system = driven_oscillator();
   const auto start = system.to_vector(system.rest());
   BOOST_CHECK_THROW((void)periodic_motion(system, 0, period, start, {.most_iterations = 1}),
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(keep_the_volume_of_their_neighbours) {
   BOOST_TEST(std::abs(found.matrix.determinant() - 1) <= 1e-9);
 }
 
-BOOST_AUTO_TEST_CASE(of_what_cannot_move_are_there_at_once) {
+BOOST_AUTO_TEST_CASE(are_trivial_without_degrees_of_freedom) {
   const BodySystem system(RestingFrame<>{}, {wheel(JointKind::fixed)});
   const auto found = periodic_motion(system, 0, period, system.to_vector(system.rest()));
   BOOST_TEST(found.iterations == 0);

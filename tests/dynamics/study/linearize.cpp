@@ -75,7 +75,7 @@ double nearest(const std::vector<Mode>& modes, const std::complex<double>& root)
 BOOST_AUTO_TEST_SUITE(linear_equations)
 
 // Of the exact gyro: reference/cardan-gyro.json, foeppl_T4.
-BOOST_AUTO_TEST_CASE(of_the_cardan_gyro_have_foeppls_frequencies) {
+BOOST_AUTO_TEST_CASE(cardan_gyro_has_foeppls_frequencies) {
   const CardanGyro gyro(symmetric, springs, RestingFrame<>{});
   const auto linear = linearize<Guide, Guide>(gyro, 0, gyro.to_vector({.phi_rate = 50}));
   BOOST_TEST(linear.unsteadiness.norm() == 0);
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(of_the_cardan_gyro_have_foeppls_frequencies) {
 }
 
 // The matrix itself, entry by entry.
-BOOST_AUTO_TEST_CASE(of_the_cardan_gyro_are_foeppls) {
+BOOST_AUTO_TEST_CASE(cardan_gyro_has_foeppls_equations) {
   const FoepplGyro<> foeppl(symmetric, {{2, 0.01}, {1.5, 0.02}}, 50);
   const auto& exact = foeppl.exact();
   const auto linear = linearize<Guide, Guide>(exact, 0, exact.to_vector({.phi_rate = 50}));
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(of_the_cardan_gyro_are_foeppls) {
 }
 
 // The upright top: A nu^2 - C w nu + k = 0 in space, i (nu - w) on its own axes.
-BOOST_AUTO_TEST_CASE(of_a_top_have_its_roots_and_none_for_the_norm) {
+BOOST_AUTO_TEST_CASE(top_has_no_root_for_the_norm) {
   const Top top{0.3, 0.1, 2.5};
   for (const double w : {10.0, 30.0}) {
     for (const double norm : {1.0, 1.7}) {
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(of_a_top_have_its_roots_and_none_for_the_norm) {
 }
 
 // On axes that do not spin the roots are those in space, i nu.
-BOOST_AUTO_TEST_CASE(of_a_top_on_axes_that_do_not_spin_have_its_roots_in_space) {
+BOOST_AUTO_TEST_CASE(top_on_resting_axes_has_its_roots_in_space) {
   const double A = 0.3, C = 0.1, arm = 0.25;
   const UniformGravity<Guide> down{{0, 0, -10}};
   const AxisymmetricBody top(1.0, arm, A, C, Vector3<double>::Zero(), RestingFrame<>{}, down);
@@ -148,14 +148,14 @@ BOOST_AUTO_TEST_CASE(of_a_top_on_axes_that_do_not_spin_have_its_roots_in_space) 
 }
 
 // A motion that is not steady says so.
-BOOST_AUTO_TEST_CASE(hold_for_the_moment_where_the_motion_is_not_steady) {
+BOOST_AUTO_TEST_CASE(unsteadiness_is_reported) {
   const Top top{0.3, 0.1, 2.5};
   Top::Vector y;
   y << std::sin(0.2), 0, 0, std::cos(0.2), 0, 0, 10;
   BOOST_TEST((linearize<Inertial, Body>(top, 0, y).unsteadiness.norm() > 1));
 }
 
-BOOST_AUTO_TEST_CASE(are_asked_of_scenes_that_take_dual_numbers) {
+BOOST_AUTO_TEST_CASE(scenes_must_accept_dual_numbers) {
   static_assert(Differentiable<Top>);
   static_assert(Differentiable<CardanGyro<RestingFrame<>>>);
   static_assert(Differentiable<EulerTop>);
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(equilibria)
 
 // On a turntable, rings with mass and springs: the gyro leans, and stays so.
-BOOST_AUTO_TEST_CASE(of_a_regulated_gyro_on_a_turntable) {
+BOOST_AUTO_TEST_CASE(regulated_gyro_on_a_turntable) {
   const CardanGyro gyro(symmetric, springs, RotatingFrame<>{{0.3, -0.2, 0.5}}, RegulatedRotor{});
   const auto found = find_equilibrium(gyro, 0, gyro.to_vector({.phi_rate = 50}), {{2, 5}, {2}});
   BOOST_TEST(found.residual < 1e-12);
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(of_a_regulated_gyro_on_a_turntable) {
 }
 
 // The hanging top, from far off: the nearest such attitude, one direction is free.
-BOOST_AUTO_TEST_CASE(of_a_top_that_hangs) {
+BOOST_AUTO_TEST_CASE(hanging_top) {
   const Top top{0.3, 0.1, 2.5};
   Top::Vector guess;
   guess << std::sin(1.2), 0.1, 0.2, std::cos(1.2), 0.1, 0, 0;
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(of_a_top_that_hangs) {
   BOOST_TEST(nearest(modes, {0, std::sqrt(2.5 / 0.3)}) < 1e-7);  // a double root
 }
 
-BOOST_AUTO_TEST_CASE(that_do_not_exist_are_not_found) {
+BOOST_AUTO_TEST_CASE(nonexistent_ones_are_not_found) {
   Never::Vector guess;
   guess[0] = 0.7;
   BOOST_CHECK_THROW((void)find_equilibrium(Never{}, 0, guess), ComputationFailed);

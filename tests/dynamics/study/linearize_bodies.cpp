@@ -94,7 +94,7 @@ const InertiaTensor<Body> pendulum =
 
 BOOST_AUTO_TEST_SUITE(linear_equations_of_bodies)
 
-BOOST_AUTO_TEST_CASE(of_the_platform_have_the_roots_of_the_reference) {
+BOOST_AUTO_TEST_CASE(platform_has_the_roots_of_the_reference) {
   const Json& all = test::rotors_reference()["eigenvalues"];
   const auto check = [&](const char* name, const char* key, bool held, Root root,
                          std::optional<RotorMode> mode) {
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(of_the_platform_have_the_roots_of_the_reference) {
 }
 
 // A top asleep wakes where (C w)^2 < 4 A k: as a top, as a body that is held and as a system.
-BOOST_AUTO_TEST_CASE(of_a_sleeping_top_have_its_limit) {
+BOOST_AUTO_TEST_CASE(sleeping_top_has_its_stability_limit) {
   const double A = 0.3, C = 0.1, m = 0.5, g = 10, arm = 0.5;
   const double k = m * g * arm;
   const double limit = 2 * std::sqrt(A * k) / C;
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(of_a_sleeping_top_have_its_limit) {
 
 // Foucault's: the plane of a pendulum on the turning earth turns by u sin(latitude), a little less
 // for a body that is not a point: 1 - C/2A of it.
-BOOST_AUTO_TEST_CASE(of_a_pendulum_on_the_earth_turn_its_plane) {
+BOOST_AUTO_TEST_CASE(pendulum_on_the_earth_turns_its_plane) {
   const double u = 7.292115e-5, latitude = 0.84;
   const RotatingFrame<> earth{{u * std::cos(latitude), 0, u * std::sin(latitude)}};
   const UniformGravity<Guide> weight{{0, 0, -9.81}};
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(of_a_pendulum_on_the_earth_turn_its_plane) {
 // A free body on springs, a damper and a rubber mount, on a guide that turns and brakes, in any
 // state: as one body and as a system of one they have the same rate, and the linear equations of
 // the one are the differences of its field.
-BOOST_AUTO_TEST_CASE(of_loads_are_the_differences_of_the_field) {
+BOOST_AUTO_TEST_CASE(loads_agree_with_differences) {
   const RotatingFrame<> guide{{0.3, -0.2, 0.5}, {0.1, 0.2, -0.3}};
   const ElasticMount<> mount{{0.1, 0, 0.2},
                              {0.2, 0.1, 0},
@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(of_loads_are_the_differences_of_the_field) {
 // the unsteadiness is with the field's own change in time, which both motions make.
 // A guide that is known from 0 to 2 s only, as a log or a series is: its rates at the ends come from
 // within.
-BOOST_AUTO_TEST_CASE(of_bodies_at_the_ends_of_what_is_known_of_their_guide) {
+BOOST_AUTO_TEST_CASE(bodies_at_the_ends_of_a_guide) {
   const auto swing = [](double t) {
     FrameMotion<Guide, Inertial> motion;
     motion.V.value.resultant = {0.3 * std::sin(2 * t), 0.1, 0};
@@ -287,7 +287,7 @@ BOOST_AUTO_TEST_CASE(of_bodies_at_the_ends_of_what_is_known_of_their_guide) {
   BOOST_CHECK_THROW(((void)linearize<Guide, Body>(within, 2.1, y)), InvalidInput);
 }
 
-BOOST_AUTO_TEST_CASE(of_systems_with_loads_on_a_guide_that_swings) {
+BOOST_AUTO_TEST_CASE(systems_with_loads_on_a_swinging_guide) {
   const auto swing = [](double t) {
     FrameMotion<Guide, Inertial> motion;
     motion.X = RotatingFrame<>{{0, 0, 1}}(-0.15 * std::cos(2 * t)).X;
@@ -348,7 +348,7 @@ BOOST_AUTO_TEST_CASE(of_systems_with_loads_on_a_guide_that_swings) {
   BOOST_TEST((linear.unsteadiness - expected).norm() < 1e-11 * expected.norm());
 }
 
-BOOST_AUTO_TEST_CASE(of_a_load_that_takes_no_dual_numbers_are_refused) {
+BOOST_AUTO_TEST_CASE(loads_without_dual_numbers_are_refused) {
   BodyDescription body;
   body.name = "bob";
   body.joint.kind = JointKind::spherical;
@@ -382,7 +382,7 @@ BodySystem<RestingFrame<>> block_on(const Joint& joint, double stiffness = 0) {
 }
 
 // No coordinate makes it fall, so that Newton's step is none; it does not rest for that.
-BOOST_AUTO_TEST_CASE(of_what_falls_are_about_no_equilibrium) {
+BOOST_AUTO_TEST_CASE(falling_bodies_have_no_equilibrium) {
   for (const JointKind kind : {JointKind::prismatic, JointKind::free}) {
     const auto falling = block_on({.kind = kind, .axis = {0, 0, 1}});
     const Eigen::VectorXd y = falling.to_vector(falling.rest());
@@ -399,7 +399,7 @@ BOOST_AUTO_TEST_CASE(of_what_falls_are_about_no_equilibrium) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_what_cannot_move_are_none) {
+BOOST_AUTO_TEST_CASE(fixed_bodies_have_no_equations) {
   const auto still = block_on({});
   const Eigen::VectorXd nothing = still.to_vector(still.rest());
   BOOST_TEST(find_equilibrium(still, 0, nothing).neutral == 0);

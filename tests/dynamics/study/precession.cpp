@@ -82,9 +82,9 @@ Comparison compare(double spin, double end, bool with_velocity) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(technical_equations)
+BOOST_AUTO_TEST_SUITE(precession_equations)
 
-BOOST_AUTO_TEST_CASE(lead_the_gyro_as_the_reference_says) {
+BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   const Json& truth =
       test::rotors_reference()["trajectories"]["T13_cardan_springs_exact_and_precession"];
   const TechnicalGimbals model(gyro_of_the_reference(), 0, start);
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(lead_the_gyro_as_the_reference_says) {
 }
 
 // As bodies it is the same: one step's accuracy apart.
-BOOST_AUTO_TEST_CASE(lead_the_gyro_as_bodies_likewise) {
+BOOST_AUTO_TEST_CASE(agree_for_the_gyro_as_bodies) {
   const Json springs = {{"outer", {{"k", 0.4}, {"d", 0.002}, {"Q0", 0.02}}},
                         {"inner", {{"k", 0.3}, {"d", 0.001}, {"Q0", -0.01}}}};
   for (const RotorMode mode : {RotorMode::regulated, RotorMode::free}) {
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(err_in_the_orders_of_the_reference) {
 
 // 1000 gyros and platforms, of any size, spring and damper, started at rest, on the technical
 // velocity or with any, regulated and free.
-BOOST_AUTO_TEST_CASE(have_a_bound_that_is_honest) {
+BOOST_AUTO_TEST_CASE(have_a_reliable_bound) {
   constexpr double relative = 1e-10;
   std::vector<double> ratios;
   int broken_off = 0;
@@ -251,7 +251,7 @@ BOOST_AUTO_TEST_CASE(have_a_bound_that_is_honest) {
 }
 
 // Towards gimbal lock the nutations become slow: the motion is broken off and says so.
-BOOST_AUTO_TEST_CASE(are_broken_off_towards_gimbal_lock) {
+BOOST_AUTO_TEST_CASE(stop_near_gimbal_lock) {
   const CardanGyro pushed(gyro_of_the_reference().moments(), {{0.05, 0, 1.5}, {0, 0, 0}},
                           RestingFrame<>{}, RegulatedRotor{});
   const Regulated::State s{-1.5, 0, 0, 0, 0, 200};
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(are_broken_off_towards_gimbal_lock) {
   BOOST_TEST(motion.valid_until < last.t);
 }
 
-BOOST_AUTO_TEST_CASE(are_refused_where_they_do_not_apply) {
+BOOST_AUTO_TEST_CASE(are_refused_if_not_applicable) {
   auto bodies = test::model_bodies("platform", test::Root::none, Json::object(), RotorMode::free);
   bodies[0].rule = JointRule::held;
   using Bodies = BodySystem<RestingFrame<>>;

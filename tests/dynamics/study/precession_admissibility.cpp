@@ -71,7 +71,7 @@ GyroForces forces(const MatrixXd& A, const MatrixXd& G, const MatrixXd& D) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(technical_equations_are_admissible)
+BOOST_AUTO_TEST_SUITE(precession_equations_are_admissible)
 
 // det G != 0 and simple roots, and yet the nutations grow: circulatory torques.
 BOOST_AUTO_TEST_CASE(unless_a_nutation_grows) {
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(unless_a_nutation_grows) {
 }
 
 // Multiple roots are harmless by themselves: two gyros of one kind.
-BOOST_AUTO_TEST_CASE(with_double_roots_that_have_their_shapes) {
+BOOST_AUTO_TEST_CASE(with_double_roots_that_have_two_shapes) {
   Matrix4d G = Matrix4d::Zero();
   G.topLeftCorner<2, 2>() = G.bottomRightCorner<2, 2>() = .5 * quarter;
   const auto found = admissibility(forces(.002 * Matrix4d::Identity(), G, Matrix4d::Zero()),
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(unless_a_double_root_lacks_a_shape) {
 }
 
 // What is neglected moves a root by  -s^2 y.A x / y.G x.
-BOOST_AUTO_TEST_CASE(with_roots_that_are_corrected) {
+BOOST_AUTO_TEST_CASE(with_corrected_roots) {
   const Json& truth = examples()["slow_correction"];
   const Matrix2d A = Eigen::Vector2d(2.1e-3, 3.3e-4).asDiagonal();
   const Matrix2d K = Eigen::Vector2d(.4, .3).asDiagonal();

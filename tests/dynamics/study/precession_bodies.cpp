@@ -141,24 +141,24 @@ void check(const char* name, const System& system, bool with_velocity, int kept,
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(technical_equations_with_kept_accelerations)
+BOOST_AUTO_TEST_SUITE(precession_equations_with_kept_accelerations)
 
 // No gyroscopic moment reaches the sled, but the gimbal off balance feels how it is accelerated:
 // the orders are those without it, 2 and 3.
-BOOST_AUTO_TEST_CASE(lead_a_gyro_on_a_sled) {
+BOOST_AUTO_TEST_CASE(describe_a_gyro_on_a_sled) {
   check("sled", on_sled, false, 1, 1.8);
   check("sled", on_sled, true, 1, 2.7);
 }
 
 // The table turns against the gimbal on it without a gyroscopic moment. A nutation from rest also
 // leaves a velocity of that motion, of order 1.
-BOOST_AUTO_TEST_CASE(lead_a_gyro_on_a_table) {
+BOOST_AUTO_TEST_CASE(describe_a_gyro_on_a_table) {
   check("table", on_table, false, 1, 1.0);
   check("table", on_table, true, 1, 1.8);
 }
 
 // Six of eight accelerations stay; as the gimbals turn, the kernel leaves them: order 1.
-BOOST_AUTO_TEST_CASE(lead_a_free_craft_under_loads) {
+BOOST_AUTO_TEST_CASE(describe_a_free_craft_under_loads) {
   check(
       "craft", [](RotorMode mode) { return on_free_craft(mode, {}); }, false, 6, 0.7);
   const auto loaded = [](RotorMode mode) { return on_free_craft(mode, {drag, thrust}); };
@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_CASE(lead_a_free_craft_under_loads) {
 }
 
 // What grows with the square of the velocity is no damping: D is -dQ/du at rest.
-BOOST_AUTO_TEST_CASE(take_the_damping_of_loads_at_rest) {
+BOOST_AUTO_TEST_CASE(use_the_damping_of_loads_at_rest) {
   const double k = 2;
   const auto quadratic = [k](const LoadContext<>& s) -> Force<Body> {
     const V& v = s.V_rel.value.moment;

@@ -162,9 +162,9 @@ constexpr unsigned scenes_of_a_kind = 210;
 
 }  // namespace
 
-BOOST_AUTO_TEST_SUITE(the_bound_of_what_is_left_out)
+BOOST_AUTO_TEST_SUITE(the_bound_of_dropped_terms)
 
-BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_table) {
+BOOST_AUTO_TEST_CASE(holds_for_fixed_point_bodies_on_a_table) {
   Tally tally;
   for (unsigned seed = 0; seed < scenes_of_a_kind; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_table) {
   tally.print("held on a table");
 }
 
-BOOST_AUTO_TEST_CASE(holds_for_bodies_held_on_a_swell) {
+BOOST_AUTO_TEST_CASE(holds_for_fixed_point_bodies_on_a_swell) {
   Tally tally;
   for (unsigned seed = 0; seed < scenes_of_a_kind; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(holds_for_cardan_gyros) {
   tally.print("Cardan gyros");
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_several_motions_together) {
+BOOST_AUTO_TEST_CASE(covers_several_motions) {
   const RotatingFrame<> table{{0, 1e-6, 0}};
   test::Sample sample(7);
   const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, table);
@@ -285,7 +285,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_pruned_scene)
 
-BOOST_AUTO_TEST_CASE(is_solved_as_any_and_says_what_it_lacks) {
+BOOST_AUTO_TEST_CASE(is_solved_and_lists_dropped_terms) {
   const RotatingFrame<> earth{{-5e-5, 0, 5e-5}};
   const CardanGyro gyro({{5e-4, 5e-4, 8e-4}, {2e-4, 3e-4, 2.5e-4}, {4e-4, 4e-4, 4.5e-4}}, {}, earth,
                         FrictionlessRotor{});
@@ -319,7 +319,7 @@ BOOST_AUTO_TEST_CASE(is_solved_as_any_and_says_what_it_lacks) {
   BOOST_TEST(table.str().find("RingInertia     kept") != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(is_the_scene_itself_where_nothing_may_be_left_out) {
+BOOST_AUTO_TEST_CASE(is_the_scene_itself_if_nothing_is_dropped) {
   const RotatingFrame<> table{{1, 2, 3}};
   test::Sample sample(3);
   const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, table);
@@ -331,7 +331,7 @@ BOOST_AUTO_TEST_CASE(is_the_scene_itself_where_nothing_may_be_left_out) {
 }
 
 // Rings without mass leave nothing that resists alpha about a rotor that is a needle along A.
-BOOST_AUTO_TEST_CASE(keeps_what_it_cannot_do_without) {
+BOOST_AUTO_TEST_CASE(keeps_indispensable_terms) {
   const CardanGyro needle({{0, 8, 8}, {2, 3, 2.5}, {4, 4, 4.5}}, {}, RestingFrame<>{});
   const auto pruned = prune<RingInertia>(needle, CardanState{0.1, 0.2, 0, 0, 0, 1},
                                          {.tolerance = 1e-2, .horizon = 1});
@@ -343,7 +343,7 @@ BOOST_AUTO_TEST_CASE(keeps_what_it_cannot_do_without) {
   BOOST_TEST(table.str().find(pruned.terms[0].why) != std::string::npos);
 }
 
-BOOST_AUTO_TEST_CASE(is_refused_for_what_is_no_task) {
+BOOST_AUTO_TEST_CASE(is_refused_with_invalid_options) {
   test::Sample sample(3);
   const FixedPointBody body(nearly_straight(sample), {0, 0, 0}, RotatingFrame<>{{0, 0, 1e-5}});
   const FixedPointBodyState start;

@@ -129,8 +129,7 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_body, data::xrange(25u), seed) {
   agrees_on(SteadyFrame<>{X, {{sample.direction(), sample.direction()}}}, sample);
 }
 
-BOOST_DATA_TEST_CASE(changes_no_number_where_components_are_said_to_vanish, data::xrange(25u),
-                     seed) {
+BOOST_DATA_TEST_CASE(changes_no_number_with_absent_components, data::xrange(25u), seed) {
   test::Sample sample(seed);
   const auto y = held_state(sample);
   const RotatingFrame<> earth{{-5e-5, 0, 5e-5}};
@@ -207,7 +206,7 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_plane_pendulum, data::xrange(25u), s
 }
 
 // What is said to vanish is held against the numbers.
-BOOST_AUTO_TEST_CASE(refuses_to_leave_out_what_is_there) {
+BOOST_AUTO_TEST_CASE(refuses_to_drop_terms_that_are_not_zero) {
   const RotatingFrame<> table{{0.1, 0.2, 0.3}};
   const UniformGravity<Guide> slanting{{1, 0, -9.81}};
   const auto held = [&](const InertiaTensor<Body>& T, const auto&... parts) {

@@ -130,7 +130,7 @@ double residual(const Coefficients& c, const Mode& mode) {
 
 BOOST_AUTO_TEST_SUITE(spectra)
 
-BOOST_AUTO_TEST_CASE(of_the_platform_are_those_of_the_reference) {
+BOOST_AUTO_TEST_CASE(platform_agrees_with_the_reference) {
   const Json& c = rotors().at("eigenvalues").at("P_free_base_springs_only");
   double worst = 0;
   for (const auto rotor : {Rotors::regulated, Rotors::free}) {
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(of_the_platform_are_those_of_the_reference) {
   BOOST_TEST_MESSAGE("platform: relative error " << worst);
 }
 
-BOOST_AUTO_TEST_CASE(of_the_damped_platform_are_those_of_the_reference) {
+BOOST_AUTO_TEST_CASE(damped_platform_agrees_with_the_reference) {
   double worst = 0;
   for (const char* name : {"P_free_base_springs_dampers", "P_servo_base_springs_dampers"}) {
     const Json& c = rotors().at("eigenvalues").at(name);
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(of_the_damped_platform_are_those_of_the_reference) {
 }
 
 // Paper 000 section 4.5: L cos(beta_0)/sqrt(A B), the gyro of two rings.
-BOOST_AUTO_TEST_CASE(of_a_gyro_in_two_rings_have_its_nutation) {
+BOOST_AUTO_TEST_CASE(gyro_in_two_rings_has_its_nutation) {
   const Json& all = rotors().at("eigenvalues");
   const Json& bodies = rotors().at("models").at("cardan").at("bodies");
   const auto I = [&](std::size_t body, int axis) {
@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(of_a_gyro_in_two_rings_have_its_nutation) {
 // Of three gyros whose frames hang on springs, one pair of frames with opposed momenta: the spring
 // mode at 39.57 rad/s is no nutation although the spin makes it a little faster. The growth of each
 // mode against two spectra at momenta that differ.
-BOOST_AUTO_TEST_CASE(of_gyros_on_a_fixed_base_tell_springs_from_spin) {
+BOOST_AUTO_TEST_CASE(gyros_on_a_base_separate_springs_and_spin) {
   const Json& all = rotors().at("eigenvalues");
   const Coefficients whole = platform(all.at("P_free_base_springs_only"), Rotors::regulated);
   const auto frames = [&whole](double momenta) {
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_CASE(of_gyros_on_a_fixed_base_tell_springs_from_spin) {
 }
 
 // A slow precession keeps its digits although the nutation is 1e8 times as fast.
-BOOST_AUTO_TEST_CASE(keep_the_digits_of_a_slow_precession) {
+BOOST_AUTO_TEST_CASE(slow_precession_keeps_its_digits) {
   const CardanMoments moments{{.005, .005, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
   const CardanBearings springs{{2}, {1.5}};
   for (const double spin : {0.0, 1.0, 50.0, 1e3, 1e5}) {
@@ -254,7 +254,7 @@ BOOST_AUTO_TEST_CASE(keep_the_digits_of_a_slow_precession) {
 
 // Thomson and Tait: two unstable coordinates are stabilised if g^2 > 4 k. One of both modes has
 // negative energy, and damping lets it grow.
-BOOST_AUTO_TEST_CASE(tell_gyroscopic_stabilisation) {
+BOOST_AUTO_TEST_CASE(gyroscopic_stabilisation_is_recognised) {
   Coefficients c;
   c.mass = Eigen::Matrix2d::Identity();
   c.stiffness = -Eigen::Matrix2d::Identity();
@@ -287,7 +287,7 @@ BOOST_AUTO_TEST_CASE(tell_gyroscopic_stabilisation) {
 
 // Circulatory torques: the precession is damped, the nutation grows (rotors.json, section 4.6 of
 // paper 000's equations). And a double root without a second vector.
-BOOST_AUTO_TEST_CASE(of_damped_and_circulatory_systems) {
+BOOST_AUTO_TEST_CASE(damped_and_circulatory_systems) {
   Coefficients c;
   c.mass = 0.002 * Eigen::Matrix2d::Identity();
   c.damping.resize(2, 2);
@@ -316,7 +316,7 @@ BOOST_AUTO_TEST_CASE(of_damped_and_circulatory_systems) {
 }
 
 // Each of the three matrices has its symmetry, and the mass is positive.
-BOOST_AUTO_TEST_CASE(of_conservative_systems_only) {
+BOOST_AUTO_TEST_CASE(other_than_conservative_systems_are_refused) {
   const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
   Eigen::Matrix2d lame = one;
   lame(0, 1) = 1e-3;
@@ -366,7 +366,7 @@ BOOST_AUTO_TEST_CASE(follow_nutation_and_precession) {
 }
 
 // A spring that turns into its contrary makes two real roots of one oscillation.
-BOOST_AUTO_TEST_CASE(end_where_a_mode_is_lost) {
+BOOST_AUTO_TEST_CASE(end_if_a_mode_is_lost) {
   const auto at = [](double stiffness) {
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(1, 1);
     return Coefficients{one, 0 * one, stiffness * one};
@@ -377,7 +377,7 @@ BOOST_AUTO_TEST_CASE(end_where_a_mode_is_lost) {
 }
 
 // Two gyros that know nothing of each other: their curves cross and are not mistaken.
-BOOST_AUTO_TEST_CASE(let_curves_cross) {
+BOOST_AUTO_TEST_CASE(allow_curves_to_cross) {
   const auto at = [](double spin) {
     Coefficients c;
     c.mass = Eigen::Matrix4d::Identity();

@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_SUITE(a_system_of_bodies)
 // of both from the vertical (p2 = q1 + q2), l the distance of the joints, s_i of the centres:
 //   L = (I1 + m1 s1^2 + m2 l^2) p1'^2/2 + (I2 + m2 s2^2) p2'^2/2 + m2 l s2 cos(p1 - p2) p1' p2'
 //       + (m1 s1 + m2 l) g cos p1 + m2 s2 g cos p2
-BOOST_AUTO_TEST_CASE(swings_as_the_double_pendulum) {
+BOOST_AUTO_TEST_CASE(agrees_with_the_double_pendulum) {
   const double m1 = 1.5, m2 = 0.75, l = 0.875, s1 = 0.4375, s2 = 0.3125, i1 = 0.125, i2 = 0.0625;
   const double g = 9.8125;
   const auto system =
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(swings_as_the_double_pendulum) {
 
 // A bead on a rod that turns with the guide:  x'' = (u^2 - c/m) x,  and the rod pushes sideways
 // with  m (2 u x' + ou x).
-BOOST_AUTO_TEST_CASE(slides_as_the_bead_on_a_turning_rod) {
+BOOST_AUTO_TEST_CASE(agrees_with_a_bead_on_a_turning_rod) {
   FrameMotion<Guide, Inertial> motion;
   motion.V.value.resultant = {0, 0, 1.5};
   motion.dV.value.resultant = {0, 0, -0.75};
@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(slides_as_the_bead_on_a_turning_rod) {
 }
 
 // A free body on the moving guide of the 25-digit cases: the force that its motion takes.
-BOOST_AUTO_TEST_CASE(takes_the_force_of_the_reference_cases) {
+BOOST_AUTO_TEST_CASE(needs_the_force_of_the_reference_cases) {
   for (const test::ReferenceCase& c : test::reference_cases()) {
     const test::Truth truth = test::truth(c.guide, c.relative, c.t, c.masses);
     FrameMotion<Guide, Inertial> motion;
@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(takes_the_force_of_the_reference_cases) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(reads_nothing_from_a_quaternions_norm) {
+BOOST_AUTO_TEST_CASE(does_not_depend_on_a_quaternions_norm) {
   auto ball = described("ball", "guide", {.kind = JointKind::spherical}, some_body());
   auto loose = described("loose", "ball", {.kind = JointKind::free}, some_body());
   const auto system = resting({ball, loose}, UniformGravity<Guide>{{0, 0, -9}});
@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(reads_nothing_from_a_quaternions_norm) {
   BOOST_TEST((16 * a.head(4) == b.head(4)));
 }
 
-BOOST_AUTO_TEST_CASE(turns_a_motor_at_a_constant_rate_and_says_the_torque) {
+BOOST_AUTO_TEST_CASE(reports_the_torque_of_a_constant_rate) {
   auto frame = described("frame", "guide", revolute(x_axis), some_body());
   auto rotor = described("rotor", "frame", revolute(y_axis, {0.1, 0, 0}), some_body());
   rotor.rule = JointRule::constant_rate;
@@ -279,7 +279,7 @@ BOOST_AUTO_TEST_CASE(holds_a_locked_joint_where_it_is) {
 }
 
 // Rings without mass: Euler's equations of the rotor, until the outer axis meets the rotor's.
-BOOST_AUTO_TEST_CASE(does_with_bodies_without_mass_what_can_be_done) {
+BOOST_AUTO_TEST_CASE(accepts_massless_bodies) {
   const InertiaTensor<Body> none{};
   const auto rotor = body(1, {0, 0, 0}, {0.005, 0.005, 0.008});
   const auto gyro = resting({described("outer", "guide", revolute(x_axis), none),
@@ -312,7 +312,7 @@ BOOST_AUTO_TEST_CASE(does_with_bodies_without_mass_what_can_be_done) {
   BOOST_TEST(contains(loose, "body 'tail': the rotation about"), loose);
 }
 
-BOOST_AUTO_TEST_CASE(does_without_degrees_of_freedom) {
+BOOST_AUTO_TEST_CASE(may_have_no_degrees_of_freedom) {
   const auto system =
       resting({described("a", "guide", {.position = {0, 0, 1}}, body(2, {0, 0, 0}, {1, 1, 1})),
                described("b", "a", {.position = {3, 0, 0}}, body(1, {1, 0, 0}, {1, 1, 1}))},
@@ -326,7 +326,7 @@ BOOST_AUTO_TEST_CASE(does_without_degrees_of_freedom) {
   BOOST_TEST(resting({}).rates(0, Eigen::VectorXd()).size() == 0);
 }
 
-BOOST_AUTO_TEST_CASE(tells_its_layout) {
+BOOST_AUTO_TEST_CASE(reports_its_layout) {
   const auto system =
       resting({described("ship", "guide", {.kind = JointKind::free}, some_body()),
                described("fork", "ship",
@@ -344,7 +344,7 @@ BOOST_AUTO_TEST_CASE(tells_its_layout) {
 }
 
 // Kept where the first joint feels it, dropped where what it needs is not there.
-BOOST_AUTO_TEST_CASE(tells_which_terms_it_computes) {
+BOOST_AUTO_TEST_CASE(lists_its_terms) {
   const BodyDescription arm = described("arm", "guide", revolute(y_axis), some_body());
   BodyDescription wheel =
       described("wheel", "arm", revolute(x_axis), body(1, {0, 0, 0}, {0.2, 0.1, 0.1}));
@@ -546,7 +546,7 @@ BOOST_AUTO_TEST_CASE(keep_energy_on_a_resting_guide) {
   BOOST_TEST(std::abs(after[0].second - before[0].second) <= 1e-12 * std::abs(before[0].second));
 }
 
-BOOST_AUTO_TEST_CASE(keep_momentum_where_nothing_acts_from_outside) {
+BOOST_AUTO_TEST_CASE(keep_momentum_without_external_loads) {
   const auto system = resting(mobile(0.7));
   const Eigen::VectorXd y = start(system.tree().coordinates() + system.tree().rates());
   const auto before = system.conserved(0, system.from_vector(y));
@@ -665,7 +665,7 @@ BOOST_AUTO_TEST_CASE(close_their_balances_on_a_moving_guide) {
 }
 
 // Integrator knows neither the size nor the blocks of a system before it has one.
-BOOST_AUTO_TEST_CASE(move_as_states_of_fixed_size_do) {
+BOOST_AUTO_TEST_CASE(agree_with_states_of_fixed_size) {
   const BodySystem system(rolling(), row(), UniformGravity<Inertial>{{0, 0, -9.81}});
   using System = std::decay_t<decltype(system)>;
   using Fixed = Eigen::Matrix<double, 17, 1>;
@@ -692,7 +692,7 @@ BOOST_AUTO_TEST_CASE(move_as_states_of_fixed_size_do) {
 }
 
 // One system, read by two threads with a workspace each.
-BOOST_AUTO_TEST_CASE(may_be_asked_by_several_threads) {
+BOOST_AUTO_TEST_CASE(may_be_used_by_several_threads) {
   const BodySystem<RotatingFrame<>> system({.angular_velocity = {0.3, -0.2, 0.5}}, mobile(0.1),
                                            UniformGravity<Guide>{{0, 0, -9.81}});
   const auto accelerations = [&system] {

@@ -54,7 +54,7 @@ BodySystem<RotatingFrame<>> chain(int n) {
 
 BOOST_AUTO_TEST_SUITE(a_system_of_bodies)
 
-BOOST_AUTO_TEST_CASE(computes_without_memory_of_its_own) {
+BOOST_AUTO_TEST_CASE(computes_without_allocations) {
   const auto system = chain(24);
   BodyWorkspace w = system.workspace();
   Eigen::VectorXd y(system.tree().coordinates() + system.tree().rates());
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(needs_memory_in_proportion_to_its_bodies) {
 }
 
 // A step asks for nothing; what is given back is a State of two vectors.
-BOOST_AUTO_TEST_CASE(is_integrated_without_memory_for_the_steps) {
+BOOST_AUTO_TEST_CASE(is_integrated_without_allocations_in_steps) {
   const auto system = chain(6);
   Integrator run(system, 0, system.rest(), {.relative = 1e-10});
   const auto requests_to = [&run](double t) {
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(is_integrated_without_memory_for_the_steps) {
   BOOST_TEST(run.effort().evaluations > 1600);
 }
 
-BOOST_AUTO_TEST_CASE(is_read_between_steps_without_memory) {
+BOOST_AUTO_TEST_CASE(gives_output_without_allocations) {
   const auto system = chain(6);
   BodyWorkspace w = system.workspace();
   const auto field = [&](double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {

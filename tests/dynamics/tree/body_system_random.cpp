@@ -506,7 +506,7 @@ BOOST_AUTO_TEST_SUITE(a_random_tree)
 
 // Relative to the largest acceleration and to the largest force, times the condition of the mass
 // matrix where that is above 1e3.
-BOOST_AUTO_TEST_CASE(moves_and_pulls_as_newton_and_euler_say) {
+BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler) {
   double worst_dv = 0;
   double worst_reaction = 0;
   double worst_condition = 0;
@@ -648,7 +648,7 @@ BOOST_AUTO_TEST_CASE(balances_every_body) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(gives_back_the_forces_that_moved_it) {
+BOOST_AUTO_TEST_CASE(inverse_dynamics_returns_the_forces) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
       const RandomSystem random(seed);

@@ -106,7 +106,7 @@ void check_same_in_used_memory(const char* what) {
 
 BOOST_AUTO_TEST_SUITE(invariants_of_loads)
 
-BOOST_AUTO_TEST_CASE(energy_is_listed_where_loads_keep_it) {
+BOOST_AUTO_TEST_CASE(energy_is_listed_if_loads_conserve_it) {
   const auto check = [](const char* what, bool keeps, const auto& load) {
     const auto [tree, single] = list_energy(load);
     BOOST_TEST(tree == keeps, what << ", tree");
@@ -140,7 +140,7 @@ BOOST_AUTO_TEST_CASE(energy_is_listed_where_loads_keep_it) {
   check("potential that depends on time", false, Tide{});
 }
 
-BOOST_AUTO_TEST_CASE(members_that_are_left_out_are_zero) {
+BOOST_AUTO_TEST_CASE(omitted_members_are_zero) {
   check_same_in_used_memory<UniformGravity<Guide>>("UniformGravity");
   check_same_in_used_memory<ConstantLoad<Guide>>("ConstantLoad");
   check_same_in_used_memory<ViscousDrag<>>("ViscousDrag");
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(invariants_of_trees)
 
 // All that random trees list stays, on guides at rest and in motion, with gravity and without.
-BOOST_AUTO_TEST_CASE(listed_ones_stay_along_motions) {
+BOOST_AUTO_TEST_CASE(listed_ones_are_constant_along_motions) {
   const std::vector<Gravity> gravities{Gravity{}, UniformGravity<Guide>{{1, 2, -9}},
                                        UniformGravity<Inertial>{{0, 0, -9}}};
   int momenta = 0;
@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(listed_ones_stay_along_motions) {
   BOOST_TEST(momenta >= 60);
 }
 
-BOOST_AUTO_TEST_CASE(momenta_are_listed_where_nothing_acts) {
+BOOST_AUTO_TEST_CASE(momenta_are_listed_if_nothing_acts) {
   const auto listed = [](const std::vector<BodyDescription>& bodies, const Gravity& gravity = {}) {
     const BodySystem system(RestingFrame<>{}, bodies, gravity);
     auto start = system.rest();
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(momenta_are_listed_where_nothing_acts) {
   expect(listed({stand, on_stand}), angular);
 }
 
-BOOST_AUTO_TEST_CASE(of_single_bodies_likewise) {
+BOOST_AUTO_TEST_CASE(single_bodies_list_the_same) {
   const Names linear{"energy",
                      "momentum x",
                      "momentum y",

@@ -60,7 +60,7 @@ Eigen::VectorXd turning_along(const Eigen::VectorXd& u, bool free) {
 
 BOOST_AUTO_TEST_SUITE(the_matrices_of_rotors)
 
-BOOST_AUTO_TEST_CASE(take_springs_for_forces) {
+BOOST_AUTO_TEST_CASE(treat_springs_as_forces) {
   const Json& reference = test::rotors_reference();
   const auto system = resting(
       test::model_bodies("cmgsat", Root::free,
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(take_springs_for_forces) {
   BOOST_TEST(off(solved, dv(m.rates)) <= 1e-13);
 }
 
-BOOST_AUTO_TEST_CASE(are_those_of_the_reference) {
+BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   for (const char* name :
        {"platform_regulated", "platform_free", "pivsat_regulated", "cmgsat_regulated"}) {
     BOOST_TEST_CONTEXT(name) {
@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(move_the_bodies_on_a_turning_guide) {
 
 // A wheel pinned to a satellite: B does not change, and (14) says G_R = 0; in truth the wheel's
 // momentum resists every turn across it.
-BOOST_AUTO_TEST_CASE(feel_a_wheel_that_is_fixed_in_a_satellite) {
+BOOST_AUTO_TEST_CASE(contain_a_wheel_fixed_in_a_satellite) {
   BodyDescription satellite;
   satellite.name = "satellite";
   satellite.joint.kind = JointKind::spherical;
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(have_a_rank_of_twice_the_rotors_at_most) {
 
 // The paper's (11) for rows 1 to 3, as it stands for rates of coordinates, is the exact equation
 // with a torque W x (A* u + B^t L) that nobody exerts. The reference has the numbers.
-BOOST_AUTO_TEST_CASE(leave_rows_1_to_3_of_the_paper_wrong) {
+BOOST_AUTO_TEST_CASE(refute_rows_1_to_3_of_the_paper) {
   for (const auto& [name, source, model] :
        {std::array<const char*, 3>{"T8_platform_free_base_regulated",
                                    "T8_platform_free_base_regulated", "platform"},

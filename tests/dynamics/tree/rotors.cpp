@@ -209,7 +209,7 @@ std::vector<BodyDescription> frame_and_rotor() {
 
 BOOST_AUTO_TEST_SUITE(a_system_with_rotors)
 
-BOOST_AUTO_TEST_CASE(moves_as_newton_and_euler_say) {
+BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler) {
   for (const auto& [name, root] : {std::pair<std::string, Root>{"T1_cardan_regulated", Root::none},
                                    {"T2_cardan_free", Root::none},
                                    {"T3_cmgsat_regulated", Root::free},
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(moves_as_newton_and_euler_say) {
 }
 
 // The base kept at rest, or moved as the guide is: what torque that takes.
-BOOST_AUTO_TEST_CASE(asks_its_base_for_the_torque_of_the_reference) {
+BOOST_AUTO_TEST_CASE(needs_the_base_torque_of_the_reference) {
   for (const char* name : {"T1_cardan_regulated", "T2_cardan_free"}) {
     BOOST_TEST_CONTEXT(name) {
       hold(compare(resting(bodies_of(name, Root::fixed)), Root::fixed, name));
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(asks_its_base_for_the_torque_of_the_reference) {
                Root::fixed, name));
 }
 
-BOOST_AUTO_TEST_CASE(swings_between_springs_as_the_reference_does) {
+BOOST_AUTO_TEST_CASE(agrees_with_the_reference_between_springs) {
   const Json& json = trajectory("T13_cardan_springs_exact_and_precession");
   auto bodies = test::model_bodies("cardan", Root::none, Json::object(), RotorMode::regulated);
   bodies[0].forces = {{.stiffness = 0.4, .constant = 0.02}};
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(swings_between_springs_as_the_reference_does) {
 // Of the same momentum, with less and less moment of inertia, in long runs and in short ones, where
 // the first steps count. An ordinary body at 1e6 rad/s takes a thousand times the steps of one at
 // 1e3.
-BOOST_AUTO_TEST_CASE(needs_no_more_evaluations_however_fast_it_turns) {
+BOOST_AUTO_TEST_CASE(costs_the_same_at_any_speed) {
   const auto evaluations = [](RotorMode mode, double rate, double end) {
     auto bodies = test::model_bodies("cardan", Root::none, Json::object(), mode);
     bodies[2].inertia = {{0.2, {0, 0, 0}, {0.01 / rate, 1e-4, 1e-4, 0, 0, 0}}};
@@ -294,7 +294,7 @@ BOOST_AUTO_TEST_CASE(needs_no_more_evaluations_however_fast_it_turns) {
 
 // All forces and accelerations are linear in the speed of a regulated rotor; nothing of the size of
 // C phi'^2 may come and go. With the rotor as an ordinary body it does.
-BOOST_AUTO_TEST_CASE(loses_no_digits_at_a_million_radians_a_second) {
+BOOST_AUTO_TEST_CASE(loses_no_digits_at_1e6_rad_per_second) {
   const auto unevenness = [](bool rotor) {
     auto bodies = test::model_bodies("cardan", Root::none, Json::object(), RotorMode::regulated);
     for (BodyDescription& b : bodies) b.joint.axis = b.joint.axis + Vector3<double>(0.3, -0.1, 0.2);
@@ -331,7 +331,7 @@ BOOST_AUTO_TEST_CASE(loses_no_digits_at_a_million_radians_a_second) {
   BOOST_TEST(unevenness(false) > 1e-12);
 }
 
-BOOST_AUTO_TEST_CASE(follows_the_speed_it_is_asked_for) {
+BOOST_AUTO_TEST_CASE(follows_the_given_speed) {
   auto bodies = frame_and_rotor();
   bodies[1].rotor = Rotor{.mode = RotorMode::regulated,
                           .acceleration = [](double t) { return 40 * std::cos(8 * t); }};
@@ -359,7 +359,7 @@ BOOST_AUTO_TEST_CASE(follows_the_speed_it_is_asked_for) {
   BOOST_TEST(std::abs(dv[1] - 40 * std::cos(12.0)) <= 1e-13);
 }
 
-BOOST_AUTO_TEST_CASE(conserves_what_it_says) {
+BOOST_AUTO_TEST_CASE(conserves_its_listed_invariants) {
   const auto drift = [](const auto& system, const auto& start, double t) {
     Integrator run(system, 0, start, {.relative = 1e-14});
     const auto before = system.conserved(0, start);
@@ -415,7 +415,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_order_of_its_coordinates) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(refuses_what_is_no_rotor) {
+BOOST_AUTO_TEST_CASE(refuses_invalid_rotors) {
   using Change = std::function<void(std::vector<BodyDescription>&)>;
   const auto refusal = [](const Change& change) {
     auto bodies = frame_and_rotor();

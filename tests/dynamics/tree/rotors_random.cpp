@@ -162,7 +162,7 @@ constexpr std::uint64_t seeds = 500;
 
 BOOST_AUTO_TEST_SUITE(a_random_tree_with_rotors)
 
-BOOST_AUTO_TEST_CASE(is_the_tree_with_ordinary_bodies) {
+BOOST_AUTO_TEST_CASE(agrees_with_the_tree_of_ordinary_bodies) {
   Worst rates, inverse, mass, reaction, drive, parts, balance, place, terms;
   int rotors = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
@@ -339,7 +339,7 @@ BOOST_AUTO_TEST_CASE(is_linearized_by_dual_numbers) {
   BOOST_TEST(worst <= 1e-7);
 }
 
-BOOST_AUTO_TEST_CASE(refuses_dual_numbers_that_it_cannot_follow) {
+BOOST_AUTO_TEST_CASE(refuses_unsupported_dual_numbers) {
   using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
   using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
   RandomRotors random(1);
@@ -353,7 +353,7 @@ BOOST_AUTO_TEST_CASE(refuses_dual_numbers_that_it_cannot_follow) {
 }
 
 // How a rotor stands is nothing to anybody else, to the last bit.
-BOOST_AUTO_TEST_CASE(does_not_look_at_the_angle) {
+BOOST_AUTO_TEST_CASE(does_not_depend_on_the_rotor_angle) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
       const RandomRotors random(seed);

@@ -36,7 +36,7 @@ void hold_tree(const std::string& what, const BodySystem<M>& system, std::uint64
 
 BOOST_AUTO_TEST_SUITE(tree_series)
 
-BOOST_DATA_TEST_CASE(is_that_of_trees_on_all_kinds_of_guides, data::xrange(120), seed) {
+BOOST_DATA_TEST_CASE(agrees_for_trees_on_all_guides, data::xrange(120), seed) {
   const auto number = static_cast<std::uint64_t>(seed);
   const auto bodies = test::random_tree(number);
   const UniformGravity<Guide> along_guide{{1, 2, -9}};
@@ -53,7 +53,7 @@ BOOST_DATA_TEST_CASE(is_that_of_trees_on_all_kinds_of_guides, data::xrange(120),
             number);
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_more_rates_than_are_inverted) {
+BOOST_AUTO_TEST_CASE(agrees_for_many_rates) {
   std::vector<BodyDescription> chain;
   Sample sample(7);
   for (int i = 0; i < 20; ++i) {
@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_more_rates_than_are_inverted) {
             0);
 }
 
-BOOST_AUTO_TEST_CASE(is_that_of_what_floats_and_is_braked) {
+BOOST_AUTO_TEST_CASE(agrees_for_floating_and_braked_bodies) {
   Sample sample(3);
   BodyDescription body;
   body.name = "body";
@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_what_floats_and_is_braked) {
 }
 
 /// Of a pendulum, which has a series of its own.
-BOOST_AUTO_TEST_CASE(is_that_of_a_pendulum) {
+BOOST_AUTO_TEST_CASE(agrees_for_a_pendulum) {
   BodyDescription rod;
   rod.name = "rod";
   rod.joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}};
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(is_that_of_a_pendulum) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(is_not_known_of_what_changes_otherwise) {
+BOOST_AUTO_TEST_CASE(is_unavailable_for_other_loads) {
   BodyDescription carrier;
   carrier.name = "carrier";
   carrier.joint = {.kind = JointKind::free};
