@@ -65,8 +65,7 @@ std::string note(const Scene& scene, const Answer& answer, const ReferenceMotion
   _exit(0);
 }
 
-/// All that comes through a pipe until it is closed; false where that takes longer than so many
-/// seconds.
+/// Reads a pipe until it is closed; false if that takes longer than the given seconds.
 bool receive(int pipe, double seconds, std::string& text) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -83,7 +82,7 @@ bool receive(int pipe, double seconds, std::string& text) {
   }
 }
 
-/// Reads the lines; says what the work was at last.
+/// Reads the lines; returns the name of the last part of the work.
 std::string take(const std::string& text, Verdict& verdict) {
   std::string part = "the start";
   for (std::size_t at = 0; at < text.size();) {

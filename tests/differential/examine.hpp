@@ -8,12 +8,12 @@
 
 namespace differential {
 
-/// What came of a scene.
+/// The result of a scene's examination.
 struct Verdict {
   std::vector<Fault> faults = {};
   bool answered = false;    ///< by one method at least
   bool referenced = false;  ///< the independent integrator came to the end
-  std::string notes = {};   ///< what each method said
+  std::string notes = {};   ///< message of each method
 };
 
 struct Examination {
@@ -22,7 +22,7 @@ struct Examination {
   std::filesystem::path folder = {};  ///< for logs
 };
 
-/// Runs and judges a scene in a process of its own, so that a crash or a hang is a fault as well.
+/// Runs and judges a scene in a process of its own, so that a crash or a hang counts as a fault.
 [[nodiscard]] Verdict examine(const Scene& scene, const Examination& how);
 
 }  // namespace differential

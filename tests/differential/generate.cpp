@@ -7,7 +7,7 @@ namespace differential {
 
 namespace {
 
-/// Rounded to so many digits, as typed.
+/// Rounded to a number of digits, as typed.
 double rounded(double x, int digits) {
   if (x == 0) return 0;
   const double unit = std::pow(10, std::floor(std::log10(std::abs(x))) - digits + 1);
@@ -15,7 +15,7 @@ double rounded(double x, int digits) {
   return unit < 1 ? scaled / std::round(1 / unit) : scaled * unit;
 }
 
-/// A size that people write: 1 above all.
+/// A typical size, most often 1.
 double plain(Random& r, double least = 0.01, double most = 100) {
   if (r.chance(0.4)) return 1;
   if (r.chance(0.4)) return std::clamp(r.pick({0.1, 0.2, 0.5, 2.0, 5.0, 10.0}), least, most);
@@ -30,7 +30,7 @@ Vector unit(Random& r) {
   return v;
 }
 
-/// Along an axis mostly.
+/// A direction, mostly along an axis.
 Vector direction(Random& r) {
   if (r.chance(0.75)) return unit(r);
   if (r.chance(0.5)) return {sign(r), sign(r), r.chance(0.5) ? 0 : 1.0};
@@ -78,7 +78,7 @@ double speed(Random& r) {
   return sign(r) * plain(r, 0.01, 30);
 }
 
-/// An angular rate; most people write radian.
+/// An angular rate; most users write radian.
 Angle rate(Random& r, bool degrees = false) {
   if (degrees) return {r.pick({0.0, 1.0, 10.0, 90.0, -360.0, 720.0}), true};
   return {speed(r), false};
@@ -98,7 +98,7 @@ Series series(Random& r, double size, double frequency) {
   return s;
 }
 
-/// Where a frame that moves by its rates begins.
+/// The start of a frame that is given by its rates.
 void add_frame_start(Random& r, Link& link) {
   if (r.chance(0.75)) return;
   if (r.chance(0.7)) link.attitude = attitude(r);
@@ -165,7 +165,7 @@ void spell_time(Random& r, Spelling& how) {
   if (r.chance(0.2)) how.duplicates = r.pick<std::string>({"first", "last", "mean"});
 }
 
-/// Another way to write a log down than the plainest.
+/// Another spelling of a log than the plainest.
 void spell(Random& r, Log& log, bool of_rates) {
   Spelling& how = log.spelling;
   how.separator = r.pick({',', ';', '\t', ' '});
@@ -186,7 +186,7 @@ Link logged(Random& r, LinkKind kind) {
   if (r.chance(0.5)) link.log.shift = vector(r, 0.1, 2);
   link.log.step = 0.01 / link.log.frequency;
   if (r.chance(0.5)) spell(r, link.log, kind == LinkKind::rates);
-  // Angles are those of any attitude, but beside the lock of the gimbals.
+  // Angles describe any attitude except near gimbal lock.
   if (!link.log.spelling.has_angles && r.chance(0.3)) link.log.from = attitude(r);
   return link;
 }
@@ -239,7 +239,7 @@ void add_gravity(Random& r, Scene& scene) {
   scene.gravity_vector = r.pick({1.0, 9.81, 9.81, 9.81}) * direction(r);
 }
 
-/// Principal moments, often equal ones, or six entries of a tensor that a body may have.
+/// Principal moments, often equal, or six entries of a tensor that a body may have.
 std::vector<double> inertia(Random& r, double size) {
   const auto moment = [&r, size] { return size * plain(r, 0.1, 10); };
   const double a = moment();
@@ -408,7 +408,7 @@ void add_bodies(Random& r, Scene& scene) {
   }
 }
 
-/// A pendulum or a chain of two on whatever moves, as most people begin.
+/// A pendulum or a chain of two on any guide: the usual first scene.
 void add_pendulums(Random& r, Scene& scene) {
   const Vector axis = unit(r);
   const int links = r.chance(0.7) ? 1 : 2;
@@ -448,8 +448,7 @@ Link aligned_link(Random& r) {
   return link;
 }
 
-/// Bodies at rest, or nearly, all axes along those of the guide: what is on the edge between 0 and
-/// something.
+/// Bodies at rest or nearly so, with axes along those of the guide: cases at the edge to 0.
 void add_resting_bodies(Random& r, Scene& scene) {
   scene.guide = {aligned_link(r)};
   scene.gravity = GravityKind::not_given;
@@ -510,10 +509,10 @@ void add_cardan_gyro(Random& r, Scene& scene) {
   scene.bodies.push_back(wheel);
 }
 
-/// A number of either sign that is not small against what it is for.
+/// A number of either sign that is not small relative to `size`.
 double small(Random& r, double size) { return sign(r) * size * r.between(0.5, 1); }
 
-/// Rings that hardly move about a rotor, as the equations of the papers have it.
+/// Rings with small motions about a rotor, as in the equations of the papers.
 void add_small_gimbals(Random& r, Scene& scene, bool symmetric) {
   const int first = r.below(3);
   const double size = r.pick({0.01, 0.03});
@@ -550,8 +549,7 @@ void add_small_gimbals(Random& r, Scene& scene, bool symmetric) {
   scene.model = symmetric ? "foeppl" : "fuchs-weigand";
 }
 
-/// Pendulums that hardly swing about where they hang or stand, on a guide that may turn about the
-/// vertical.
+/// Pendulums with small swings about a rest position, on a guide that may turn about the vertical.
 void add_small_pendulums(Random& r, Scene& scene) {
   const int along = r.below(3);
   const Vector down = sign(r) * Vector::Unit(along);
@@ -582,7 +580,7 @@ void add_small_pendulums(Random& r, Scene& scene) {
   scene.model = "linear";
 }
 
-/// A fast rotor in rings, the inner of which is heavy on one side.
+/// A fast rotor in rings; the inner ring has an unbalance.
 void add_fast_gyro(Random& r, Scene& scene) {
   add_small_gimbals(r, scene, true);
   for (Body& body : scene.bodies) body.stiffness.clear(), body.damping.clear(), body.rate.clear();

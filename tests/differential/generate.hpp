@@ -5,8 +5,8 @@
 
 namespace differential {
 
-/// A scene that a person might write: anything the language has, often with the numbers that people
-/// take (zeros, units, right angles, rest).
+/// A scene that a user might write. It may use all of the language, often with common numbers
+/// (zeros, units, right angles, rest).
 [[nodiscard]] Scene generate(Random random);
 
 }  // namespace differential

@@ -10,7 +10,7 @@ namespace differential {
 
 namespace {
 
-/// Numbers become #, so that messages of one kind are the same.
+/// Numbers are replaced by #, so that messages of one kind are equal.
 std::string without_numbers(const std::string& text) {
   static const std::regex number("[-+]?[0-9]+(\\.[0-9]*)?(e[-+]?[0-9]+)?");
   return std::regex_replace(text, number, "#").substr(0, 160);
@@ -79,7 +79,7 @@ class Judge {
                        });
   }
 
-  /// Beyond this, what a scene is made of has long since ceased to mean anything.
+  /// Beyond this limit the scene has no physical meaning any more.
   [[nodiscard]] bool stays_within_reason() const {
     constexpr double reason = 1e12;  // m, rad, and per second
     const auto within = [](const JointValues& y) {
@@ -140,10 +140,10 @@ class Judge {
     }
   }
 
-  /// What the samples of a log leave unknown of its motion.
+  /// Uncertainty of a log's motion that its samples leave.
   [[nodiscard]] double unknown() const { return scene_.has_log() ? 1e-5 : 0; }
 
-  /// Errors are measured by the sizes of all steps, not of outputs alone.
+  /// Errors are measured relative to the sizes in all steps, not only at the outputs.
   void note_way(Distance& distance, double to) const {
     const Answer& way = answers_.way;
     for (std::size_t i = 0; i < way.states.size() && way.times[i] <= to; ++i) {
@@ -172,13 +172,13 @@ class Judge {
     }
   }
 
-  /// Whether an error is within what is told of it.
+  /// True if an error is within the reported one.
   [[nodiscard]] static bool tells(const Answer& answer, double off) {
     if (!answer.kept) return off <= 10 * answer.estimate;
     return off <= 2 * answer.tolerance || off <= 2 * answer.estimate;
   }
 
-  /// Faults at the finest tolerance are a kind of their own: rounding makes most of them.
+  /// Faults at the finest tolerance are a kind of their own: rounding causes most of them.
   [[nodiscard]] static std::string finest(const Answer& answer) {
     return answer.tolerance <= 1e-12 ? " at 1e-12" : "";
   }
@@ -214,7 +214,8 @@ class Judge {
     }
   }
 
-  /// That auto reaches what another method reaches, unless that one is wrong or stands alone.
+  /// Tests that auto reaches the end if another method does, unless that method is wrong or the
+  /// only one.
   void judge_reach() {
     const auto& all = answers_.by_method;
     const Answer& automatic = all.front();
@@ -230,8 +231,8 @@ class Judge {
     }
   }
 
-  /// That an approximation tells how far it is off, and comes nearer to the exact motion as fast as
-  /// its equations should: what is wrong in them at first order does so in proportion alone.
+  /// Tests the reported error and the order of an approximation. A first-order mistake in its
+  /// equations would make the error fall only in proportion.
   void judge_model() {
     if (!answers_.approximate) return;
     const auto& [answer, model_error, off, nearer_off] = *answers_.approximate;
@@ -241,7 +242,7 @@ class Judge {
     }
     judge_model_error(answer, model_error);
     const bool is_small = model_error <= 0.1 && off > 1e4 * answer.tolerance;
-    // Halves of a third, and of a second order; the nutations fall with the square of the speed.
+    // Halves for third and second order; the nutations fall with the square of the speed.
     const double most = scene_.model == "linear" || scene_.model == "precession" ? 0.35 : 0.2;
     if (!is_small || nearer_off <= most * off) return;
     add("model " + scene_.model + " has another order",
@@ -265,8 +266,8 @@ class Judge {
         fmt::format("{:.3g}, and is off by {:.3g}", model_error, off));
   }
 
-  /// That a report is the same whichever outputs are asked for: the sizes by which errors count, and
-  /// what is told of the end, as far as the same steps lead there.
+  /// Tests that a report does not depend on the requested outputs. This holds for sizes, and for
+  /// the error at the end as far as the steps are the same.
   void judge_outputs() {
     const Answer& many = answers_.way;
     const Answer& one = answers_.end;
@@ -280,7 +281,7 @@ class Judge {
                       many.sizes[i], many.states.size()));
       return;
     }
-    // The error of steps across the knots of a spline depends on where they cross.
+    // The error of steps across a spline's knots depends on the position of the steps.
     if (scene_.has_log() || one.method != many.method || one.steps != many.steps) return;
     const double told = std::max(one.estimate, many.estimate);
     const double off = std::abs(one.end_error - many.end_error);
@@ -290,15 +291,15 @@ class Judge {
                     one.end_error, many.end_error, many.states.size(), told));
   }
 
-  /// Rounding of the difference of two errors that are told: each is 1.55 times the
-  /// distance of two runs, and each of these four walks by 2.5 units of 2^-53 a step at random. Three
-  /// times their standard deviation.
+  /// Rounding of the difference of two reported errors. Each is 1.55 times the distance of two
+  /// runs. Each of these four runs walks by 2.5 units of 2^-53 a step at random. Three times their
+  /// standard deviation.
   [[nodiscard]] static double noise_of_pairs(double steps) {
     return 3 * 1.55 * 2.5 * 0x1p-53 * std::sqrt(4 * steps);
   }
 
-  /// A spring without a damper oscillates for ever, and who asks has to resolve it: that radau13
-  /// passes over it where it is small is no merit.
+  /// A spring without a damper oscillates for ever and must be resolved. If radau13 does not
+  /// resolve a small oscillation, that is no advantage.
   [[nodiscard]] bool oscillates() const {
     return std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& body) {
       return !body.stiffness.empty() &&
@@ -346,7 +347,7 @@ void Distance::note(const JointValues& y) {
 }
 
 double Distance::operator()(const JointValues& a, const JointValues& b) const {
-  // What rounding of forces of order 10 may make of a body of order 1 within seconds.
+  // Effect of rounding in forces of order 10 on a body of order 1 within seconds.
   constexpr double rounding = 2e-14;
   double worst = 0;
   std::size_t begin = 0;

@@ -9,14 +9,14 @@
 
 namespace differential {
 
-/// Something wrong with what the library says of a scene.
+/// A fault in the library's answer for a scene.
 struct Fault {
-  std::string kind;    ///< the same words for the same kind, whatever the numbers
+  std::string kind;    ///< the same text for all faults of one kind, whatever the numbers
   std::string detail;  ///< with numbers
 };
 
-/// The distance of two states in the measure of RunReport::error_estimate, sizes being the greatest
-/// so far of either.
+/// The distance of two states in the measure of RunReport::error_estimate. Sizes are the greatest
+/// so far of either state.
 class Distance {
  public:
   explicit Distance(const Scene& scene) : blocks_(blocks(scene)), sizes_(blocks_.size(), 1e-3) {}
@@ -29,13 +29,13 @@ class Distance {
   std::vector<double> sizes_;
 };
 
-/// How far the end of an answer is off the independent motion, and how well that is known; nothing
-/// where either does not come to the end.
+/// The deviation of an answer's end from the independent motion, and its uncertainty. Empty if
+/// either does not reach the end.
 [[nodiscard]] std::optional<std::pair<double, double>> off_at_end(const Scene& scene,
                                                                   const Answer& answer,
                                                                   const ReferenceMotion& reference);
 
-/// Holds the answers against each other and against the independent motion.
+/// Compares the answers with each other and with the independent motion.
 [[nodiscard]] std::vector<Fault> judge(const Scene& scene, const Answers& answers,
                                        const ReferenceMotion& reference);
 

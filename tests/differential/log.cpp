@@ -12,7 +12,8 @@ namespace differential {
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
-constexpr long rows_outside = 16;  // on either side, so that no end of the spline lies in the run
+constexpr long rows_outside = 16;  // on either side, so that no end of the spline lies within the
+                                   // run
 constexpr double window_outside = 8.5;  // rows
 
 std::string quoted(const std::string& word) { return fmt::format("\"{}\"", word); }
@@ -33,7 +34,7 @@ std::string stamp(std::int64_t ns, const std::string& unit) {
 
 using Columns = std::vector<std::pair<std::string, double>>;
 
-/// Numbers of a row beside its time.
+/// The numbers of a row except its time.
 Columns columns(const Log& log, const Log::Sample& s, bool of_rates) {
   const double angle = log.spelling.in_degrees ? degree : 1;
   Columns result;
@@ -113,7 +114,7 @@ class Writer {
     add_fields("", fields);
   }
 
-  /// Some rows come twice, and one of the two is wrong, unless their mean is asked for.
+  /// Some rows occur twice. One of the two is then wrong, unless their mean is requested.
   void add_row(long i) {
     const std::int64_t ns = std::llround(static_cast<double>(i) * log_.step * 1e9);
     const bool is_stamped = how_.time_zero != 0;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-/// Logs of a guide's motion, each written down in one of the ways that docs/scene_files.md allows.
+/// Logs of a guide's motion, each written in one of the ways that docs/scene_files.md allows.
 
 namespace differential {
 
@@ -17,15 +17,15 @@ using Vector = Eigen::Vector3d;
 /// Keys of the file, each with its value as text.
 using Keys = std::vector<std::pair<std::string, std::string>>;
 
-/// How the file has the columns.
+/// The columns in the file.
 enum class LogHeader {
-  usual,     ///< by the names that are looked for
-  named,     ///< by other names, which the key `columns` gives
-  numbered,  ///< by other names, the key `columns` gives numbers
+  usual,     ///< the names that the library expects
+  named,     ///< other names, given by the key `columns`
+  numbered,  ///< other names; the key `columns` gives numbers
   none
 };
 
-/// How a log is written down.
+/// Spelling of a log.
 struct Spelling {
   char separator = ',';
   bool says_separator = false;
@@ -48,8 +48,8 @@ struct Spelling {
   std::string sigma = {};        ///< as in the file; empty: not given
 };
 
-/// A motion that is logged: a turn by `from` after one about a fixed axis by
-/// amplitude sin(frequency t + phase), and a shift of the origin by the same sine.
+/// A logged motion: a fixed rotation `from` and one about a fixed axis by amplitude sin(frequency t
+/// + phase). The origin shifts with the same sine.
 struct Log {
   std::optional<Eigen::Vector4d> from = {};  ///< w, x, y, z
   Vector axis = Vector::UnitX();
@@ -61,10 +61,10 @@ struct Log {
   Spelling spelling = {};
   // For a log of rates.
   bool is_kinematic = false;
-  bool says_gravity = false;  ///< else it is that of the scene
+  bool says_gravity = false;  ///< false: that of the scene
   Vector gravity = Vector::Zero();
 
-  /// Attitude and place of the guide, and the rates of both on the guide's axes.
+  /// Attitude and position of the guide, and their rates on the guide's axes.
   struct Sample {
     Eigen::Quaterniond attitude;
     Vector place;
@@ -74,12 +74,12 @@ struct Log {
   };
   [[nodiscard]] Sample at(double t) const;
 
-  /// The file's text, and the keys that say how to read it.
+  /// The file's text, and the keys for reading it.
   [[nodiscard]] std::string csv(double t_end, bool of_rates) const;
   [[nodiscard]] Keys keys(const std::string& file, double t_end, bool of_rates) const;
 };
 
-/// The fewest digits that give the number back.
+/// The shortest digits that restore the number.
 [[nodiscard]] std::string text(double x);
 
 template <class Numbers>

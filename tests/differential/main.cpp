@@ -1,14 +1,14 @@
-// test.differential: random scene files by several methods of the library and by an integrator of
-// its own; what differs is a fault, and its scene is shrunk and kept.
+// test.differential: random scene files, solved by several methods of the library and by an
+// independent integrator. A difference is a fault; its scene is shrunk and kept.
 //
-// generate.cpp  scenes over the whole language, weighted towards what people write
+// generate.cpp  scenes over the whole language, weighted towards usual ones
 // log.cpp       logs of guides, and the ways to write them down
-// runs.cpp      the library, through what simulate runs a scene file by
+// runs.cpp      the library, by the functions of simulate
 // reference*    the independent integrator: no code of dynamics/
-// judge.cpp     what counts as a fault
+// judge.cpp     the definition of faults
 // examine.cpp   a process for each scene, against crashes and hangs
-// shrink.cpp    the least scene that still fails
-// known.txt     kinds of faults that are told and do not count, up to a number of scenes
+// shrink.cpp    the smallest scene that still fails
+// known.txt     kinds of faults that are reported but tolerated, up to a number of scenes
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -39,7 +39,7 @@ using Clock = std::chrono::steady_clock;
 volatile std::sig_atomic_t interrupted = 0;
 extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
-/// A kind of faults that is not mended yet.
+/// A known kind of faults that is not mended yet.
 struct Known {
   double most;        ///< scenes of 400 that may have it
   std::string begin;  ///< of its name
@@ -64,7 +64,7 @@ struct Request {
   }
 };
 
-/// The lines of a file but for blank ones and those that begin with #.
+/// The lines of a file without blank ones and those that begin with #.
 std::vector<Known> known_in(const std::string& file) {
   std::vector<Known> result;
   std::ifstream in(file);
@@ -76,7 +76,7 @@ std::vector<Known> known_in(const std::string& file) {
   return result;
 }
 
-/// What the processes share.
+/// Data shared by the processes.
 struct Shared {
   std::atomic<std::uint64_t> next;
   std::atomic<std::uint64_t> done;
@@ -114,7 +114,7 @@ std::string slug(const std::string& kind) {
   return result;
 }
 
-/// A new folder for an example of the kind; none where there are three.
+/// A new folder for an example of the kind; empty if three exist.
 std::filesystem::path folder_for(const Request& request, const std::string& kind) {
   for (int i = 1; i <= 3; ++i) {
     const auto folder = request.out / fmt::format("{}-{}", slug(kind), i);
@@ -171,7 +171,7 @@ void try_scene(const Request& request, const Number& number, Shared& shared) {
   _exit(0);
 }
 
-/// Waits for the workers, shows how far they are, and stops them when time is over.
+/// Waits for the workers, shows their progress, and stops them at the end of the time.
 void watch(const Request& request, Shared& shared, std::size_t workers) {
   const auto begin = Clock::now();
   Progress progress;
@@ -192,7 +192,7 @@ void watch(const Request& request, Shared& shared, std::size_t workers) {
   }
 }
 
-/// Tells how often each kind of fault has come; whether a known one came more often than it may.
+/// Prints the number of each kind of fault. Returns true if a known kind exceeds its limit.
 [[nodiscard]] bool summarise(const Request& request, const Shared& shared) {
   std::map<std::string, int> kinds;
   std::ifstream file(request.out / "faults.txt");

@@ -29,7 +29,7 @@ class Random {
   [[nodiscard]] double between(double least, double most) {
     return least + (most - least) * uniform();
   }
-  /// With evenly distributed logarithm.
+  /// With uniformly distributed logarithm.
   [[nodiscard]] double spread(double least, double most) {
     return std::exp(between(std::log(least), std::log(most)));
   }

@@ -24,7 +24,8 @@ class Steps {
   [[nodiscard]] const State& state() const { return y_; }
   [[nodiscard]] double evaluations() const { return evaluations_; }
 
-  /// From t by h; the error against the column before, relative to the greatest sizes so far.
+  /// One step from t by h. The error is the difference to the column before, relative to the
+  /// greatest sizes so far.
   [[nodiscard]] Real attempt(Real t, Real h) {
     tree_.rates(t, y_, first_);
     evaluations_ += 1;
@@ -85,7 +86,7 @@ class Steps {
   double evaluations_ = 0;
 };
 
-/// The scene with the numbers of its start off by a last digit, up and down in turn.
+/// The scene with its start perturbed in the last digit, up and down in turn.
 Scene moved(Scene scene) {
   double digit = 0x1p-52;
   const auto move = [&digit](double& x) {
@@ -113,7 +114,7 @@ struct Step {
   bool output;
 };
 
-/// Adaptive steps to the times; those that were taken go into `taken`.
+/// Adaptive steps to the times; accepted steps are recorded in `taken`.
 void run(const Scene& scene, const std::vector<double>& times, double max_evaluations,
          ReferenceMotion& motion, std::vector<Step>& taken) {
   constexpr Real tolerance = 1e-15L;

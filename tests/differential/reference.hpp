@@ -4,40 +4,41 @@
 
 #include "scene.hpp"
 
-/// An integrator of scenes that shares no code with dynamics/: every body has place, attitude and
-/// velocities of its own, joints are conditions with Lagrange multipliers, and steps are those of
+/// An integrator of scenes that shares no code with dynamics/. Every body has position, attitude
+/// and velocities of its own. Joints are conditions with Lagrange multipliers. Steps are those of
 /// Gragg's extrapolation in long double.
 
 namespace differential {
 
-/// Coordinates, then rates, of one body after the other, as docs/scene_files.md counts them; a
-/// quaternion as x, y, z, w. Of a joint that is held they are there too.
+/// Coordinates, then rates, of one body after the other, in the order of docs/scene_files.md; a
+/// quaternion as x, y, z, w. Locked joints are included.
 using JointValues = std::vector<double>;
 
-/// Numbers in JointValues that share unit and size: 4 an attitude, else so many numbers.
+/// Numbers in JointValues that share unit and size: 4 for an attitude, else the number of
+/// coordinates.
 [[nodiscard]] std::vector<int> blocks(const Scene& scene);
 
-/// What drifts of invariants are measured by.
+/// Reference sizes for the drift of invariants.
 struct Sizes {
   long double energy = 0;
   long double momentum = 0;
 };
 
-/// The motion at the times asked for, as far as the budget went.
+/// The motion at the requested times, as far as the budget allows.
 struct ReferenceMotion {
   std::vector<double> times;
   std::vector<JointValues> states;
-  /// The same with halved steps, from a start that is off by its last digits.
+  /// The same with halved steps and a start perturbed in its last digits.
   std::vector<JointValues> others;
   bool complete = false;
-  Sizes sizes = {};  ///< the greatest on the way
+  Sizes sizes = {};  ///< greatest sizes so far
 };
 
-/// The force of each body's parent on it at the start: three numbers of force and three of torque about
-/// the body's origin, on body axes.
+/// The force of each body's parent on it at the start: three numbers of force, three of torque. The
+/// torque is about the body's origin, all on body axes.
 [[nodiscard]] std::vector<double> start_reactions(const Scene& scene);
 
-/// `work` is about the number of floating point operations that may be spent.
+/// `work` is the approximate limit of floating point operations.
 [[nodiscard]] ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times,
                                         double work);
 

@@ -9,7 +9,7 @@ namespace {
 constexpr Real pi = 3.14159265358979323846264338327950288L;
 constexpr Real equator = 6378137;
 constexpr Real flattening = 1 / 298.257223563L;
-constexpr Real earth_rate = Real(7.292115e-5);  // as double, for the site's is one too
+constexpr Real earth_rate = Real(7.292115e-5);  // as double, like the site's
 
 Vec wide(const Vector& v) { return v.cast<Real>(); }
 
@@ -52,8 +52,8 @@ Real rate_of(const Link& link) { return link.rate ? Real(link.rate->radian()) : 
 
 bool has_number(const Link& link) { return !link.gravity.empty() && link.gravity.front() != '"'; }
 
-/// Axes of the guide, whose plumb line is turned by `tilt` from the normal at the latitude, on axes
-/// of the earth: z to the pole, x in the meridian.
+/// Axes of the guide on axes of the earth, z to the pole and x in the meridian. The plumb line is
+/// turned by `tilt` from the normal at the latitude.
 Mat site_axes(const Link& link, Real tilt) {
   const auto [sl, cl] = sine_cosine(link.latitude);
   const auto [sa, ca] = sine_cosine(link.azimuth);
@@ -100,7 +100,7 @@ Motion earth(const Link& link, Real t) {
   return motion;
 }
 
-/// About the axis on inertial axes, on which `from` has brought it.
+/// About an axis on inertial axes, after the rotation `from`.
 Motion logged(const Log& log, Real t) {
   const auto f = Real(log.frequency);
   const Real angle = f * t + Real(log.phase);
@@ -118,7 +118,7 @@ Motion logged(const Log& log, Real t) {
           dds * wide(log.shift)};
 }
 
-/// A motion against a frame that moves itself.
+/// A motion relative to a frame that moves itself.
 Motion on(const Motion& base, const Motion& own) {
   const Vec x = base.R * own.x;
   const Vec v = base.R * own.v;

@@ -15,7 +15,7 @@ using Mat = Eigen::Matrix<Real, 3, 3>;
 using Quat = Eigen::Quaternion<Real>;
 using State = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-/// How the guide moves against the inertial frame, all on inertial axes.
+/// The guide's motion relative to the inertial frame, all on inertial axes.
 struct Motion {
   Mat R = Mat::Identity();  ///< guide to inertial
   Vec w = Vec::Zero();
@@ -25,8 +25,8 @@ struct Motion {
   Vec a = Vec::Zero();
 };
 
-/// The guide of a scene. What of it has no closed form belongs to the state: attitude, place and
-/// velocity of each rotating or harmonic link against the one before, ten numbers.
+/// The guide of a scene. Links without a closed form are integrated with the state. Each rotating
+/// or harmonic link adds ten numbers: attitude, position and velocity relative to the link before.
 class Guide {
  public:
   explicit Guide(const Scene& scene);
@@ -37,10 +37,10 @@ class Guide {
   /// Motion and rates of the state's first size() numbers.
   [[nodiscard]] Motion at(Real t, const State& y, State& rates) const;
 
-  /// Makes the attitudes unit quaternions again.
+  /// Normalises the attitude quaternions.
   void project(State& y) const;
 
-  /// Gravity at a place on inertial axes from the guide's origin, on inertial axes.
+  /// Gravity on inertial axes, at a position on inertial axes from the guide's origin.
   [[nodiscard]] Vec gravity(Real t, const Motion& motion, const Vec& place) const;
 
  private:
@@ -50,10 +50,10 @@ class Guide {
   Eigen::Index size_ = 0;
 };
 
-/// A quaternion w, x, y, z of the file, as the library rounds it; no turn where there is none.
+/// A quaternion w, x, y, z of the file, rounded as in the library; the identity if absent.
 [[nodiscard]] Quat unit_quaternion(const std::optional<Eigen::Vector4d>& q);
 
-/// The gravitation of the WGS84 ellipsoid, its rotation left out, at a place from the earth's
+/// The gravitation of the WGS84 ellipsoid without its rotation, at a position from the earth's
 /// centre, z to the pole.
 ///
 /// Source : W. Heiskanen, H. Moritz, Physical Geodesy (1967), (2-66) to (2-68), in spheroidal

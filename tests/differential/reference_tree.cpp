@@ -32,7 +32,7 @@ Mat tensor(const std::vector<double>& t) {
 
 Quat attitude(const Real* q) { return {q[3], q[0], q[1], q[2]}; }
 
-/// Two unit vectors across a third.
+/// Two unit vectors perpendicular to a third.
 std::pair<Vec, Vec> across(const Vec& axis) {
   const Vec first = axis.unitOrthogonal();
   return {first, axis.cross(first)};

@@ -7,7 +7,7 @@
 
 namespace differential::reference {
 
-/// The bodies of a scene in the frame that does not turn and whose origin is the guide's.
+/// The bodies of a scene in a frame that does not turn, with the guide's origin as its origin.
 ///
 /// State  : that of the guide; of each body place of the centre of mass, attitude (x, y, z, w),
 ///          velocity, and angular velocity on body axes; angles of revolute and universal joints,
@@ -20,20 +20,20 @@ class Tree {
 
   [[nodiscard]] State start();
   void rates(Real t, const State& y, State& result);
-  /// Brings places and velocities back to what the joints allow, by the least change in the metric
-  /// of the masses.
+  /// Projects positions and velocities onto the joints' conditions by the least change in the
+  /// metric of the masses.
   void project(Real t, State& y);
   [[nodiscard]] JointValues values(Real t, const State& y);
-  /// How large the parts of energy and of momenta are, all counted as positive.
+  /// Sizes of the parts of energy and momenta, all counted as positive.
   [[nodiscard]] Sizes sizes(Real t, const State& y);
-  /// The force of each body's parent through the joint: force, then torque about the body's
-  /// origin, on body axes.
+  /// The force of each body's parent through the joint: force, then torque about the body's origin,
+  /// on body axes.
   [[nodiscard]] std::vector<double> reactions(Real t, const State& y);
-  /// About the operations of one evaluation.
+  /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
 
  private:
-  /// What stays of a body.
+  /// The constant data of a body.
   struct Part {
     Real mass = 0;
     Vec centre = Vec::Zero();
@@ -62,7 +62,7 @@ class Tree {
   struct Relative {
     Vec arm;    ///< the body's origin from its centre of mass
     Vec reach;  ///< the same point from the parent's centre of mass
-    Vec place;  ///< the body's origin from the joint's place on the parent
+    Vec place;  ///< the body's origin from the joint's point on the parent
     Vec v;      ///< seen from the parent
     Vec w;
     Mat turn;  ///< parent's axes from the body's, divided by `zero`
@@ -95,13 +95,13 @@ class Tree {
   std::vector<Part> parts_;
   std::vector<int> parents_;
   Eigen::Index size_ = 0;
-  // Of one evaluation.
+  // Data of one evaluation.
   Pose guide_pose_;
   std::vector<Pose> poses_;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;
   State right_;
   State solution_;
-  std::vector<Real> off_place_;  ///< by how much each condition is not fulfilled
+  std::vector<Real> off_place_;  ///< violation of each condition
   std::vector<Real> off_velocity_;
   Eigen::Index rows_ = 0;
 };

@@ -87,13 +87,13 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
   return answer;
 }
 
-/// The same scene, computed no finer than to 1e-6.
+/// The same scene with a tolerance of 1e-6 at best.
 kreisel::SceneFile roughly(kreisel::SceneFile file) {
   file.tolerance = std::max(file.tolerance, 1e-6);
   return file;
 }
 
-/// The same scene at 300 times between its outputs, and at more and more before the first of them.
+/// The same scene with 300 times between its outputs, and progressively more before the first.
 kreisel::SceneFile with_many_outputs(kreisel::SceneFile file) {
   constexpr int many = 320;
   file.output_times = {0};
@@ -109,8 +109,8 @@ kreisel::SceneFile with_one_output(kreisel::SceneFile file) {
   return file;
 }
 
-/// The greatest difference of a number of the state, but for rotors, whose speed approximations leave
-/// as it is.
+/// The greatest difference of a number of the state, without rotors, whose speed approximations do
+/// not change.
 double greatest_difference(Scene scene, const Answer& a, const Answer& b) {
   while (scene.bodies.back().rotor) scene.bodies.pop_back();
   const std::vector<int> carriers = blocks(scene);
@@ -129,7 +129,7 @@ kreisel::SceneFile without_model(kreisel::SceneFile file) {
   return file;
 }
 
-/// By the model of the file, and how far that is off the exact motion.
+/// The answer by the file's model, and its error relative to the exact motion.
 std::pair<Answer, double> run_approximation(const Scene& scene, const kreisel::SceneFile& file,
                                             const kreisel::SceneSolver& model,
                                             const Limits& limits) {

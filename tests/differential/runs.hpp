@@ -10,44 +10,44 @@
 
 namespace differential {
 
-/// How much a scene may cost.
+/// Limits for the cost of a scene.
 struct Limits {
   double evaluations = 1e5;  ///< of each run of adaptive steps
   double seconds = 1;        ///< of processor time for each method
   double work = 1.5e8;       ///< operations of the independent integrator
 };
 
-/// A number that a run says stays the same.
+/// An invariant reported by a run.
 struct Drift {
   std::string name;
   double start;
   double largest;
 };
 
-/// What the library says of a scene, by one method.
+/// The library's answer for a scene, by one method.
 struct Answer {
   std::string asked;      ///< the method
-  bool answered = false;  ///< else `message` says why not
+  bool answered = false;  ///< false: `message` has the reason
   bool out_of_budget = false;
   std::string message = {};
-  std::string method = {};   ///< that was taken
-  std::string changes = {};  ///< of it on the way
+  std::string method = {};   ///< used by the run
+  std::string changes = {};  ///< of the method during the run
   double estimate = 0;
   double tolerance = 0;
   bool kept = false;
   double evaluations = 0;
-  double steps = 0;      ///< of the motion that is given
-  double end_error = 0;  ///< what is told of the last state
+  double steps = 0;      ///< of the returned motion
+  double end_error = 0;  ///< reported for the last state
   std::vector<double> times = {};
   std::vector<JointValues> states = {};
   std::vector<Drift> drifts = {};
-  std::vector<double> sizes = {};  ///< of blocks, as RunReport::sizes has them
+  std::vector<double> sizes = {};  ///< of blocks, as in RunReport::sizes
 };
 
 /// The report of an approximation of a scene.
 struct Approximate {
   Answer answer = {};
-  double model_error = 0;  ///< that is told
+  double model_error = 0;  ///< as reported
   double off = 0;  ///< from the exact motion: the greatest difference of a number of the state
   double nearer_off = 0;  ///< the same of nearer()
 };
@@ -56,16 +56,17 @@ struct Approximate {
 struct Answers {
   std::string refused = {};  ///< by the reader or when the system was made
   std::vector<Answer> by_method = {};
-  Answer way = {};  ///< at many times and roughly, for the sizes that errors are measured by
-  Answer end = {};  ///< as roughly, with the end as its only output
-  std::optional<Approximate> approximate = {};   ///< where the scene asks for a model
+  Answer way = {};  ///< at many times with a coarse tolerance, for the reference sizes of errors
+  Answer end = {};  ///< with the same tolerance, with the end as its only output
+  std::optional<Approximate> approximate = {};   ///< if the scene has a model
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
-  std::vector<double> reactions = {};            ///< at the start, as start_reactions() has them
-  bool misread = false;                          ///< what the file asks for beside the motion
+  std::vector<double> reactions = {};            ///< at the start, as in start_reactions()
+  bool misread = false;                          ///< requests of the file besides the motion, read
+                                                 ///< wrongly
 };
 
-/// Runs the scene's text by the library, by each method in turn. `folder` is where its logs lie;
-/// `begin` is told before each part of the work what it is.
+/// Runs the scene's text by the library, by each method in turn. `folder` contains its logs.
+/// `begin` is called with the name of each part of the work.
 [[nodiscard]] Answers run(const Scene& scene, const std::vector<std::string>& methods,
                           const Limits& limits, const std::filesystem::path& folder,
                           const std::function<void(const std::string&)>& begin);

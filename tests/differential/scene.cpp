@@ -12,12 +12,12 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 
-/// A number where there is one, else a list.
+/// A single number, or a list of several.
 std::string one_or_list(const std::vector<double>& numbers) {
   return numbers.size() == 1 ? text(numbers.front()) : list(numbers);
 }
 
-/// `key = value` of what is there, after a comma but for the first.
+/// Writes `key = value` for values that exist, with commas between.
 class Inline {
  public:
   void add(const std::string& key, const std::string& value) {
@@ -33,7 +33,7 @@ class Inline {
   std::string inside_;
 };
 
-/// The key of an angle, as the file has it.
+/// The key of an angle in the file.
 std::string angle_key(const std::string& key, bool degrees) { return degrees ? key + "_deg" : key; }
 
 void add_angles(Inline& table, const std::string& key, const std::vector<Angle>& angles) {

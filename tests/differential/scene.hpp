@@ -9,11 +9,11 @@
 
 #include "log.hpp"
 
-/// A scene as the generator makes it, the file's text of it, and what is left of a failing one.
+/// A scene of the generator, and its text as a file.
 ///
-/// A new feature of the language of scene files enters at four places: here as a member, in
-/// to_toml() as its text, in generate.cpp as a function that adds it, and in reference*.cpp as its
-/// physics. shrink.cpp gets a line that takes it away.
+/// A new feature of scene files has four places: a member here, its text in to_toml(), a function
+/// of generate.cpp that adds it, and its physics in reference*.cpp. shrink.cpp gets a line that
+/// removes it.
 
 namespace differential {
 
@@ -92,7 +92,7 @@ struct Body {
   double mass = 1;
   Vector centre = Vector::Zero();
   std::vector<double> inertia = {1, 1, 1};
-  // How it begins; lists of one number for each coordinate, or empty.
+  // Start values; lists with one number for each coordinate, or empty.
   std::vector<Angle> angle = {};
   double displacement = 0;
   std::vector<Angle> rate = {};
@@ -101,7 +101,7 @@ struct Body {
   bool turns_in_degrees = false;  ///< angular_velocity
   std::optional<Vector> place = {};
   Vector velocity = Vector::Zero();
-  // What acts in the joint; of a ball one number of damping.
+  // Forces in the joint; a spherical joint has one number for damping.
   std::vector<double> stiffness = {};
   std::vector<Angle> rest = {};
   std::vector<double> damping = {};
@@ -136,11 +136,11 @@ struct Scene {
 /// The number of coordinates of a joint that have single numbers: 0, 1 or 2.
 [[nodiscard]] int single_coordinates(JointKind kind);
 
-/// The same nearer to where its model is exact: with half of what rotors carry moves by; for
-/// technical equations with twice the speed of rotors.
+/// The same scene nearer to the limit in which its model is exact. All motions except those of
+/// rotors are halved; for precession equations the rotors have twice the speed.
 [[nodiscard]] Scene nearer(Scene scene);
 
-/// The text of the scene's file. The logs that it names are log0.csv, log1.csv, .. by the links.
+/// The text of the scene's file. Its logs are log0.csv, log1.csv, .. in the order of the links.
 [[nodiscard]] std::string to_toml(const Scene& scene);
 
 /// Writes the logs that the file names.

@@ -68,7 +68,7 @@ double rounded(double x, int digits) {
   return unit < 1 ? std::round(x / unit) / std::round(1 / unit) : std::round(x / unit) * unit;
 }
 
-/// Takes a body away that carries nothing.
+/// Removes a body that carries no other.
 void drop_body(Scene& scene, std::size_t index) {
   for (const Body& body : scene.bodies) {
     if (body.parent == static_cast<int>(index)) return;
@@ -183,7 +183,7 @@ Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails, double
       const std::string after = to_toml(tried);
       if (after == before || after.size() > before.size() || !fails(tried)) continue;
       scene = std::move(tried);
-      changes = changes_of(scene);  // the next ones stand where they stood, or a little earlier
+      changes = changes_of(scene);  // the next changes have the same index or a smaller one
       smaller = true;
     }
   }

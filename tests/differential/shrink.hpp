@@ -6,7 +6,7 @@
 
 namespace differential {
 
-/// The scene with all taken away, one thing after the other, without which it still fails.
+/// The scene without all parts that the fault does not need, removed one after the other.
 ///
 /// fails   : whether a scene has the fault
 /// seconds : after so many it has to do with what it has

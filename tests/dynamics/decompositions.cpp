@@ -15,8 +15,8 @@ using namespace kreisel;
 
 BOOST_AUTO_TEST_SUITE(decompositions)
 
-// Each eigenvalue makes A - value 1 singular, to what a change of A by rounding makes of that; and
-// together they have the traces of A and of A A.
+// Each eigenvalue makes A - value 1 singular, up to the effect of rounding A. All together they
+// have the traces of A and of A A.
 BOOST_AUTO_TEST_CASE(eigenvalues_make_singular) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -44,7 +44,8 @@ BOOST_AUTO_TEST_CASE(eigenvalues_make_singular) {
   }
 }
 
-// Where the shifts of the QR iteration would go round for ever, and where all is one eigenvalue.
+// Matrices for which the shifts of the QR iteration would cycle, and those with one multiple
+// eigenvalue.
 BOOST_AUTO_TEST_CASE(eigenvalues_of_special_matrices) {
   Eigen::MatrixXd cyclic = Eigen::MatrixXd::Zero(6, 6);
   for (int i = 0; i < 6; ++i) cyclic(i, (i + 5) % 6) = 1;

@@ -66,7 +66,7 @@ Motor<> momentum(const std::vector<PointMass>& masses, const Motor<>& V) {
   return sum;
 }
 
-/// The scale of all that point masses add up to.
+/// The scale of all sums over point masses.
 Inertia<Terms> all_terms(const std::vector<PointMass>& masses) {
   Inertia<Terms> sum{0, Vector3<Terms>::Zero(), {}};
   for (const PointMass& point : masses) sum = sum + terms(inertia({point}));
@@ -220,8 +220,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(the_carried_rate)
 
-// Anchor: 2 kg at (1, 0, 0), carried with 3 m/s along x: the first moment grows by 6 kg m/s, the
-// moments of inertia about y and z by 2 m x v = 12.
+// Anchor: 2 kg at (1, 0, 0), moving with 3 m/s along x. The first moment grows by 6 kg m/s, the
+//         moments of inertia about y and z by 2 m x v = 12.
 BOOST_AUTO_TEST_CASE(by_hand) {
   const Inertia<> rate = carried_rate(Motor<>{{0, 0, 0}, {3, 0, 0}}, inertia({{2, {1, 0, 0}}}));
   BOOST_TEST(rate.mass == 0.0);
@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(rate.tensor.matrix(), Vector3<double>(0, 12, 12).asDiagonal().toDenseMatrix()));
 }
 
-// Anchor: spun about z with 3 rad/s it goes to +y; its product of inertia falls by m x 3 x.
+// Anchor: spun about z with 3 rad/s it moves to +y; its product of inertia falls by m x 3 x.
 BOOST_AUTO_TEST_CASE(by_hand_when_spun) {
   const Inertia<> rate = carried_rate(Motor<>{{0, 0, 3}, {0, 0, 0}}, inertia({{2, {1, 0, 0}}}));
   BOOST_TEST(same(rate.first_moment, Vector3<double>(0, 6, 0)));
@@ -298,8 +298,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(solving_for_the_acceleration)
 
-// Anchor: 2 kg, the centre of mass at (1, 0, 0), moments 1 about it. 6 N along y at the origin push
-// the centre with 3 and turn with -6 about it: the origin goes with 3 + 6.
+// Anchor: 2 kg, the centre of mass at (1, 0, 0), moments 1 about it. 6 N along y at the origin
+//         accelerate the centre by 3 and rotate by -6 about it: the origin accelerates by 3 + 6.
 BOOST_AUTO_TEST_CASE(by_hand) {
   const Inertia<> T{2, {2, 0, 0}, {1, 3, 3, 0, 0, 0}};
   const Motor<> A = solve(T, Motor<>{{0, 6, 0}, {0, 0, 0}});
@@ -313,8 +313,8 @@ BOOST_DATA_TEST_CASE(undoes_the_inertia, data::xrange(200u), seed) {
   const Motor<> A = solve(T, P);
   const Motor<> exact = cast<double>(solve(cast<Digits50>(T), cast<Digits50>(P)));
 
-  // What can be asked for: the condition of the tensor about the centre of mass, times what forming
-  // it from the tensor about the origin loses; for the moment half with the lever of the centre.
+  // The best possible error: the condition of the tensor about the centre of mass, times the loss
+  // by its conversion from the origin. For the moment, half of that with the lever of the centre.
   const Vector3<double> r = T.first_moment / T.mass;
   const Symmetric3<> about_centre =
       T.tensor - offset_product(r, Vector3<double>(T.first_moment / 2));
@@ -397,8 +397,8 @@ BOOST_AUTO_TEST_CASE(names_negative_moments) {
              "inertia: principal moments about the centre of mass >= 0 fails: -1, 1, 1 kg m^2");
 }
 
-// The tensor of the message is legal, and no other one is nearer: the change has the pattern
-// e/3 (1, 1, -1) on the principal axes, so its norm is e/sqrt(3).
+// The tensor in the message is legal, and no other one is nearer. The change has the pattern e/3
+// (1, 1, -1) on the principal axes, so that its norm is e/sqrt(3).
 BOOST_AUTO_TEST_CASE(names_the_nearest_legal_tensor) {
   const auto named = [](const Symmetric3<>& t) {
     const std::string text = refusal(Inertia<>{1, {0, 0, 0}, t});
@@ -436,7 +436,7 @@ BOOST_AUTO_TEST_CASE(names_the_violated_triangle_inequality) {
       "inertia: triangle inequality about the centre of mass fails: 1 + 2 >= 3.0001 kg m^2, by "
       "3.3e-05 of the greatest; nearest legal tensor: [1.0000333333333, 2.0000333333333, "
       "3.0000666666667]");
-  // About the origin it closes, about the centre of mass (0, 0, 1) it does not.
+  // About the origin the triangle inequality holds, about the centre of mass (0, 0, 1) it does not.
   BOOST_TEST(refusal(Inertia<>{1, {0, 0, 1}, {2, 2, 3, 0, 0, 0}}) ==
              "inertia: triangle inequality about the centre of mass fails: 1 + 1 >= 3 kg m^2");
 }
@@ -497,7 +497,7 @@ BOOST_AUTO_TEST_CASE(is_checked_by_its_constructor) {
   BOOST_TEST(refusal([&] { (void)Tensor::about_origin(0, o, one); }) == massless);
   BOOST_TEST(refusal([&] { (void)Tensor::about_centre(0, o, one, Mass::zero_allowed); }) == "");
   BOOST_TEST(refusal([&] { (void)Tensor::about_origin(0, o, one, Mass::zero_allowed); }) == "");
-  // About the origin (1, 0, 0) off, one is less than the mass itself would have.
+  // About the origin, (1, 0, 0) away, one moment is less than that of the mass alone.
   BOOST_TEST(refusal([&] { (void)Tensor::about_centre(2, {1, 0, 0}, one); }) == "");
   BOOST_TEST(refusal([&] {
                (void)Tensor::about_origin(2, {1, 0, 0}, one);

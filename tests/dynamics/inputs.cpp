@@ -25,8 +25,8 @@
 
 using namespace kreisel;
 
-/// What is no input, number by number, where other tests show one of its kind; and what depends on
-/// which of several numbers is 0.
+/// Invalid inputs number by number, if other tests show only one of their kind. Also properties
+/// that depend on which of several numbers is 0.
 
 namespace {
 
@@ -52,7 +52,7 @@ void refuses(const Change& change) {
   BOOST_CHECK_THROW(system_of(body), InvalidInput);
 }
 
-/// The names of what a scene keeps, in one word.
+/// The names of a scene's invariants, in one word.
 template <class Scene>
 std::string kept(const Scene& scene, const typename Scene::State& state) {
   std::string names;
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(workspaces_are_checked) {
   BOOST_CHECK_THROW(turns.rates(0, Eigen::VectorXd::Zero(2), rates, of_other), InvalidInput);
 }
 
-// Needles along each axis, in a ball joint: the message names the axis that nothing resists.
+// Needles along each axis, in a spherical joint: the message names the axis without resistance.
 BOOST_AUTO_TEST_CASE(needles_are_refused_with_their_axis) {
   for (int axis = 0; axis < 3; ++axis) {
     BodyDescription needle = rod(JointKind::spherical);
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(single_numbers_are_checked) {
                     InvalidInput);
 }
 
-// Which invariants a top has depends on which of its numbers are 0.
+// The invariants of a top depend on which of its numbers are 0.
 BOOST_AUTO_TEST_CASE(tops_list_their_invariants) {
   const EulerTop::State state{Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3), {1, 2, 3}};
   const std::string always = "energy,vertical momentum,";
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(tops_list_their_invariants) {
   BOOST_TEST(kept(EulerTop({2, 2, 1}, {1, 0, 0}, {0, 0, 1}), state) == always);
 }
 
-// And a Cardan gyro, on its bearings and what turns its rotor.
+// Those of a Cardan gyro depend on its bearings and on its rotor's drive.
 BOOST_AUTO_TEST_CASE(gimbals_list_their_invariants) {
   const CardanMoments moments{{2, 2, 3}, {1, 1, 1}, {1, 1, 1}};
   const CardanState state{0.1, 0.2, 0.3, 1, 2, 30};
@@ -176,7 +176,7 @@ BOOST_AUTO_TEST_CASE(gimbals_list_their_invariants) {
   BOOST_TEST(kept_on_a_table(RegulatedRotor{}) == "Jacobi integral,");
 }
 
-// A brake takes from the energy that a steady guide leaves.
+// A brake consumes the energy that a steady guide conserves.
 BOOST_AUTO_TEST_CASE(loads_limit_the_invariants) {
   const auto kept_by = [](double damping) {
     const FixedPointBody body(
@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(loads_limit_the_invariants) {
   BOOST_TEST(kept_by(1).empty());
 }
 
-// Which invariants a tree has depends on its joints, forces and rotors.
+// The invariants of a tree depend on its joints, forces and rotors.
 BOOST_AUTO_TEST_CASE(trees_list_their_invariants) {
   const auto kept_by = [](const BodyDescription& body) {
     const auto system = system_of(body);
@@ -221,7 +221,7 @@ BOOST_AUTO_TEST_CASE(trees_list_their_invariants) {
   BOOST_TEST(kept(both, both.rest()).empty());
 }
 
-// A tensor whose rounding makes much of the rates is said to be uncertain by its last digits.
+// A tensor whose rounding has a large effect on the rates is uncertain by its last digits.
 BOOST_AUTO_TEST_CASE(nearly_singular_bodies_have_uncertainty) {
   const auto body = [](double least) {
     Matrix3<double> Theta = Vector3<double>(1, 1, least).asDiagonal();
@@ -246,7 +246,7 @@ BOOST_AUTO_TEST_CASE(tensors_are_checked) {
   }
 }
 
-// A spring without length whose ends meet pulls at nothing; one with a length has no direction.
+// A spring without length whose ends meet has no force; one with a length has no direction.
 BOOST_AUTO_TEST_CASE(springs_with_joined_ends_have_no_force) {
   const auto pulled_by = [](double rest_length) {
     const FixedPointBody body(

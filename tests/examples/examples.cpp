@@ -1,4 +1,4 @@
-// The examples as a reader runs them: what they print must be right, not only printed.
+// The examples as a reader runs them: their output must be correct, not only printed.
 
 #include <boost/test/unit_test.hpp>
 
@@ -81,8 +81,8 @@ std::vector<std::vector<double>> rows(const std::string& text) {
   return found;
 }
 
-// The drifts of the reference (tests/data/cardan-gyro.json); a mean over 60 nutations that do not
-// end where they began is sure to 1e-4.
+// The drifts of the reference (tests/data/cardan-gyro.json). A mean over 60 nutations is accurate
+// to 1e-4, because they do not end in their initial phase.
 BOOST_AUTO_TEST_CASE(cardan_gyro_drifts_as_the_reference) {
   const test::Scratch folder;
   const auto table = rows(output("cardan_gyro " + (folder.path() / "nutations.svg").string()));
@@ -96,8 +96,8 @@ BOOST_AUTO_TEST_CASE(cardan_gyro_drifts_as_the_reference) {
   BOOST_TEST(folder.read("nutations.svg").find("<svg") != std::string::npos);
 }
 
-// An axis that stays in space goes by n' = -u x n for those on board; the rings' angles are its,
-// but for the 6e-5 rad by which rings with mass pull it off.
+// An inertially fixed axis obeys n' = -u x n for observers on board. The rings' angles follow it,
+// except for the 6e-5 rad by which massive rings deflect it.
 BOOST_AUTO_TEST_CASE(gyro_on_ship_follows_an_inertial_axis) {
   const auto table = rows(output("gyro_on_ship"));
   BOOST_TEST_REQUIRE(table.size() == 11U);
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(gyro_on_ship_follows_an_inertial_axis) {
   }
 }
 
-// At the start the load hangs straight down, so that gravity moves nothing: the deck holds the
+// At the start the load hangs straight down, so that gravity moves nothing. The deck carries the
 // weight of jib (5 m out) and load (10 m out) at the jib's angle of 0.3 rad.
 BOOST_AUTO_TEST_CASE(three_bodies_weigh_on_the_deck) {
   const auto table = rows(output("three_bodies"));
@@ -145,9 +145,9 @@ BOOST_AUTO_TEST_CASE(ship_on_earth_shows_parts_that_add_up) {
   }
 }
 
-// The tumbling brick by another way altogether: the closed form for its attitude, a plane orbit in
-// long double for its fall, and the local level of a point on the equator, which is its longitude.
-// Agreement to 2e-12 degrees says that of the 12 decimals printed all but the last are certain.
+// The tumbling brick by an independent calculation. Its attitude is in closed form, its fall a
+// plane orbit in long double. The local level of a point on the equator follows from the longitude.
+// Agreement to 2e-12 degrees confirms all but the last of the 12 printed decimals.
 BOOST_AUTO_TEST_CASE(tumbling_brick_agrees_with_the_closed_form) {
   const test::Scratch folder;
   const CsvTable table =

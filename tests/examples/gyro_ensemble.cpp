@@ -13,7 +13,7 @@ using namespace kreisel;
 
 namespace {
 
-// Three parts, the last of them not full and of no whole packs.
+// Three parts, the last of them not full and without whole packs.
 const std::string members = " --members 603 --t-end 0.1 --seed 5 ";
 
 test::Outcome run(const std::string& words) {
@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_CASE(rows_do_not_depend_on_threads_and_parts) {
   BOOST_TEST((folder.read("other.csv") != csv));
 }
 
-// What is there is taken as it stands: a row changed by hand comes through.
+// Existing parts are used without change: a row changed by hand appears in the result.
 BOOST_AUTO_TEST_CASE(continues_from_existing_parts) {
   const test::Scratch folder;
   const std::string csv = csv_of_one_thread(folder);
@@ -86,8 +86,8 @@ BOOST_AUTO_TEST_CASE(rows_do_not_depend_on_ranks) {
   BOOST_TEST(alone.err.find("--parts") != std::string::npos);
 }
 
-// Rank 1 is killed when the first part is there. It is reported, the parts that were finished stay,
-// and the same command computes the others.
+// Rank 1 is killed when the first part exists. The failure is reported, finished parts stay, and
+// the same command computes the others.
 BOOST_AUTO_TEST_CASE(survives_the_loss_of_a_rank) {
   const test::Scratch folder;
   const std::string many = " --members 1403 --t-end 4 --threads 1 --csv ";

@@ -13,7 +13,7 @@ using namespace kreisel;
 
 namespace {
 
-/// The numbers of each line behind `heading` lines; words are left out.
+/// The numbers of each line after `heading` lines, without words.
 std::vector<std::vector<double>> table(const std::string& text, int heading) {
   std::istringstream all(text);
   std::vector<std::vector<double>> rows;
@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(print_the_modes_of_the_platform_and_draw) {
   BOOST_TEST(folder.read("modes.svg").find("<svg") != std::string::npos);
 }
 
-// precession_order of the same file has a force besides; the orders are the same.
+// precession_order of the same file has an additional force; the orders are the same.
 BOOST_AUTO_TEST_CASE(print_the_error_of_precession_equations) {
   const test::Scratch folder;
   const auto rows = table(run("precession_error " + (folder.path() / "error.svg").string()).out, 1);
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(print_the_modes_of_the_satellite) {
     BOOST_TEST(std::abs(rows[i][1] - nutation) < 1e-5);
     BOOST_TEST(std::abs(rows[i][4] - rows[i][5]) < 2e-3);
   }
-  // A motor holds against C sin(slant) w_z', which swings with the knock; a free wheel gives way.
+  // A motor resists C sin(slant) w_z', which oscillates with the impulse; a free wheel does not.
   const double swing = 1e-3 * s;
   BOOST_TEST(std::abs(rows[1][2] - C * swing * rows[1][0]) < 0.01 * C * swing);
   BOOST_TEST(rows[1][3] == 0);

@@ -1,5 +1,5 @@
-// Any bytes at all as the command line of a program, a word a line: they are read or refused. The
-// program does not run.
+// Arbitrary bytes as the command line of a program, one word a line: they are accepted or refused.
+// The program does not run.
 
 #include "command_line.hpp"
 
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::string& word : words) arguments.push_back(word.data());
   try {
     examine(static_cast<int>(arguments.size()), arguments.data());
-  } catch (const kreisel::InvalidInput&) {  // as it should be
+  } catch (const kreisel::InvalidInput&) {  // the expected refusal
   }
   return 0;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Reads the words as one program does, and aborts where what is read is not as the program needs
-/// it. Each program has its own.
+/// Reads the words as one program does. Aborts if the result violates the program's requirements.
+/// Each program has its own version.
 ///
 /// Throws : kreisel::InvalidInput
 void examine(int argc, char** argv);

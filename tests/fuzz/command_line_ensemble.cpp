@@ -1,5 +1,5 @@
-// The command line of ensemble. Where it varies a number, what is drawn and applied is no accident
-// of the reader's memory.
+// The command line of ensemble. If it varies a number, the drawn value must not depend on
+// uninitialised memory.
 
 #include <cstdlib>
 #include <optional>

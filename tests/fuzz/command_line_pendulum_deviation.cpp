@@ -1,4 +1,4 @@
-// The command line of pendulum_deviation, which reads the list of sites, too; see sites.cpp.
+// The command line of pendulum_deviation, which reads the list of sites too; see sites.cpp.
 
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Any bytes at all as the table of a logged motion, read with options that its last bytes choose: they
-// are read or refused, and the frame that they give moves.
+// Arbitrary bytes as the table of a logged motion, read with options from the last bytes. They are
+// accepted or refused, and the resulting frame moves.
 
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +51,7 @@ void read(const kreisel::test::MemoryFile& file, const kreisel::LogOptions& opti
     const auto sigma = smoothing_sigma(noise_of(frame.samples()));
     const kreisel::TabulatedFrame<> smooth(frame.samples(), smoothing(frame.samples(), sigma));
     (void)smooth(smooth.end());
-  } catch (const kreisel::InvalidInput&) {  // as it should be
+  } catch (const kreisel::InvalidInput&) {  // the expected refusal
   }
 }
 

@@ -1,4 +1,4 @@
-// What the fuzzers keep, without a fuzzer: replay FOLDER... gives every file in them to the target.
+// Replays stored inputs without a fuzzer: replay FOLDER... passes every file in them to the target.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Any bytes at all as the rows and the checkpoint of a run, with an empty line between: they are
-// taken or refused.
+// Arbitrary bytes as the rows and the checkpoint of a run, with an empty line between: they are
+// accepted or refused.
 
 #include <algorithm>
 #include <cstddef>
@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!(row.values.front() >= before) || row.values.size() != 3) std::abort();
       before = row.values.front();
     }
-  } catch (const kreisel::InvalidInput&) {  // as it should be
+  } catch (const kreisel::InvalidInput&) {  // the expected refusal
   }
   file.remove();
   std::filesystem::remove(csv);

@@ -1,4 +1,4 @@
-// Any bytes at all as pendulum_deviation's table of sites: they are read or refused.
+// Arbitrary bytes as pendulum_deviation's table of sites: they are accepted or refused.
 
 #include <cmath>
 #include <cstddef>
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const Site& site : listed_sites(file.path(), Real(7.292115e-5L))) {
       if (!(std::abs(site.place.latitude) <= 90)) std::abort();
     }
-  } catch (const kreisel::InvalidInput&) {  // as it should be
+  } catch (const kreisel::InvalidInput&) {  // the expected refusal
   }
   return 0;
 }

@@ -1,5 +1,4 @@
-// A brake that acts in one direction only asks for the sign of a speed, of which a pack has one a
-// lane.
+// A brake that acts in one direction only needs the sign of a speed; a pack has one for each lane.
 // refused: this code branches on a number, but a pack has several
 #include <dynamics/ensemble/pack.hpp>
 

@@ -38,12 +38,12 @@ BOOST_DATA_TEST_CASE(is_turned_by_the_exponential, data::xrange(300u), seed) {
   const Matrix3<Digits50> exact =
       rotation(q) * exp(Motor<Digits50>{test::cast<Digits50>(w), {}}).rotation;
   const Matrix3<double> found = Pose<double>::from(rotated(q, w)).rotation;
-  // The turn's sine and cosine carry the rounding of their argument |w|.
+  // The sine and cosine of the rotation contain the rounding of their argument |w|.
   BOOST_TEST(near(found, test::cast<double>(exact), std::max(1.0, w.norm()), 12));
 }
 
-// What matters for a strapdown computation: after 1e6 equal turns, 2700 rad in all, the attitude is off
-// by less than a random walk of 1u a step, 1.1e-13, and the norm by less than 1e-9.
+// The requirement of strapdown computations: 1e6 equal rotations, 2700 rad in all. The attitude's
+// error is below a random walk of 1u a step, 1.1e-13, and the norm's below 1e-9.
 BOOST_AUTO_TEST_CASE(does_not_drift_in_a_million_turns) {
   const Vector3<double> w(0.001, -0.002, 0.0015);
   constexpr int n = 1000000;
@@ -73,7 +73,7 @@ BOOST_DATA_TEST_CASE(come_back_from_their_rotation, data::xrange(200u), seed) {
   BOOST_TEST(near(b.roll, a.roll, pi / std::cos(a.pitch), 4, "roll "));
 }
 
-// At pitch +-90 degrees only yaw -+ roll is known: the angles differ, the rotation must not.
+// At pitch +-90 degrees only yaw -+ roll is defined: the angles may differ, the rotation must not.
 BOOST_DATA_TEST_CASE(describe_the_rotation_at_the_poles, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const double distance = sample.once_in(3) ? 0 : sample.magnitude(-17, -3);

@@ -41,7 +41,7 @@ constexpr int motors_per_range = 1'000'000;
 constexpr int motors_per_range = 10'000;
 #endif
 
-/// The exponential by its power series, in 50 digits: knows nothing of sines or of rotations.
+/// The exponential by its power series in 50 digits, without sines and rotations.
 Pose<Digits50> power_series(const Motor<Digits50>& A) {
   using Matrix4 = Eigen::Matrix<Digits50, 4, 4>;
   Matrix4 a = Matrix4::Zero();
@@ -70,7 +70,8 @@ double relative(const Vector3<double>& x, const Vector3<double>& y) {
 
 BOOST_AUTO_TEST_SUITE(a_pose)
 
-// Anchors: a quarter turn about z, then (1, 2, 3); a force along z through the origin goes there.
+// Anchors: a quarter turn about z, then (1, 2, 3), which also moves a force along z through the
+//          origin.
 BOOST_AUTO_TEST_CASE(turns_then_shifts) {
   Matrix3<double> quarter;
   quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
@@ -106,7 +107,8 @@ BOOST_DATA_TEST_CASE(times_its_inverse_is_the_identity, data::xrange(200u), seed
   }
 }
 
-// A motor is a field: its moment at a point, displaced, is the displaced motor's at the displaced.
+// A motor is a field: its displaced moment at a point is the displaced motor's moment at the
+// displaced point.
 BOOST_DATA_TEST_CASE(moves_the_field_of_a_motor, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Pose<> X = sample.pose();
@@ -121,7 +123,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_pose_from_a_quaternion)
 
-// Anchor: 120 degrees about (1, 1, 1) takes x to y, y to z, z to x.
+// Anchor: 120 degrees about (1, 1, 1) maps x to y, y to z, z to x.
 BOOST_AUTO_TEST_CASE(by_hand) {
   const Pose<> X = Pose<>::from({0.5, 0.5, 0.5, 0.5}, {7, 8, 9});
   Matrix3<double> cycle;
@@ -207,7 +209,7 @@ BOOST_DATA_TEST_CASE(two_halves_make_the_whole, data::xrange(200u), seed) {
   BOOST_TEST(near(joined.translation, whole.translation, A.moment.norm(), 48));
 }
 
-// The motor product is what the exponential begins with: (exp(h V) Q - exp(-h V) Q) / 2h -> [V Q].
+// The motor product is the derivative of the exponential: (exp(h V) Q - exp(-h V) Q) / 2h -> [V Q].
 BOOST_DATA_TEST_CASE(begins_with_the_motor_product, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const Motor<> V = sample.motor(-1, 1);
@@ -225,8 +227,8 @@ const double angles[] = {1e-300, 1e-20,   1e-9,    1e-5,    1e-3,   0.01,      0
                          2.0943, 2.0944,  2.0945,  2.5,     3,      pi - 1e-3, pi - 1e-8,
                          pi,     3.16227, 3.16228, 4,       2 * pi, 10,        100};
 
-// The bounds in displacement.hpp, across the switches: of the form at 1, from polynomials to sines at
-// the root of 10. That of the logarithm is at 120 degrees.
+// The bounds in displacement.hpp at its branch points: at 1 the form changes, at the root of 10
+// polynomials become sines. The logarithm's branch point is at 120 degrees.
 BOOST_DATA_TEST_CASE(keeps_its_error_bounds, data::make(angles), theta) {
   test::Sample sample(static_cast<std::uint64_t>(1 + theta * 1000));
   const double k = 8 * std::max(1.0, theta / pi);
@@ -262,7 +264,7 @@ BOOST_AUTO_TEST_CASE(log_of_a_shift_is_exactly_a_couple) {
   BOOST_TEST(same(log(Pose<>{Matrix3<double>::Identity(), x}), Motor<>{{0, 0, 0}, x}));
 }
 
-// Anchor: half a turn about x, taken at (0, 1, 0): the axis goes through (0, 1/2, 0).
+// Anchor: half a turn about x, applied at (0, 1, 0): the axis passes through (0, 1/2, 0).
 BOOST_AUTO_TEST_CASE(log_of_a_half_turn_by_hand) {
   const Pose<> X{Vector3<double>(1, -1, -1).asDiagonal(), {0, 1, 0}};
   const Motor<> A = log(X);
@@ -270,7 +272,7 @@ BOOST_AUTO_TEST_CASE(log_of_a_half_turn_by_hand) {
   BOOST_TEST(near(A.moment, Vector3<double>(0, 0, -pi / 2), pi, 2));
 }
 
-// The matrix of a half turn is symmetric: only its symmetric part knows the axis.
+// The matrix of a half turn is symmetric: only its symmetric part contains the axis.
 BOOST_DATA_TEST_CASE(log_of_a_half_turn_finds_the_axis, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Vector3<double> n = sample.direction();
@@ -297,7 +299,8 @@ BOOST_DATA_TEST_CASE(undoes_the_exponential_in_fifty_digits, data::make(the_expo
   BOOST_TEST(near(B.moment, A.moment, Digits50(A.moment.norm()), 64));
 }
 
-// The same matrix, read in 50 digits. It is orthogonal to u only, so up to that |log| is anyone's.
+// The same matrix, read in 50 digits. It is orthogonal to u only, so that |log| is uncertain to
+// that extent.
 BOOST_DATA_TEST_CASE(agrees_with_fifty_digits, data::make(the_exponential::angles), theta) {
   if (theta >= pi) return;
   test::Sample sample(static_cast<std::uint64_t>(1 + theta * 1000));
@@ -332,7 +335,7 @@ BOOST_AUTO_TEST_CASE(log_of_exp_is_the_motor) {
     double resultant = 0;
     double moment = 0;
     for (int i = 0; i < motors_per_range; ++i) {
-      const bool even = range.high > 1 || sample.once_in(2);  // the end where errors are greater
+      const bool even = range.high > 1 || sample.once_in(2);  // the end with the greater errors
       const double distance = even
                                   ? sample.uniform(range.low, range.high)
                                   : sample.magnitude(std::log10(range.low), std::log10(range.high));

@@ -15,7 +15,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 
-/// Eigen's dual numbers go through every function, and those of exp and log are the derivatives.
+/// All functions accept Eigen's dual numbers, and those of exp and log are the derivatives.
 
 using namespace kreisel;
 using test::cast;
@@ -63,7 +63,7 @@ Eigen::Matrix<double, Rows, Columns> slope(const Eigen::Matrix<Dual, Rows, Colum
 const double angles[] = {0,    1e-12, 1e-3, 2.46e-3, 2.47e-3, 0.01, 0.1, 0.5,
                          0.99, 1.01,  2,    2.09,    2.1,     3,    3.14};
 
-/// Formulas differentiated lose what cancels in their derivatives: u / theta, outside the series.
+/// Differentiated formulas lose digits by cancellation: u / theta, outside the series.
 double error_at(double theta) { return theta < 2.4607e-3 ? 16 : 16 + 2 / theta; }
 
 }  // namespace
@@ -77,12 +77,12 @@ BOOST_AUTO_TEST_CASE(agree_with_double_in_all_functions) {
   for (std::size_t i = 0; i < plain.size(); ++i) {
     BOOST_TEST_CONTEXT("number " << i) {
       BOOST_TEST(near(dual[i].value(), plain[i], std::max(1.0, std::abs(plain[i])), 40));
-      BOOST_TEST(dual[i].derivatives().norm() == 0);  // nothing was a variable
+      BOOST_TEST(dual[i].derivatives().norm() == 0);  // no input was a variable
     }
   }
 }
 
-// At no displacement the tangent of exp is the motor itself, exactly; and that of log too.
+// At the identity the tangent of exp is the motor itself, exactly, and so is that of log.
 BOOST_AUTO_TEST_CASE(are_exact_at_the_identity) {
   const Pose<Dual> X = exp(variables(Motor<>{}));
   const Motor<Dual> A = log(X);
@@ -111,7 +111,7 @@ BOOST_DATA_TEST_CASE(are_the_derivatives_of_the_exponential, data::make(angles),
   }
 }
 
-// log(exp(A)) = A: at zero, in every branch, and to near the half turn, where log has a corner.
+// log(exp(A)) = A: at zero, in every branch, and near the half turn, where log has a corner.
 BOOST_DATA_TEST_CASE(derivatives_of_log_invert_those_of_exp, data::make(angles), theta) {
   test::Sample sample(1);
   const Motor<> A{theta * sample.direction(), sample.vector(-1, 1)};

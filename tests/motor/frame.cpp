@@ -28,7 +28,7 @@ struct Device {};
 template <class X, class Y>
 constexpr bool is = std::is_same_v<std::remove_cvref_t<X>, Y>;
 
-// A tag costs nothing.
+// A tag has no cost.
 static_assert(sizeof(Velocity<Body, Guide, Body>) == sizeof(Motor<>));
 static_assert(sizeof(Momentum<Body>) == sizeof(Motor<>));
 static_assert(sizeof(Force<Body>) == sizeof(Motor<>));
@@ -42,7 +42,7 @@ static_assert(std::is_trivially_copyable_v<Force<Body>> == std::is_trivially_cop
 
 BOOST_AUTO_TEST_SUITE(velocities)
 
-// Anchor: 1 m/s along the ship that makes 10 m/s is 11 m/s over ground.
+// Anchor: 1 m/s along a ship with 10 m/s is 11 m/s over ground.
 BOOST_AUTO_TEST_CASE(join_along_a_chain_of_frames) {
   const Velocity<Device, Ship, Device> walk{{{0, 0, 1}, {1, 0, 0}}};
   const Velocity<Ship, Earth, Device> voyage{{{0, 0, 2}, {10, 0, 0}}};
@@ -109,8 +109,9 @@ BOOST_DATA_TEST_CASE(join_along_a_chain_of_frames, data::xrange(50u), seed) {
   BOOST_TEST(near(X_ES.inverse().point(X_ES.point(p)), p, there_and_back.point(terms(p)), 16));
 }
 
-// Anchor: the ship's origin lies 100 m north (y) of the earth's; the ship makes 10 m/s along x and
-// turns with 1 rad/s about z. Where the earth's origin is, the ship's frame moves with 10 + 100.
+// Anchor: the ship's origin lies 100 m north (y) of the earth's. The ship moves with 10 m/s along x
+//         and turns with 1 rad/s about z. At the earth's origin the ship's frame moves with 10 +
+//         100.
 BOOST_AUTO_TEST_CASE(rewrite_a_velocity_without_changing_it) {
   const Displacement<Earth, Ship> X_ES{{Matrix3<double>::Identity(), {0, 100, 0}}};
   const Velocity<Ship, Earth, Ship> V{{{0, 0, 1}, {10, 0, 0}}};

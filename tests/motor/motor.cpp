@@ -56,13 +56,14 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(reduction)
 
-// Anchor: a unit spin about z carries the point (1,0,0) along +y.
+// Anchor: a unit spin about z moves the point (1,0,0) along +y.
 BOOST_AUTO_TEST_CASE(spin_about_z_moves_x_to_y) {
   const Motor<> spin{{0, 0, 1}, {0, 0, 0}};
   BOOST_TEST(same(spin.reduced_at({1, 0, 0}), Motor<>{{0, 0, 1}, {0, 1, 0}}));
 }
 
-// Anchor: a force +y through (1,0,0) turns about the origin with +z; at its own point it does not.
+// Anchor: a force +y through (1,0,0) has the moment +z about the origin, and none about its own
+//         point.
 BOOST_AUTO_TEST_CASE(a_force_has_no_moment_at_its_own_point) {
   const Motor<> force{{0, 1, 0}, {0, 0, 1}};
   BOOST_TEST(same(force.reduced_at({1, 0, 0}), Motor<>{{0, 1, 0}, {0, 0, 0}}));
@@ -91,7 +92,8 @@ const Vector3<double> x(1, 0, 0);
 const Vector3<double> y(0, 1, 0);
 const Vector3<double> z(0, 0, 1);
 
-// Anchors: what a spin about z does to a line along x, to a couple, and what a translation does.
+// Anchors: the effect of a spin about z on a line along x and on a couple, and that of a
+//          translation.
 BOOST_AUTO_TEST_CASE(spin_rotates_motors) {
   BOOST_TEST(same(cross(Motor<>{z, zero}, Motor<>{x, zero}), Motor<>{y, zero}));
   BOOST_TEST(same(cross(Motor<>{z, zero}, Motor<>{zero, x}), Motor<>{zero, y}));
@@ -196,7 +198,7 @@ BOOST_DATA_TEST_CASE(is_the_same_in_every_frame, data::xrange(200u), seed) {
   BOOST_TEST(near(reciprocal(X * a, X * b), reciprocal(a, b), scale, 20));
 }
 
-// Of three motors all products in cyclic order are one number: [A . ] is minus its transposed.
+// The products of three motors in cyclic order are one number: [A . ] is minus its transposed.
 BOOST_DATA_TEST_CASE(commutes_with_the_motor_product, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();

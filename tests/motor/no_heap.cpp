@@ -12,14 +12,14 @@
 #include <support/everything.hpp>
 #include <support/heap.hpp>
 
-/// No function of motor/ or of the laws asks for memory.
+/// No function of motor/ or of the laws allocates memory.
 
 using namespace kreisel;
 using test::heap::requests_of;
 
 namespace {
 
-/// Keeps the compiler from leaving out what nobody reads.
+/// Prevents the compiler from removing unused results.
 template <class T>
 void use(const T& value) {
   asm volatile("" : : "r"(&value) : "memory");
@@ -31,7 +31,7 @@ void run_everything() {
 
 }  // namespace
 
-// First that the counter counts: a test that cannot fail shows nothing.
+// First a test of the counter itself: a test that cannot fail shows nothing.
 BOOST_AUTO_TEST_SUITE(the_allocation_counter)
 
 BOOST_AUTO_TEST_CASE(counts_operator_new) {
@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(counts_malloc) {
   BOOST_TEST(requests_of([&] { release(std::aligned_alloc(64, 64)); }) == 1u);
 }
 
-// What would creep in by mistake: a matrix of unknown size, a product evaluated into one.
+// Allocations by mistake: a matrix of dynamic size, and a product evaluated into one.
 BOOST_AUTO_TEST_CASE(counts_matrices_of_eigen) {
   BOOST_TEST(requests_of([] { use(Eigen::VectorXd(3)); }) == 1u);
   const Vector3<double> a(1, 2, 3);

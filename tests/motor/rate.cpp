@@ -65,7 +65,7 @@ Truth random_truth(unsigned seed) {
   return truth(sample, sample.masses());
 }
 
-/// The scale of everything made of a rate and one product; and what 50 digits leave of a zero.
+/// The scale of all sums of a rate and one product, and the residue of a zero in 50 digits.
 Motor<Terms> scale(const Motor<>& rate, const Motor<>& velocity, const Motor<>& q) {
   const Vector3<Terms> zero = Vector3<Terms>::Constant(1e-30);
   return terms(rate) + cross(terms(velocity), terms(q)) + Motor<Terms>{zero, zero};
@@ -116,7 +116,7 @@ void check_plain_all(const Rounded& n, const Differentiated& truth, const Q& q) 
 
 BOOST_AUTO_TEST_SUITE(a_rate)
 
-// Anchor: for an observer who turns about z, a vector at rest along x turns backwards, to -y.
+// Anchor: for an observer who turns about z, a resting vector along x turns backwards, to -y.
 BOOST_AUTO_TEST_CASE(rotates_backwards_for_a_turning_observer) {
   const Force<Body> weight{{{1, 0, 0}, {0, 0, 0}}};
   const Rate<Inertial, Force<Body>> none{};
@@ -124,8 +124,8 @@ BOOST_AUTO_TEST_CASE(rotates_backwards_for_a_turning_observer) {
   BOOST_TEST(same(seen_from<Guide>(none, spin, weight).value, Motor<>{{0, -1, 0}, {0, 0, 0}}));
 }
 
-// Anchor: a force resting along z, watched from a frame that moves along x: the frame sees its line
-// go along -x, so that the moment about the frame's origin changes by -x cross z = y.
+// Anchor: a resting force along z, seen from a frame that moves along x. In that frame its line
+//         moves along -x, so that the moment about the frame's origin changes by -x cross z = y.
 BOOST_AUTO_TEST_CASE(is_opposite_for_a_moving_observer) {
   const Force<Body> weight{{{0, 0, 1}, {0, 0, 0}}};
   const Rate<Inertial, Force<Body>> none{};
@@ -142,7 +142,7 @@ BOOST_DATA_TEST_CASE(agrees_with_differentiated_coordinates, data::xrange(200u),
   check_all_observers(n, truth.J_f, Momentum<Body>{cast<double>(truth.J_f.value)});
 }
 
-// (3a)-(3c), (4a)-(4c): the pairs that are equal: no velocity carries itself anywhere.
+// (3a)-(3c), (4a)-(4c): the equal pairs, because no velocity transports itself.
 BOOST_DATA_TEST_CASE(is_equal_for_both_frames_of_a_velocity, data::xrange(100u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
@@ -188,7 +188,7 @@ BOOST_DATA_TEST_CASE(is_converted_along_a_chain_of_frames, data::xrange(100u), s
   BOOST_TEST(near(steps.value, at_once.value, size, 12));
 }
 
-// A rate is a motor: rewritten in another frame it is the rate of the rewritten.
+// A rate is a motor: rewritten in another frame it is the rate of the rewritten motor.
 BOOST_DATA_TEST_CASE(may_be_written_in_any_frame, data::xrange(100u), seed) {
   const Truth truth = random_truth(seed);
   const Rounded n(truth);
@@ -209,10 +209,10 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_second_rate)
 
-// (d/dt)_o (d/dt)_o Q from those of the inertial frame; the guide turns steadily about z, so that F is
-// constant for itself, and Q is the quadratic motor Q0 + t Q1 + t^2 Q2 in inertial coordinates.
-// In guide coordinates Q is exp(-t F) Q(t): its second derivative at t = 0 is
-// 2 Q2 - 2 [F Q1] + [F [F Q0]].
+// (d/dt)_o (d/dt)_o Q from the rates in the inertial frame. The guide turns steadily about z, so
+// that F is constant for itself. Q is the quadratic motor Q0 + t Q1 + t^2 Q2 in inertial
+// coordinates. In guide coordinates Q is exp(-t F) Q(t): its second derivative at t = 0 is 2 Q2 - 2
+// [F Q1] + [F [F Q0]].
 BOOST_DATA_TEST_CASE(follows_from_two_conversions, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Velocity<Guide, Inertial, Body> F{sample.motor(-1, 1)};
@@ -220,7 +220,7 @@ BOOST_DATA_TEST_CASE(follows_from_two_conversions, data::xrange(100u), seed) {
   const Rate<Inertial, Force<Body>> dQ{sample.motor(-1, 1)};
   const Rate<Inertial, Rate<Inertial, Force<Body>>> ddQ{sample.motor(-1, 1)};
 
-  // F rests for both observers: (d/dt) of o(Q) = .Q - [F Q], term by term.
+  // F is constant for both observers: (d/dt) of o(Q) = .Q - [F Q], term by term.
   const auto oQ = seen_from<Guide>(dQ, F, Q);
   const Rate<Inertial, Rate<Guide, Force<Body>>> of_oQ{ddQ.value - cross(F.value, dQ.value)};
   const auto ooQ = seen_from<Guide>(of_oQ, F, oQ);
@@ -249,8 +249,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(plain_and_true)
 
-// Anchor: a force that rests, its moment taken at a point that leaves along x: it has no rate, but
-// the moment at the point changes by -x cross force.
+// Anchor: a resting force, with its moment taken at a point that moves along x. It has no rate, but
+//         the moment at the point changes by -x cross force.
 BOOST_AUTO_TEST_CASE(differ_by_the_moving_point) {
   const Force<Body> force{{{0, 1, 0}, {0, 0, 0}}};
   const Rate<Guide, Force<Body>> none{};
@@ -271,8 +271,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(the_references)
 
-// Where the kinematics of these tests and the reference file agree to 23 digits, neither is wrong:
-// they were written apart.
+// The kinematics of these tests and the reference file were written independently. Agreement to 23
+// digits shows that neither is wrong.
 BOOST_AUTO_TEST_CASE(agree_with_the_kinematics_of_these_tests) {
   const double k = 1e-23 / static_cast<double>(test::u<Digits50>);
   for (const test::ReferenceCase& c : test::reference_cases()) {

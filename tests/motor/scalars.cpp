@@ -11,7 +11,7 @@
 #include <support/everything.hpp>
 #include <support/near.hpp>
 
-/// Whatever scalar they are called with, the functions give what their formulas say.
+/// All functions agree with their formulas, for every scalar type.
 
 using namespace kreisel;
 using test::near;

@@ -21,7 +21,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double denormal = std::numeric_limits<double>::denorm_min();
 
-/// The sizes of both halves: what the error of a screw's motor is measured by.
+/// The sizes of both halves: the reference for the error of a screw's motor.
 Motor<> halves(const Motor<>& a) {
   return {Vector3<double>::Constant(a.resultant.stableNorm()),
           Vector3<double>::Constant(a.moment.stableNorm())};
@@ -45,8 +45,8 @@ bool says_pitch(const InvalidInput& error) {
 
 BOOST_AUTO_TEST_SUITE(a_screw)
 
-// Anchor: 3 rad/s about the line along z through (1, 2, 0), sliding along it 2 m per radian.
-// The origin moves with 6 along z and point cross (0, 0, 3) = (6, -3, 0).
+// Anchor: 3 rad/s about the line along z through (1, 2, 0), with a slide of 2 m per radian. The
+//         origin moves with 6 along z and point cross (0, 0, 3) = (6, -3, 0).
 BOOST_AUTO_TEST_CASE(by_hand) {
   const Motor<> a{{0, 0, 3}, {6, -3, 6}};
   BOOST_TEST(same(opening(a), Vector3<double>(0, 0, 3)));
@@ -120,7 +120,7 @@ BOOST_DATA_TEST_CASE(agrees_with_its_parts, data::xrange(200u), seed) {
   BOOST_TEST(near(s.intensity, opening(a).norm(), opening(a).norm(), 6));
 }
 
-// (11): v_0 = v_n + r_0 x u, and the axis is where the moment is the length.
+// (11): v_0 = v_n + r_0 x u. On the axis the moment equals the length.
 BOOST_DATA_TEST_CASE(has_its_length_on_its_axis, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const Motor<> a = sample.motor();
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(restore_halves_of_very_different_size) {
   }
 }
 
-// The numbers have no digits left, the direction has all of its own.
+// The numbers have lost their digits, but the direction has all of its own.
 BOOST_AUTO_TEST_CASE(keep_the_direction_of_subnormal_numbers) {
   const Motor<> a{denormal * Vector3<double>(1, 1, 1), {0, 0, 0}};
   const Screw<> s = screw(a);

@@ -36,8 +36,8 @@ BOOST_AUTO_TEST_CASE(preserves_numbers_and_power) {
   }
 }
 
-// A wheel that rolls along x, its centre at height 1 over the world's origin: the point that touches
-// the ground is at rest.
+// A wheel that rolls along x, its centre at height 1 over the world's origin: the point of contact
+// is at rest.
 BOOST_AUTO_TEST_CASE(moves_vectors_to_the_origin) {
   const Vector3<double> centre(0, 0, 1);
   const Six cvel(0, 2, 0, 2, 0, 0);

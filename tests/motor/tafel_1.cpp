@@ -19,8 +19,8 @@
 
 /// Paper 002, (11)-(17) and Tafel 1, as corrected in docs/errata.md.
 ///
-/// The letters are the paper's: u, v the guide motor F and u1, v1 the relative motor V' at O'. A mark
-/// star, ring, dot says who differentiates: body, guide, inertial frame. T is the moment of the
+/// The letters are the paper's: u, v the guide motor F and u1, v1 the relative motor V' at O'. A
+/// mark star, ring, dot names the observer: body, guide, inertial frame. T is the moment of the
 /// differentiated motor, P the derivative of the vector at the moving O'.
 
 using namespace kreisel;
@@ -43,7 +43,7 @@ struct Marked {
   Motor<> star, ring, dot;
 };
 
-/// Everything that stands in (12)-(17) and Tafel 1 at one instant.
+/// All symbols of (12)-(17) and Tafel 1 at one time.
 struct Symbols {
   Motor<> V_rel, F;
   Marked T_rel, T_guide, P_rel, P_guide;
@@ -144,7 +144,7 @@ const Relation relations[] = {
     {"17e", SIDE(guide.dot.moment), SIDE(guide.star.moment + x(u, v) + x(u1, v) + x(v1, u)), false,
      false},
     {"17f", SIDE(guide.ring.moment), SIDE(guide.star.moment + x(u1, v) + x(v1, u)), true, false},
-    // corrected: what each should be in the other sense
+    // corrected: the value in the other sense
     {"17a in T", SIDE(rel.star.moment), SIDE(rel.ring.moment), true, false},
     {"17b in T", SIDE(rel.star.moment), SIDE(rel.dot.moment + x(u1, v) + x(v1, u)), true, false},
     {"17b in P", SIDE(rel.star.moment), SIDE(rel.dot.moment - x(u + u1, v1)), false, true},
@@ -156,8 +156,8 @@ const Relation relations[] = {
     {"17f in P", SIDE(guide.ring.moment), SIDE(guide.star.moment + x(u1, v)), false, true},
 };
 
-/// A cell of Tafel 1: the moment at O' of a differentiated motor, expressed by the derivatives that
-/// the frame of its column takes. Bracket relations as printed, all symbols read as T.
+/// A cell of Tafel 1: the moment at O' of a differentiated motor, expressed by the derivatives of
+/// the column's frame. Bracket relations as printed, all symbols in the sense T.
 struct Cell {
   const char* name;
   std::function<Vector(const Symbols&, const Marked& rel, const Marked& guide)> moment;
@@ -204,8 +204,8 @@ void check_relations(const Symbols& s) {
   }
 }
 
-/// The differentiated motor, written in the frame of a column and its moment there taken at O'; on
-/// body axes again, so that one vector is compared.
+/// The differentiated motor in the frame of a column, with its moment at O' there; on body axes
+/// again, so that one vector is compared.
 Vector moment_in_body(const Symbols&, const Motor<>& rate) { return rate.moment; }
 
 Vector moment_in_guide(const Symbols& s, const Motor<>& rate) {
@@ -282,7 +282,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(relations_11_to_15)
 
-// (12), (13) speak of plain vectors: .v_0 = ov_0 + [u v_0]. The moments of .F and oF are equal.
+// (12), (13) hold for plain vectors: .v_0 = ov_0 + [u v_0]. The moments of .F and oF are equal.
 BOOST_DATA_TEST_CASE(equation_13_holds_for_plain_vectors_only, data::xrange(100u), seed) {
   const Symbols s = random_symbols(seed);
   BOOST_TEST(near(s.P_guide.dot.moment,
@@ -310,7 +310,8 @@ BOOST_AUTO_TEST_CASE(printed_14_errs_by_its_last_term) {
   BOOST_TEST(last.norm() > 0.1);
 }
 
-// The length does not ask for the point, nor its derivative whether that is plain or true.
+// The length does not depend on the point; its derivative is the same in the plain and the true
+// sense.
 BOOST_DATA_TEST_CASE(the_length_is_the_same_in_T_and_in_P, data::xrange(100u), seed) {
   const Symbols s = random_symbols(seed);
   if (s.F.resultant.norm() < 1e-20) return;
@@ -378,7 +379,8 @@ BOOST_AUTO_TEST_CASE(printed_contradicts_the_equation_of_motion) {
   };
   const test::HandExampleK K = test::hand_example_K();
 
-  // True: every form, its moments read as T. So is column S*, whose entries are *v' and *v.
+  // True: every form, its moments in the sense T. Column S* is the same, with the entries *v' and
+  //       *v.
   BOOST_TEST(form_2(s.T_rel.star.moment, s.T_guide.star.moment) == K.force);
   BOOST_TEST(form_8(s.T_rel.ring.moment, s.T_guide.ring.moment) == K.force);
   BOOST_TEST(form_6(s.T_rel.dot.moment, s.T_guide.dot.moment) == K.force);

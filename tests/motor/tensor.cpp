@@ -24,7 +24,7 @@ static_assert(sizeof(MotorTensor<>) == 36 * sizeof(double));
 
 BOOST_AUTO_TEST_SUITE(a_motor_tensor)
 
-// Anchor: every block has its own power of ten, so that a block in the wrong place shows.
+// Anchor: every block has its own power of ten, so that a misplaced block is visible.
 BOOST_AUTO_TEST_CASE(has_its_blocks_by_name) {
   const Matrix3<double> one = Matrix3<double>::Identity();
   const MotorTensor<> T{1 * one, 10 * one, 100 * one, 1000 * one};
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_displaced_tensor)
 
-// Anchor: what answers a force along z through the origin with itself, moved to (1, 0, 0).
+// Anchor: a tensor that maps a force along z through the origin to itself, moved to (1, 0, 0).
 BOOST_AUTO_TEST_CASE(acts_at_its_new_position) {
   const Motor<> force{{0, 0, 1}, {0, 0, 0}};
   const Motor<> rotation{{0, 0, 0}, {0, 0, 1}};  // reciprocal(rotation, force) = 1

@@ -1,4 +1,4 @@
-// A rod let go beside its bearing swings down: bodies and solve() are compiled into libkreisel.
+// A rod, released beside its bearing, swings down: bodies and solve() are compiled into libkreisel.
 #include <cmath>
 #include <iostream>
 

@@ -1,4 +1,4 @@
-// What decays by CVODE's steps.
+// An exponential decay by CVODE's steps.
 #include <cmath>
 #include <iostream>
 

@@ -1,4 +1,5 @@
-// A body that spins about its axis, watched from a turntable: prints its spin against the room.
+// A body that spins about its axis, observed from a turntable: prints its spin relative to the
+// room.
 #include <iostream>
 
 #include <dynamics/inertia.hpp>

@@ -1,4 +1,4 @@
-// Normal gravity at the equator, by a library that kreisel::earth has to bring along.
+// Normal gravity at the equator, by the library behind kreisel::earth.
 #include <iostream>
 
 #include <dynamics/guide/normal_gravity.hpp>

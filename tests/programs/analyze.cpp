@@ -1,4 +1,4 @@
-// The program as its user meets it: scene file in; equilibria, roots, multipliers and bounds out,
+// The program from its user's side: scene file in; equilibria, roots, multipliers and bounds out,
 // against closed forms and references.
 
 #include <boost/test/unit_test.hpp>
@@ -54,7 +54,7 @@ void check_near(const std::string& what, double found, double wanted, double bou
                                                      << bound);
 }
 
-/// With the conjugates that the program leaves out.
+/// With the conjugates, which the program omits.
 std::vector<Complex> roots(const json& result) {
   std::vector<Complex> all;
   for (const json& root : result.at("linear").at("roots")) {
@@ -90,7 +90,7 @@ std::string list(const json& numbers) {
   return text + "]";
 }
 
-/// A model of rotors.json as a scene; `joints` are the keys besides, by the body's name.
+/// A model of rotors.json as a scene; `joints` are additional keys, by the body's name.
 std::string scene_of(const std::string& model, const std::string& root, double speed,
                      const json& joints, const std::string& mode = "regulated") {
   const json all = reference_file("rotors.json").at("models").at(model);
@@ -128,7 +128,7 @@ std::string scene_of(const std::string& model, const std::string& root, double s
   return text.str();
 }
 
-/// Springs and dampers of the reference in the frames of the platform.
+/// Springs and dampers of the reference in the platform's frames.
 std::string platform(const json& c, double speed) {
   json joints;
   for (std::size_t i = 0;
@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(damped_slide) {
   BOOST_TEST(result.at("linear").at("verdict") == "stable");
 }
 
-// Paper 002's rod, 13 digits of the README; and the plane of swing, which turns by u sin(latitude).
+// Paper 002's rod, 13 digits of the README; and the swing plane, which turns by u sin(latitude).
 BOOST_AUTO_TEST_CASE(pendulums_on_the_earth) {
   const json hanging = answer(scene("earth_pendulum"));
   check_near("deviation", hanging.at("steady").at("joints").at("rod").at("coordinate"),
@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(gyrocompass) {
   check_near("swing", one[0], std::sqrt(5e-3 * 2400 * horizontal / 5e-3), 1e-6 * one[0]);
 }
 
-// Asleep it stands as long as (C w)^2 > 4 A k; on its own axes it nutates with nu - w.
+// A sleeping top is stable if (C w)^2 > 4 A k; on its own axes it nutates with nu - w.
 BOOST_AUTO_TEST_CASE(sleeping_top) {
   const double A = 0.3, C = 0.1, k = 2.5, limit = 2 * std::sqrt(A * k) / C;
   for (const double w : {0.5 * limit, 2 * limit}) {
@@ -252,8 +252,8 @@ BOOST_AUTO_TEST_CASE(sleeping_top) {
   }
 }
 
-// Free of torque about the middle axis: s^2 = w^2 (C - B)(B - A)/(A C). Nothing stays about a body
-// that a thruster turns.
+// Free of torque about the middle axis: s^2 = w^2 (C - B)(B - A)/(A C). A body under a thruster's
+// torque has no invariant.
 BOOST_AUTO_TEST_CASE(tumbling_and_thrust) {
   const json result = answer(scene("tumbling_body"));
   BOOST_TEST(result.at("steady").at("motion") == "steady motion");
@@ -305,7 +305,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 namespace {
 
-/// A point mass at 1 m on a hinge along y, which hangs at 0.
+/// A point mass at 1 m on a hinge along y, with the rest position 0.
 std::string point_pendulum(const std::string& rest) {
   return "[[body]]\nname = \"bob\"\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1\n"
          "centre = [0, 0, -1]\ninertia = [0, 0, 0]\n" +
@@ -381,7 +381,8 @@ BOOST_AUTO_TEST_CASE(all_four_of_a_double_pendulum) {
   BOOST_TEST(result.at("steady").at("found") == "start");
 }
 
-// k q = m g l sin(q) with k = m g l/2: a spring tells whole turns apart, and the mass stands on it.
+// k q = m g l sin(q) with k = m g l/2: the spring distinguishes whole turns, and the mass is stable
+// on it.
 BOOST_AUTO_TEST_CASE(mass_on_a_bending_spring) {
   const double bent = 1.8954942670339809;
   std::string text = point_pendulum("spring = { stiffness = 4.905 }\ndamping = 0.1");
@@ -390,7 +391,7 @@ BOOST_AUTO_TEST_CASE(mass_on_a_bending_spring) {
                    {{{bent}, "stable"}, {{-bent}, "stable"}, {{0}, "unstable"}});
 }
 
-// On a guide that turns about the vertical it rests where  w^2 l cos(q) = g.
+// On a guide that turns about the vertical the equilibrium is w^2 l cos(q) = g.
 BOOST_AUTO_TEST_CASE(governor) {
   const double w = 5;
   const double out = std::acos(9.81 / (w * w));
@@ -400,7 +401,7 @@ BOOST_AUTO_TEST_CASE(governor) {
                    {{{out}, "stable"}, {{-out}, "stable"}, {{0}, "unstable"}, {{pi}, "unstable"}});
 }
 
-// What goes on as a family is listed once.
+// A family of equilibria is listed once.
 BOOST_AUTO_TEST_CASE(one_for_each_family) {
   std::string ball = point_pendulum("initial = { attitude = [0.8, 0.6, 0, 0] }");
   ball.replace(ball.find("kind = \"revolute\", axis = [0, 1, 0]"), 35, "kind = \"spherical\"");
@@ -438,7 +439,7 @@ t_end = 1
   }
 }
 
-// Roots of a body whose axes turn along differ by that turning from those on resting axes.
+// Roots on axes that turn with the body differ by that rotation from those on resting axes.
 BOOST_AUTO_TEST_CASE(roots_name_their_frame) {
   const std::string top = R"([[body]]
 name = "top"
@@ -473,7 +474,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(analyze_against_references)
 
-// 32 digits. How roots go with the momenta is the difference of two such scenes, damped or not.
+// 32 digits. The growth of roots with the momenta is the difference of two such scenes, damped or
+// not.
 BOOST_AUTO_TEST_CASE(platform_with_three_gyros) {
   const json all = reference_file("rotors.json").at("eigenvalues");
   for (const char* const name : {"P_free_base_springs_only", "P_free_base_springs_dampers"}) {
@@ -511,7 +513,7 @@ BOOST_AUTO_TEST_CASE(platform_with_three_gyros) {
   }
 }
 
-// tests/data/floquet.json: multipliers over half a turn of rotors that a body can have.
+// tests/data/floquet.json: multipliers over half a turn, for possible rotors.
 BOOST_AUTO_TEST_CASE(unsymmetric_rotors) {
   const json all = reference_file("floquet.json").at("points");
   int count = 0;
@@ -544,7 +546,8 @@ BOOST_AUTO_TEST_CASE(unsymmetric_rotors) {
   BOOST_TEST(count >= 3);
 }
 
-// Mathieu's pendulum, shaken along its length, upright: the equation by classical Runge-Kutta steps.
+// Mathieu's pendulum, oscillated along its length, upright: the equation by classical Runge-Kutta
+// steps.
 BOOST_AUTO_TEST_CASE(pendulum_stabilised_upright) {
   std::string text = rod;
   text.replace(text.find("0.5"), 3, "3.141592653589793");
@@ -582,7 +585,8 @@ origin_acceleration = { terms = [ { amplitude = [0, 0, 800], frequency = 60, pha
   BOOST_TEST((floquet.at("verdict") == "unstable") == (std::abs(trace) > 2));
 }
 
-// rotors.json, T13: the distance of the exact and the technical motion of a gyro on springs.
+// rotors.json, T13: the distance of the exact motion and the precession motion of a gyro on
+// springs.
 BOOST_AUTO_TEST_CASE(precession_of_a_gyro_on_springs) {
   const json c = reference_file("rotors.json")
                      .at("trajectories")
@@ -610,7 +614,7 @@ BOOST_AUTO_TEST_CASE(precession_of_a_gyro_on_springs) {
   BOOST_TEST(check.at("bound").at("t") == 1.0);
   BOOST_TEST(bound >= off);
   BOOST_TEST(bound <= 10 * off);
-  // At a tenth of the speed nothing is slow.
+  // At a tenth of the speed no motion is slow.
   const json slower = answer_to(scene_of(
       "cardan", "", 50,
       {{"outer", "spring = { stiffness = 0.4 }"}, {"inner", "spring = { stiffness = 0.3 }"}}));

@@ -1,4 +1,4 @@
-// ensemble as a user runs it: a scene file with numbers of it varied.
+// ensemble from its user's side: a scene file with varied numbers.
 
 #include <boost/test/unit_test.hpp>
 
@@ -24,7 +24,7 @@ std::string scene(const std::string& name) {
   return std::string(KREISEL_SCENES) + "/" + name + ".toml";
 }
 
-/// The rows of a CSV file, taken apart at every comma.
+/// The rows of a CSV file, split at every comma.
 std::vector<std::vector<std::string>> rows(const std::string& text) {
   std::vector<std::vector<std::string>> result;
   std::istringstream all(text);
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(sweeps_a_number_of_the_file) {
   BOOST_TEST(summary.at("complete") == 3);
   BOOST_TEST(summary.at("columns").at("wheel.rate").at("least").get<double>() ==
              std::stod(table.at(1).at(4)));
-  // The first is the file as it stands.
+  // The first is the unchanged file.
   const json simulated =
       test::parsed(test::run(KREISEL_SIMULATE " " + scene("wheel_spun_up") + " --json").out);
   const json& wheel = simulated.at("final").at("joints").at("wheel");
@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_threads) {
   BOOST_TEST((drawn("--threads 2 --seed 2") != one));
 }
 
-// A member that cannot be made or computed has its row, with the reason.
+// A member that cannot be made or computed has a row with the reason.
 BOOST_AUTO_TEST_CASE(lists_failed_members) {
   const test::Scratch folder;
   const test::Outcome outcome = run(scene("wheel_spun_up") +
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(lists_failed_members) {
   BOOST_TEST(outcome.out.find("1 of 3 members, 2 failed") != std::string::npos, outcome.out);
 }
 
-// Rounding alone makes more than 1e-15.
+// Rounding alone exceeds 1e-15.
 BOOST_AUTO_TEST_CASE(missed_tolerances_exit_with_4) {
   const test::Outcome outcome = run(scene("double_pendulum") +
                                     " --vary 'body.upper.initial.angle=linear(2,2.1)' "
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(missed_tolerances_exit_with_4) {
   BOOST_TEST(test::parsed(outcome.out).at("tolerance_not_kept") == 2);
 }
 
-// A rate of 1.7e308 m/s leaves the range of doubles.
+// A rate of 1.7e308 m/s overflows.
 BOOST_AUTO_TEST_CASE(a_member_that_is_not_finite_has_failed) {
   const test::Outcome outcome =
       run(scene("damped_slide") +
@@ -145,7 +145,7 @@ BOOST_AUTO_TEST_CASE(a_member_that_is_not_finite_has_failed) {
 BOOST_AUTO_TEST_CASE(keeps_its_results_when_interrupted) {
   const test::Scratch folder;
   std::size_t computed = 0;
-  // A busy machine may not have come to the first member yet.
+  // On a busy machine the first member may not have started yet.
   for (const char* const pause : {"0.5", "4", "32"}) {
     const test::Outcome outcome =
         test::run("( " KREISEL_ENSEMBLE " " + scene("damped_slide") +

@@ -1,4 +1,4 @@
-// What the programs write, and where: pipes, devices, full disks, signals, hostile names.
+// Outputs of the programs and their targets: pipes, devices, full disks, signals, hostile names.
 
 #include <boost/test/unit_test.hpp>
 
@@ -35,12 +35,12 @@ std::string rod(const std::string& head, const std::string& name, const std::str
          t_end + "\noutput_step = 0.01\nmethod = \"verner98\"\n";
 }
 
-/// A body that tumbles in nothing: what its joint carries is rounding.
+/// A body that tumbles freely: its joint carries only rounding.
 const std::string tumbling =
     "[[body]]\nname = \"body\"\njoint = { kind = \"free\" }\nmass = 1\ninertia = [1, 2, 3]\n"
     "initial = { angular_velocity = [0.001, 2, 0.001] }\n[solve]\nt_end = 20\n";
 
-/// True if a line shows a number below 1e-13; what tells errors may.
+/// True if a line shows a number below 1e-13; lines about errors are excepted.
 bool shows_rounding(const std::string& text) {
   static const std::regex rounding("[0-9]e-(1[3-9]|[2-9][0-9]|[1-9][0-9][0-9])");
   std::istringstream all(text);
@@ -51,7 +51,7 @@ bool shows_rounding(const std::string& text) {
   return false;
 }
 
-/// The run that a page of --plot holds.
+/// The run in a page of --plot.
 json run_in(const std::string& page) {
   const std::string open = "id=\"run\">";
   const std::size_t begin = page.find(open) + open.size();
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(hostile_names_and_titles_are_only_shown) {
   }
 }
 
-// A name with a slash is another folder's; all others are names of files here.
+// A name with a slash belongs to another folder; all others are names of files here.
 BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
   for (const std::string& name : hostile_names()) {
     if (name.find('/') != std::string::npos || name.size() > 200) continue;
@@ -121,7 +121,7 @@ BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
   }
 }
 
-// A mistake is one line, whatever the file says.
+// A mistake is one line, whatever the file contains.
 BOOST_AUTO_TEST_CASE(hostile_texts_stay_in_one_line) {
   for (const std::string& name : hostile_names()) {
     const Scratch folder;
@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(hostile_texts_stay_in_one_line) {
   }
 }
 
-// All digits are in JSON and CSV; people see 0, and pictures a line at 0.
+// JSON and CSV have all digits; the text shows 0, and pictures show a line at 0.
 BOOST_AUTO_TEST_CASE(rounding_is_not_shown_as_physics) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", tumbling).string();
@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(rounding_is_not_shown_as_physics) {
   }
 }
 
-// The top hangs where components of its attitude are 7e-17 and less.
+// The hanging top has components of its attitude of 7e-17 and less.
 BOOST_AUTO_TEST_CASE(rounding_of_studies_is_not_shown) {
   const std::string command = analyze + " " + KREISEL_SCENES + "/heavy_top.toml";
   const Outcome text = test::run(command);
@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(a_pipe_gets_all_rows) {
   BOOST_TEST(test::run(simulate + " - <" + file).status == 0);
 }
 
-// 1e4 rows are more than a pipe holds.
+// 1e4 rows exceed the capacity of a pipe.
 BOOST_AUTO_TEST_CASE(a_lost_reader_exits_with_3) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", rod("", "\"rod\"", "100")).string();
@@ -206,7 +206,7 @@ BOOST_AUTO_TEST_CASE(a_lost_reader_exits_with_3) {
   BOOST_TEST(outcome.err.find("Broken pipe") != std::string::npos, outcome.err);
 }
 
-// Nobody reads at all, or nobody reads on: each wait ends.
+// No reader at all, or one that stops reading: each wait ends.
 BOOST_AUTO_TEST_CASE(a_signal_ends_a_wait_for_a_reader) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", rod("", "\"rod\"", "100")).string();
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(the_input_is_not_overwritten) {
   }
 }
 
-// Files that may not grow past 8 kB: the page and the pictures are larger.
+// Files limited to 8 kB: the page and the pictures are larger.
 BOOST_AUTO_TEST_CASE(a_truncated_picture_exits_with_3) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", rod("", "\"rod\"", "2")).string();

@@ -1,4 +1,4 @@
-// The program as its user meets it: command line in, numbers, files and exit status out.
+// The program from its user's side: command line in, numbers, files and exit status out.
 
 #include <boost/test/unit_test.hpp>
 
@@ -31,7 +31,7 @@ Outcome run(const std::string& arguments) {
   return kreisel::test::run(std::string(KREISEL_PENDULUM_DEVIATION) + " " + arguments);
 }
 
-/// Runs it where relative names are those of the folder.
+/// Runs it in the folder, to which relative names refer.
 Outcome run_in(const Scratch& folder, const std::string& arguments) {
   return kreisel::test::run("cd '" + folder.path().string() + "' && HOME=. " +
                             KREISEL_PENDULUM_DEVIATION + " " + arguments);
@@ -65,7 +65,7 @@ std::string options(const json& inputs) {
          text("PhC") + " --amplitude 0.1";
 }
 
-/// Twelve digits, and within the error the program itself states; null where there is none.
+/// Twelve digits, within the error that the program states; null if there is none.
 void compare(const json& found, const json& wanted, const json& estimate, const std::string& what) {
   if (wanted.is_null()) {
     BOOST_TEST(found.is_null(), what);
@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(papers_pendulum_has_thirteen_digits) {
              std::string::npos);
 }
 
-// Three ways to give the same rod.
+// Three ways to describe the same rod.
 BOOST_AUTO_TEST_CASE(all_descriptions_of_a_rod_agree) {
   const std::string site = "--latitude 30 --azimuth 60 --gravity 9.8 ";
   const json a = answer(site + "--reduced-length 0.5");
@@ -187,7 +187,7 @@ BOOST_AUTO_TEST_CASE(a_plot_is_a_picture) {
   BOOST_TEST(folder.size() == 2u);
 }
 
-// No field of a list runs over the end of its line.
+// No field of a list exceeds the end of its line.
 BOOST_AUTO_TEST_CASE(hostile_names_of_sites_are_only_shown) {
   for (const std::string& name : hostile_names()) {
     const Scratch folder;
@@ -213,7 +213,7 @@ BOOST_AUTO_TEST_CASE(hostile_names_of_sites_are_only_shown) {
   }
 }
 
-// A name with a slash is another folder's; all others are names of files here.
+// A name with a slash belongs to another folder; all others are names of files here.
 BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
   for (const std::string& name : hostile_names()) {
     if (name.find('/') != std::string::npos || name.size() > 200) continue;

@@ -1,4 +1,4 @@
-// simulate --resume: rows and report of a run that was stopped, against those of one that was not.
+// simulate --resume: rows and report of a stopped run, against those of an uninterrupted one.
 
 #include <boost/test/unit_test.hpp>
 
@@ -36,7 +36,7 @@ std::string two_rods(const std::string& method, const std::string& t_end) {
          "method = \"" + method + "\"\n";
 }
 
-/// A scene, the run of it that was not stopped, and a CSV file for one that is.
+/// A scene, its uninterrupted run, and a CSV file for the stopped one.
 struct Case {
   Case(const std::string& method, const std::string& t_end)
       : scene(folder.write("scene.toml", two_rods(method, t_end)).string()),
@@ -67,7 +67,7 @@ struct Case {
     BOOST_TEST(!std::filesystem::exists(csv + ".resume"));
   }
 
-  /// Rows up to somewhere in the middle, with a checkpoint that is not of the first row.
+  /// Rows up to the middle, with a checkpoint that is not of the first row.
   void stop_half_way() const {
     std::mt19937 random(2);
     for (int runs = 0;; ++runs) {
@@ -80,7 +80,7 @@ struct Case {
     }
   }
 
-  /// Bytes of the rows that the checkpoint stands for; 0 where there is none.
+  /// Bytes of the rows covered by the checkpoint; 0 if there is none.
   [[nodiscard]] std::size_t checkpoint_bytes() const {
     std::istringstream words(folder.read("part.csv.resume"));
     std::string word;
@@ -91,7 +91,7 @@ struct Case {
     return t > 0 ? bytes : 0;
   }
 
-  /// What a run says when it goes on; it is not waited for.
+  /// First output of a continued run, without waiting for its end.
   [[nodiscard]] std::string first_words(const std::string& options = "") const {
     const std::string begun = folder.read("part.csv");
     const std::string checkpoint = folder.read("part.csv.resume");
@@ -131,7 +131,7 @@ std::string line(const std::string& text, std::size_t number) {
 
 BOOST_AUTO_TEST_SUITE(resuming)
 
-// 300 kills in all, of runs of half a second or more. A run that is killed too early to come on gets
+// 300 kills in all, of runs of half a second or more. A run that is killed before it advances gets
 // more time.
 BOOST_AUTO_TEST_CASE(continues_exactly_after_300_kills) {
   std::mt19937 random(1);
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(continues_exactly_after_300_kills) {
         if (++kills % 50 == 0) longest *= 1.5;
         resume = std::filesystem::exists(c.csv) ? "--resume" : "";
       }
-      // 124: it ended by itself when its time was over
+      // 124: its time was over
       if (outcome.status != 137 && outcome.status != 124) c.check(outcome);
       std::filesystem::remove(c.csv);
       std::filesystem::remove(c.csv + ".resume");
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(continues_exactly_after_300_kills) {
   }
 }
 
-// The checkpoint of a run with new steps is one of the run that began with that row.
+// The checkpoint after new steps belongs to the run that began with that row.
 BOOST_AUTO_TEST_CASE(continues_after_new_steps) {
   const Case c("verner98", "600");
   const std::string begin = c.rows.substr(0, c.rows.find("\n0.25,") + 1);
@@ -202,7 +202,7 @@ BOOST_AUTO_TEST_CASE(does_not_lose_the_row_of_the_start) {
   c.check(c.run("--resume"));
 }
 
-// Bytes of the first line, and some of the numbers behind it.
+// Bytes of the first line, and some of the numbers after it.
 BOOST_AUTO_TEST_CASE(finds_damage_of_the_checkpoint) {
   const Case c("verner98", "600");
   c.stop_half_way();
@@ -243,7 +243,7 @@ BOOST_AUTO_TEST_CASE(finds_rows_that_were_changed) {
   }
 }
 
-// What the steps depend on is part of what tells one run from another.
+// All inputs of the steps distinguish one run from another.
 BOOST_AUTO_TEST_CASE(refuses_a_checkpoint_of_another_run) {
   const Case c("verner98", "600");
   c.stop_half_way();

@@ -1,4 +1,4 @@
-// The program as its user meets it: scene file in, numbers, files and exit status out.
+// The program from its user's side: scene file in, numbers, files and exit status out.
 
 #include <boost/test/unit_test.hpp>
 
@@ -130,8 +130,8 @@ BOOST_AUTO_TEST_CASE(tops_and_a_pendulum) {
   check_near("rod", rod.at("rate"), state("S3_earthpend").at(1), 4e-9);
 }
 
-// Closed forms, with an exponential to 40 digits; and, for the last four, Runge-Kutta steps in 18 digits with their error taken out
-// twice (Richardson), of equations written down apart from all bodies: relative 1e-10 or better.
+// Closed forms, with an exponential to 40 digits. For the last four: Runge-Kutta steps in 18 digits
+// with Richardson extrapolation twice, of equations without bodies. Relative error 1e-10 or better.
 BOOST_AUTO_TEST_CASE(examples) {
   struct Case {
     const char* file;
@@ -169,8 +169,8 @@ BOOST_AUTO_TEST_CASE(examples) {
     check_near(std::string(c.file) + c.value, joints.at(json::json_pointer(c.value)), c.wanted,
                c.bound);
   }
-  // The plane of Foucault's pendulum: 15.04 degrees an hour times the sine of the latitude. The bob
-  // lets a thousandth of it go by its own oval.
+  // The plane of Foucault's pendulum: 15.04 degrees an hour times the sine of the latitude. The
+  // bob's own oval path reduces it by a thousandth.
   const json bob =
       answer(scene("foucault_pendulum")).at("final").at("joints").at("bob").at("coordinate");
   const double turned = std::atan(bob.at(1).get<double>() / bob.at(0).get<double>()) * 180 / pi;
@@ -278,12 +278,12 @@ BOOST_AUTO_TEST_CASE(prints_reactions_and_terms_on_request) {
   BOOST_TEST(text.err == "");
 }
 
-// Rows and report, wherever the run was when it was killed, and killed twice.
+// Rows and report of a run killed at any time, and killed twice.
 BOOST_AUTO_TEST_CASE(continues_exactly_after_a_kill) {
   const Scratch folder;
   std::string longer = two_rods;
   longer.replace(longer.find("output_step = 0.01"), 18, "output_step = 0.05");
-  // Until this machine takes more than a second for it, which is five checkpoints.
+  // Until this machine needs more than a second, which is five checkpoints.
   int t_end = 400;
   std::string file;
   json whole;
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(continues_exactly_after_a_kill) {
     whole = answer(file + " --csv " + (folder.path() / "whole.csv").string());
   } while (whole.at("run_time_s") < 1.2);
   const std::string csv = (folder.path() / "part.csv").string();
-  // Once it has taken down a checkpoint that is not of its first row, or a later one than before.
+  // After it has written a checkpoint that is not of its first row, or a later one than before.
   const auto kill = [&](const std::string& option, const std::string& after) {
     return test::run("( " + std::string(KREISEL_SIMULATE) + " " + file + option + " --csv " + csv +
                      " & pid=$!; until awk 'NR == 1 && $3 > " + after +
@@ -320,7 +320,7 @@ BOOST_AUTO_TEST_CASE(continues_exactly_after_a_kill) {
   BOOST_TEST(!std::filesystem::exists(csv + ".resume"));
 }
 
-// Rows without a checkpoint: what was cut off is computed again from the last whole one, to the
+// Rows without a checkpoint: the missing part is computed again from the last whole row, to the
 // tolerance.
 BOOST_AUTO_TEST_CASE(continues_a_stopped_run) {
   const Scratch folder;
@@ -342,7 +342,7 @@ BOOST_AUTO_TEST_CASE(continues_a_stopped_run) {
   const auto rows = lines(folder.read("part.csv"));
   BOOST_TEST(rows.size() == lines(all).size());
   BOOST_TEST(folder.read("part.csv").substr(0, middle - 100) == all.substr(0, middle - 100));
-  // A complete one stays as it is.
+  // A complete run stays unchanged.
   BOOST_TEST(run(file + " --resume --csv " + (folder.path() / "whole.csv").string()).status == 0);
   BOOST_TEST(folder.read("whole.csv") == all);
   // Rows of another scene are refused, and kept.
@@ -387,7 +387,7 @@ BOOST_AUTO_TEST_CASE(a_full_disk_exits_with_3) {
   BOOST_TEST(lines(csv.err).size() == 1U);
   BOOST_TEST(
       test::run("( " + std::string(KREISEL_SIMULATE) + " " + file + " >/dev/full )").status == 3);
-  // A file that must not grow past 4 kB keeps its whole rows.
+  // A file limited to 4 kB keeps its whole rows.
   const std::string out = (folder.path() / "out.csv").string();
   const Outcome limited =
       test::run("bash -c \"trap '' XFSZ; ulimit -f 4; " + std::string(KREISEL_SIMULATE) + " " +
@@ -399,8 +399,8 @@ BOOST_AUTO_TEST_CASE(a_full_disk_exits_with_3) {
   BOOST_TEST(text.back() == '\n');
 }
 
-// Where steps have been made shorter the run that stands may have begun a last digit beside the
-// start: its first row is that of the scene all the same, and rows that a full disk cut off go on.
+// If steps have been shortened, the accepted run may have started a last digit beside the start.
+// Its first row is nevertheless that of the scene, and rows cut off by a full disk continue.
 namespace {
 
 /// A ship that rolls by 0.2 rad with 8 s, logged at 100 Hz with 4 decimals, and a pendulum in it.
@@ -490,7 +490,7 @@ BOOST_AUTO_TEST_CASE(first_row_is_the_start) {
   BOOST_TEST(folder.read("part.csv") == folder.read("whole.csv"));
 }
 
-// A double pendulum for 200 s: its error is greater than the motion.
+// A double pendulum for 200 s: its error exceeds the motion.
 BOOST_AUTO_TEST_CASE(a_missed_tolerance_exits_with_4) {
   const Scratch folder;
   const std::string file =
@@ -502,7 +502,7 @@ BOOST_AUTO_TEST_CASE(a_missed_tolerance_exits_with_4) {
   BOOST_TEST(run(file + " --t-end 0.5").status == 0);
 }
 
-// An energy of 5e319 J has no double: the run is not complete, and nothing is printed as a result.
+// An energy of 5e319 J overflows: the run is incomplete, and no result is printed.
 BOOST_AUTO_TEST_CASE(a_number_that_is_not_finite_exits_with_3) {
   const Scratch folder;
   const std::string wheel =
@@ -552,7 +552,7 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
   BOOST_TEST(run(good + " --csv /no/such/folder/x.csv").status == 2);
 }
 
-// A joint that finds no inertia is found out when it should move.
+// A joint without inertia is reported when it should move.
 BOOST_AUTO_TEST_CASE(failed_computations_exit_with_3) {
   const Scratch folder;
   std::string massless = two_rods;
@@ -565,7 +565,7 @@ BOOST_AUTO_TEST_CASE(failed_computations_exit_with_3) {
   BOOST_TEST(outcome.err.find("lower") != std::string::npos, outcome.err);
 }
 
-// 1e7 a second is damped away at once; what is left is the soft joint's motion.
+// A mode of 1e7 per second decays at once; the soft joint's motion is left.
 BOOST_AUTO_TEST_CASE(stiff_and_chosen_methods) {
   const Scratch folder;
   std::string stiff = two_rods;
@@ -585,13 +585,13 @@ BOOST_AUTO_TEST_CASE(stiff_and_chosen_methods) {
   }
 }
 
-/// What is between the head of a scene and its solve table.
+/// A scene with a model, between its head and its solve table.
 std::string approximated(const char* model, const std::string& bodies) {
   return bodies + "[solve]\nt_end = 0.2\noutput_step = 0.01\ntolerance = 1e-10\nmodel = \"" +
          model + "\"\n";
 }
 
-// Against the harmonic oscillation; and its error is that of the period, phi^2/16 of it.
+// Against the harmonic oscillation; its reported error is that of the period, phi^2/16 of it.
 BOOST_AUTO_TEST_CASE(linear_equations_report_their_error) {
   const Scratch folder;
   const std::string rod = two_rods.substr(0, two_rods.find("[[body]]\nname = \"lower\""));
@@ -613,7 +613,7 @@ BOOST_AUTO_TEST_CASE(linear_equations_report_their_error) {
   }
 }
 
-// A quarter of a swing from rest: early outputs are small, but errors are in proportion to the whole way.
+// A quarter of a swing from rest: early outputs are small, but errors are relative to the whole motion.
 BOOST_AUTO_TEST_CASE(model_errors_whatever_the_outputs) {
   const Scratch folder;
   const double begin = 0.005;
@@ -635,7 +635,7 @@ BOOST_AUTO_TEST_CASE(model_errors_whatever_the_outputs) {
   }
 }
 
-// The same rod in a ball joint: its turn goes as the angle does.
+// The same rod in a spherical joint: its rotation follows the angle.
 BOOST_AUTO_TEST_CASE(linear_equations_of_an_attitude) {
   const Scratch folder;
   const double begin = 0.7;
@@ -655,7 +655,7 @@ BOOST_AUTO_TEST_CASE(linear_equations_of_an_attitude) {
   check_near("rate", end.at("angular_velocity").at(1), -w * begin * std::sin(3 * w), 1e-13);
 }
 
-// Without inertia across the spin:  H beta' + c_a alpha = 0,  -H alpha' + c_b beta = 0.
+// Without transverse inertia: H beta' + c_a alpha = 0, -H alpha' + c_b beta = 0.
 BOOST_AUTO_TEST_CASE(precession_equations_report_their_error) {
   const Scratch folder;
   const std::string bodies = R"(
@@ -687,11 +687,11 @@ rotor = { mode = "free", speed = 500 }
   const double H = 5e-4 * 500;
   const double w = std::sqrt(2.0 * 3.0) / H;
   const json& end = result.at("final").at("joints");
-  // Of third order in the angles.
+  // The error has third order in the angles.
   check_near("alpha", end.at("outer").at("coordinate"), 1e-3 * std::cos(w * 0.2), 5e-9);
   check_near("beta", end.at("inner").at("coordinate"),
              -1e-3 * std::sqrt(2.0 / 3.0) * std::sin(w * 0.2), 5e-9);
-  // From rest the first swing misses by the nutation: rates by as much as they are.
+  // From rest the first swing deviates by the nutation: rates deviate by their own size.
   std::string exact = approximated("exact", bodies);
   const json truth = answer(folder.write("exact.toml", exact).string()).at("final").at("joints");
   for (const char* const body : {"outer", "inner"}) {
@@ -703,7 +703,7 @@ rotor = { mode = "free", speed = 500 }
   BOOST_TEST(end.at("rotor").at("coordinate") == truth.at("rotor").at("coordinate"));
 }
 
-/// A gyro in two rings; `rotor` are its moments and, behind them, its keys.
+/// A gyro in two rings; `rotor` are its moments, followed by its keys.
 std::string gyro(const std::string& rings, const std::string& rotor) {
   return "[[body]]\nname = \"outer\"\njoint = { kind = \"revolute\", axis = [1, 0, 0] }\n" + rings +
          "initial = { angle = ANGLE }\n"
@@ -744,14 +744,14 @@ BOOST_AUTO_TEST_CASE(foeppls_equations_report_their_error) {
     check_near("alpha'", end.at("outer").at("rate"),
                scale * w_1 * w_2 * (std::sin(w_2 * t) - std::sin(w_1 * t)), 1e-11);
     BOOST_TEST(end.at("rotor").at("rate") == 50);
-    // Of third order in the angles, so of second relative to them.
+    // The error has third order in the angles, so second order relative to them.
     const double off = result.at("error_estimate");
     if (before > 0) BOOST_TEST((before / off > 3.9 && before / off < 4.1), before / off);
     before = off;
   }
 }
 
-// Mirrored axes, a spin about the negative one and turned bodies are the same gyro.
+// Mirrored axes, a spin about the negative axis and turned bodies are the same gyro.
 BOOST_AUTO_TEST_CASE(foeppls_equations_on_any_axes) {
   const Scratch folder;
   const std::string rings =
@@ -779,9 +779,9 @@ BOOST_AUTO_TEST_CASE(foeppls_equations_on_any_axes) {
   }
 }
 
-// Between two springs at 1.4 rad/s the rest is unstable: each half turn makes 1.2313690 times the
-// angles, as the Floquet multipliers of docs/site/approximations.md have it; and it does not matter
-// where the rotor begins, but for the names of its axes.
+// Between two springs at 1.4 rad/s the rest is unstable. Each half turn multiplies the angles by
+// 1.2313690, by the Floquet multipliers of docs/site/approximations.md. The rotor's first angle
+// does not matter, except for the names of its axes.
 BOOST_AUTO_TEST_CASE(fuchs_weigand_equations_report_their_error) {
   const Scratch folder;
   const std::string rings = "mass = 0\ninertia = [0, 0, 0]\nspring = { stiffness = 1 }\n";
@@ -804,7 +804,7 @@ BOOST_AUTO_TEST_CASE(fuchs_weigand_equations_report_their_error) {
     const std::string table = (folder.path() / "out.csv").string();
     const json result = answer(file + " --csv " + table);
     BOOST_TEST(result.at("model") == "fuchs-weigand");
-    // Grown by 1e8 the angles are still small against 1.
+    // After growth by 1e8 the angles are still small against 1.
     BOOST_TEST(result.at("error_estimate").get<double>() < 1e-6);
     std::vector<double> angles;
     const auto rows = lines(folder.read("out.csv"));
@@ -887,7 +887,7 @@ BOOST_AUTO_TEST_CASE(writes_pictures) {
   }
 }
 
-// A page that asks for nothing else, with the rows of the CSV file in it, to nine digits.
+// A page without further requests, with the rows of the CSV file in it, to nine digits.
 BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
   const Scratch folder;
   const std::string title = "a </script> <!-- title";
@@ -925,7 +925,7 @@ BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
       check_near("row " + std::to_string(i), x, wanted, 5e-9 * std::abs(wanted));
     }
   }
-  // Relative, guide and Coriolis part of both rods, four digits of them; the guide rests.
+  // Relative, guide and Coriolis part of both rods, to four digits; the guide is at rest.
   BOOST_TEST_REQUIRE(shown.at("terms").size() == rows.size() - 1);
   const json& parts = shown.at("terms").back();
   const json wanted = test::parsed(outcome.out).at("final").at("terms").at("lower");
@@ -937,7 +937,7 @@ BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
   }
 }
 
-// However many rows the run has.
+// For any number of rows of the run.
 BOOST_AUTO_TEST_CASE(keeps_the_page_small) {
   const Scratch folder;
   std::string fine = two_rods;

@@ -1,5 +1,5 @@
-// The page that simulate --plot writes, as a browser shows it: what its JavaScript computes, against
-// the library. Skipped where there is no Chromium.
+// The page of simulate --plot in a browser: results of its JavaScript against the library. Skipped
+// without Chromium.
 
 #include <boost/test/unit_test.hpp>
 
@@ -22,7 +22,7 @@ using test::Scratch;
 
 namespace {
 
-// Every kind of joint, each turned against its parent, and everything moves.
+// Every kind of joint, each turned against its parent, all in motion.
 const std::string all_joints = R"(
 title = "All joints"
 [gravity]
@@ -72,7 +72,7 @@ t_end = 1
 output_step = 0.02
 )";
 
-// What stands behind the page's own script and sees all that is in it.
+// A script after the page's own, which can see all its data.
 const std::string probe = R"(<pre id="probe"></pre><script>
 playing = false;
 draw();
@@ -95,7 +95,7 @@ Outcome browse(const std::filesystem::path& page, const std::string& arguments) 
                    "#t=0.51'");
 }
 
-/// Says what ctest takes for "skipped".
+/// Prints the text that ctest recognises as "skipped".
 bool has_browser() {
   const bool found = std::string(KREISEL_CHROMIUM) != "";
   if (!found) std::puts("chromium is not installed");
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   }
   const auto run = solve(system, start, {.output_times = {0, 0.51}, .tolerance = 1e-10});
   auto workspace = system.workspace();
-  // At 0.51 s between two rows, where a cubic is off by (0.02 s)^4 / 384 of a fourth derivative.
+  // At 0.51 s between two rows, where a cubic errs by (0.02 s)^4 / 384 of a fourth derivative.
   for (std::size_t k = 0; k < 2; ++k) {
     const double bound = k == 0 ? 1e-8 : 1e-5;
     for (std::size_t i = 0; i < bodies.size(); ++i) {

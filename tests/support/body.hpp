@@ -13,7 +13,7 @@
 
 namespace kreisel::test {
 
-/// What the laws take, in any scalar: double for the law, Terms for the scale of its error.
+/// The arguments of the laws in any scalar: double for the law, Terms for the scale of its error.
 template <class S>
 struct Typed {
   using Relative = Velocity<Body, Guide, Body, S>;
@@ -34,7 +34,8 @@ struct Typed {
   } dF;
 };
 
-/// A body of point masses in motion: the truth in 50 digits, and the law's arguments rounded from it.
+/// A body of point masses in motion: the truth in 50 digits, and the law's arguments, rounded from
+/// it.
 struct MovingBody {
   std::vector<PointMass> masses;
   Truth truth;
@@ -42,16 +43,16 @@ struct MovingBody {
 
   [[nodiscard]] Typed<double> numbers() const;
 
-  /// Their sizes; what 50 digits leave of a zero counts as 1e-30.
+  /// The sizes of the arguments; a zero's residue in 50 digits counts as 1e-30.
   [[nodiscard]] Typed<Terms> terms() const;
 
   [[nodiscard]] Motor<> force() const;
 };
 
-/// At random.
+/// A random body.
 [[nodiscard]] MovingBody moving_body(unsigned seed);
 
-/// That of a reference case.
+/// The body of a reference case.
 [[nodiscard]] MovingBody moving_body(const ReferenceCase& c);
 
 }  // namespace kreisel::test

@@ -15,7 +15,7 @@
 
 namespace kreisel::test {
 
-/// Numbers of order 1 that every scalar holds exactly.
+/// Numbers of order 1 that every scalar represents exactly.
 template <class S>
 struct Inputs {
   Motor<S> a{{S(1.5), S(-0.75), S(0.25)}, {S(0.5), S(2), S(-1.25)}};
@@ -28,8 +28,8 @@ struct Inputs {
                          .finished();
 };
 
-/// Calls every public function of motor/ and of the inertia and laws once, and hands each number
-/// that comes out to take(). Constructs nothing that needs memory.
+/// Calls every public function of motor/ and of the inertia and laws once, and passes each
+/// resulting number to take(). Constructs nothing that allocates memory.
 template <class S, class Take>
 void everything(const Inputs<S>& in, const Take& take) {
   const auto vector = [&](const Vector3<S>& v) {

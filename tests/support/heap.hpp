@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <new>
 
-/// Counts what is asked of the heap: every operator new, and every malloc and the like called from
-/// the file that includes this, which is where header-only code is. The linker passes them through
-/// here (kreisel_counts_requests in tests/CMakeLists.txt). For one file of a program.
+/// Counts heap allocations: every operator new, and every malloc and the like called from the
+/// including file, which contains the header-only code. The linker passes them through here
+/// (kreisel_counts_requests in tests/CMakeLists.txt). For one file of a program.
 namespace kreisel::test::heap {
 
 inline std::size_t requests = 0;
@@ -17,7 +17,7 @@ inline void note(std::size_t size) {
   bytes += size;
 }
 
-/// How often the action asks for memory.
+/// Number of allocations of the action.
 template <class Action>
 std::size_t requests_of(const Action& action) {
   const std::size_t before = requests;
@@ -57,7 +57,7 @@ int __wrap_posix_memalign(void** result, std::size_t alignment, std::size_t size
 }
 }
 
-// Not inline, or the compiler sees through delete to free and finds no malloc at the other end.
+// Not inline: otherwise the compiler looks through delete to free and finds no matching malloc.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   kreisel::test::heap::note(size);
   if (void* memory = __real_malloc(size)) return memory;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// Texts that a program may only show.
+/// Texts that a program may only print.
 
 namespace kreisel::test {
 
@@ -15,12 +15,12 @@ namespace kreisel::test {
   return result + "'";
 }
 
-/// How many lines a text has.
+/// Number of lines in a text.
 [[nodiscard]] inline long lines(const std::string& text) {
   return std::count(text.begin(), text.end(), '\n');
 }
 
-/// Names that are something else to a shell, to gnuplot, to a terminal or to a reader of lines.
+/// Names with a special meaning to a shell, to gnuplot, to a terminal or to a reader of lines.
 [[nodiscard]] inline std::vector<std::string> hostile_names() {
   return {"'",
           "'quoted'",

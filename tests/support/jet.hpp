@@ -7,7 +7,7 @@
 
 namespace kreisel::test {
 
-/// A function of time, known by its value and two derivatives: sums and products follow Leibniz.
+/// A function of time, given by its value and two derivatives: sums and products follow Leibniz.
 template <class S>
 struct Jet {
   S value = S(0);
@@ -36,7 +36,7 @@ struct Jet {
   friend Jet& operator-=(Jet& a, const Jet& b) { return a = a - b; }
   friend Jet& operator*=(Jet& a, const Jet& b) { return a = a * b; }
 
-  /// f(a) with f, f' and f'' taken at the value.
+  /// f(a) with f, f' and f'' given at the value.
   [[nodiscard]] Jet through(const S& f, const S& df, const S& ddf) const {
     return {f, df * first, ddf * first * first + df * second};
   }
@@ -54,7 +54,7 @@ struct Jet {
     return a.through(c, -sin(a.value), -c);
   }
 
-  /// The derivative as a function of time, its own second derivative unknown and set to 0.
+  /// The derivative as a function of time; its own second derivative is unknown and set to 0.
   [[nodiscard]] Jet rate() const { return {first, second, S(0)}; }
 };
 

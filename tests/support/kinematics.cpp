@@ -43,15 +43,15 @@ JetPose pose(const Motion& motion, const Digits50& t) {
   return {Rz * Ry * Rx, {at(motion.x, t), at(motion.y, t), at(motion.z, t)}};
 }
 
-/// The velocity motor of the posed frame against the one it is posed in, written in the latter:
-/// (rate R) R^t p is w x p, and the point at its origin moves with (rate o) - w x o.
+/// The velocity motor of the posed frame relative to its base, written in the latter.
+/// (rate R) R^t p is w x p. The point at its origin moves with (rate o) - w x o.
 JetMotor velocity(const JetPose& X) {
   const JetMatrix spin = rate(X.R) * X.R.transpose();
   const JetVector w(spin(2, 1), spin(0, 2), spin(1, 0));
   return {w, rate(X.o) - w.cross(X.o)};
 }
 
-/// Written in the frame that X poses, into the frame in which it is posed; and back.
+/// From the frame that X poses into its base frame, and back.
 JetMotor outwards(const JetPose& X, const JetMotor& a) {
   const JetVector r = X.R * a.r;
   return {r, X.R * a.m - r.cross(X.o)};
@@ -60,7 +60,7 @@ JetMotor inwards(const JetPose& X, const JetMotor& a) {
   return {X.R.transpose() * a.r, X.R.transpose() * (a.m + a.r.cross(X.o))};
 }
 
-/// All about a motor given in guide coordinates.
+/// All derivatives of a motor given in guide coordinates.
 Differentiated differentiate(const JetMotor& in_guide, const JetPose& G, const JetPose& B) {
   const JetMotor in_body = inwards(B, in_guide);
   const JetMotor in_inertial = outwards(G, in_guide);
@@ -76,7 +76,7 @@ Differentiated differentiate(const JetMotor& in_guide, const JetPose& G, const J
   a.T.guide = numbers(inwards(still(B), slope(in_guide)));
   a.T.inertial = numbers(inwards(still(B), inwards(still(G), slope(in_inertial))));
 
-  // The two vectors at O': on body axes those of in_body, turned to the others' axes.
+  // The two vectors at O': on body axes those of in_body, rotated to the others' axes.
   const auto plain = [&](const JetMatrix& R) {
     const Matrix3<Digits50> back = value(R).transpose();
     return Motor<Digits50>{back * first(JetVector(R * in_body.r)),

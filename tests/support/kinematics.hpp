@@ -11,8 +11,8 @@
 
 #include <support/sample.hpp>
 
-/// What a moving guide and a body in it do at one instant, from nothing but their poses as functions
-/// of time and the places of point masses: the truth that motors and laws are checked against.
+/// The motion of a guide and a body in it at one time: the truth for tests of motors and laws. It
+/// follows from their poses as functions of time and the positions of point masses.
 ///
 /// Nothing here calls the library's products, reductions or rates. All results on body axes, moments
 /// at the body's origin O'. Computed in 50 digits.
@@ -25,7 +25,7 @@ using Digits50 = boost::multiprecision::cpp_bin_float_50;
 struct Wave {
   Digits50 c0 = 0, c1 = 0, c2 = 0, A = 0, w = 0, p = 0;
 
-  /// The same that stays where it is at the time t.
+  /// The same, constant at its value at the time t.
   [[nodiscard]] Wave still(const Digits50& t) const;
 };
 
@@ -33,7 +33,7 @@ struct Wave {
 struct Motion {
   Wave yaw, pitch, roll, x, y, z;
 
-  /// The same at rest in the pose of the time t.
+  /// The same, at rest in the pose of the time t.
   [[nodiscard]] Motion still(const Digits50& t) const;
 };
 
@@ -49,7 +49,7 @@ struct Derivatives {
   }
 };
 
-/// A motor at one instant: itself, T and P of equations (12)-(17) seen by each observer.
+/// A motor at one time: itself, and T and P of equations (12)-(17) for each observer.
 struct Differentiated {
   Motor<Digits50> value;
   Derivatives T;  ///< its coordinates in the observer's frame differentiated, rewritten at O'
@@ -65,14 +65,14 @@ struct Truth {
   Motor<Digits50> F_G, dF_G;  ///< F at the guide's origin on guide axes, and its rate in the guide
 };
 
-/// Everything at time t about masses fixed in the body.
+/// All quantities at time t for masses fixed in the body.
 [[nodiscard]] Truth truth(const Motion& guide, const Motion& relative, const Digits50& t,
                           const std::vector<PointMass>& masses);
 
-/// A motion at random; sometimes parts of it rest.
+/// A random motion; sometimes parts of it are at rest.
 [[nodiscard]] Motion motion(Sample& sample);
 
-/// Guide and body at random, at time 0 (the waves have phases), with the masses given.
+/// Random guide and body, at time 0 (the waves have phases), with the given masses.
 [[nodiscard]] Truth truth(Sample& sample, const std::vector<PointMass>& masses);
 
 }  // namespace kreisel::test

@@ -19,7 +19,7 @@ using Verdict = boost::test_tools::assertion_result;
 template <class S = double>
 inline const S u = std::numeric_limits<S>::epsilon() / S(2);
 
-/// The length of a motor with the metre as the unit that makes its halves comparable.
+/// The length of a motor, with the metre as the unit that makes its halves comparable.
 template <class S>
 [[nodiscard]] S size(const Motor<S>& a) {
   using std::sqrt;
@@ -84,7 +84,7 @@ template <int Rows, int Columns>
 }
 
 /// Both halves of two motors, each half on its own scale: {size of resultant; size of moment}, or
-/// the sizes of the terms that each component was made of.
+/// the sizes of each component's terms.
 template <class S, class Scale>
 [[nodiscard]] Verdict near(const Motor<S>& x, const Motor<S>& y, const Motor<Scale>& scale,
                            double k) {

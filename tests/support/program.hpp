@@ -8,7 +8,7 @@
 
 namespace kreisel::test {
 
-/// What a program left behind.
+/// The output and exit status of a program.
 struct Outcome {
   int status;
   std::string out;

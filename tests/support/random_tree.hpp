@@ -35,8 +35,8 @@ inline std::vector<JointForce> random_forces(Sample& sample, JointKind kind) {
   return forces;
 }
 
-/// A tree in which the kinds of joints hang on each other in all ways, with some held and some at a
-/// constant rate, and rotors of all modes; nothing acts that has no series.
+/// A tree with all combinations of joint kinds, some of them locked and some at a constant rate,
+/// and rotors of all modes. All its loads have series.
 inline std::vector<BodyDescription> random_tree(std::uint64_t seed) {
   Sample sample(seed);
   std::vector<BodyDescription> bodies;

@@ -10,8 +10,8 @@
 
 namespace kreisel::test {
 
-/// A case of inverse-dynamics.json: a motion and 25 digits of all that follows from it, on body axes
-/// and about O'. I1 is general, I3 has the kinematics of hand example K.
+/// A case of inverse-dynamics.json: a motion and 25 digits of all its results, on body axes and
+/// about O'. I1 is general, I3 has the kinematics of hand example K.
 struct ReferenceCase {
   std::string name;
   Motion guide, relative;
@@ -28,7 +28,8 @@ struct ReferenceCase {
 
 [[nodiscard]] std::vector<ReferenceCase> reference_cases();
 
-/// Hand example K: the x component of the force on a particle, truly and as Tafel 1 is misread.
+/// Hand example K: the x component of the force on a particle, correct and by a misreading of Tafel
+/// 1.
 struct HandExampleK {
   double force, column_So, column_S_dot, plain;
 };

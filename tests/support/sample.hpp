@@ -16,16 +16,17 @@
 
 namespace kreisel::test {
 
-/// A mass and where it is.
+/// A mass and its position.
 struct PointMass {
   double mass;
   Vector3<double> place;
 };
 
-/// Numbers for a property, made from a seed: the same on every machine and for every compiler.
+/// Random numbers for a property test, made from a seed: the same on every machine and for every
+/// compiler.
 ///
-/// They spread over decades, and now and then they are an edge: zero, a pure couple, pitch 0, a
-/// component missing, no displacement, a half turn, a point, a needle, a disc.
+/// They spread over decades and include edge cases. These are zero, a pure couple, pitch 0, a
+/// missing component, no displacement, a half turn, a point, a needle, a disc.
 class Sample {
  public:
   explicit Sample(std::uint64_t seed) : engine_(seed) {}
@@ -43,13 +44,13 @@ class Sample {
     return std::pow(10.0, uniform(low, high));
   }
 
-  /// Of either sign, sometimes 0.
+  /// A number of either sign, sometimes 0.
   [[nodiscard]] double number(double low = -3, double high = 3) {
     if (once_in(16)) return 0;
     return once_in(2) ? magnitude(low, high) : -magnitude(low, high);
   }
 
-  /// A unit vector, sometimes along an axis or in a plane of coordinates.
+  /// A unit vector, sometimes along an axis or in a coordinate plane.
   [[nodiscard]] Vector3<double> direction() {
     Vector3<double> v;
     do {
@@ -82,7 +83,7 @@ class Sample {
     }
   }
 
-  /// A rotation, orthogonal to 4u; sometimes none, a quarter turn or a half turn.
+  /// A rotation, orthogonal to 4u; sometimes the identity, a quarter turn or a half turn.
   [[nodiscard]] Matrix3<double> rotation() {
     const Vector3<double> axis = direction();
     double angle = uniform(0, std::numbers::pi);
@@ -113,7 +114,7 @@ class Sample {
     return masses;
   }
 
-  /// Masses that resist every rotation: four corners of a box and what masses() gives.
+  /// Masses that resist every rotation: four corners of a box and the masses of masses().
   [[nodiscard]] std::vector<PointMass> solid_masses() {
     std::vector<PointMass> masses = this->masses();
     const double scale = magnitude(-1, 1);
@@ -136,7 +137,7 @@ class Sample {
   std::mt19937_64 engine_;
 };
 
-/// The inertia of point masses about the origin, written down from the definition.
+/// The inertia of point masses about the origin, by definition.
 template <class S = double>
 [[nodiscard]] Inertia<S> inertia(const std::vector<PointMass>& masses) {
   Inertia<S> sum;

@@ -10,7 +10,7 @@
 
 namespace kreisel::test {
 
-/// A folder of its own that goes with the test.
+/// A folder that is removed at the end of the test.
 class Scratch {
  public:
   Scratch() {
@@ -24,7 +24,7 @@ class Scratch {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// How many files lie in it.
+  /// Number of files in the folder.
   [[nodiscard]] std::size_t size() const {
     const std::filesystem::directory_iterator files(path_);
     return static_cast<std::size_t>(std::distance(begin(files), end(files)));

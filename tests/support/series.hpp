@@ -10,9 +10,9 @@
 
 namespace kreisel::test {
 
-/// Holds a scene's series against its field, which knows nothing of it: at a part s of the unit of
-/// time  sum k c_k s^(k-1) = h rates(t + s h, sum c_k s^k).  Of order 24 and with s = 1/4 what the
-/// series leaves out is below rounding.
+/// Compares a scene's series with its field, which is independent of it. At a part s of the unit of
+/// time sum k c_k s^(k-1) = h rates(t + s h, sum c_k s^k). With order 24 and s = 1/4 the truncation
+/// error is below rounding.
 template <class Scene>
 void hold_series(const std::string& what, const Scene& scene, const typename Scene::Vector& y,
                  double h = 0.25, double bound = 2e-15) {

@@ -5,9 +5,8 @@
 
 namespace kreisel::test {
 
-/// What steps that are shaken by 10 digits are off by after 100, 200 ... 1600 seconds, root mean square,
-/// in lengths of the random walk that those make where the rate is 1. made(digits) gives steps at their
-/// start.
+/// Root mean square deviation of steps perturbed by 10 digits, after 100, 200 ... 1600 seconds. The
+/// unit is the length of the random walk at a rate of 1. made(digits) gives steps at their start.
 template <class Made>
 [[nodiscard]] double shaken_off(const Made& made) {
   constexpr double digits = 10;

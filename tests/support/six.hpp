@@ -6,8 +6,8 @@
 #include <motor/motor.hpp>
 #include <motor/tensor.hpp>
 
-/// Motors and their maps as columns and matrices of six, resultant first: the yardstick of the
-/// structured ones. Written out entry by entry, with nothing of the library but its types.
+/// Motors and their maps as columns and matrices of six, resultant first, as references for the
+/// structured ones. Written entry by entry, with only the types of the library.
 
 namespace kreisel::test {
 

@@ -11,10 +11,10 @@
 
 namespace kreisel::test {
 
-/// The sum of the sizes of the terms of a formula: a number that cannot cancel.
+/// The sum of the sizes of a formula's terms: a number that cannot cancel.
 ///
-/// Put through the same formula as the values, it gives the scale of their rounding errors: n
-/// operations deep in a sum of products the error is at most about n u times this.
+/// Put through the same formula as the values, it gives the scale of their rounding errors. In a
+/// sum of products with n successive operations the error is at most about n u times this.
 struct Terms {
   double size = 0;
 

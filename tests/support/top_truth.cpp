@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t order = 36;
 
-/// Local error of a step, on the scale of the fastest of all quantities.
+/// Local error of a step, relative to the fastest of all quantities.
 constexpr double tolerance = 1e-27;
 
 /// A function of time as a Taylor polynomial.
@@ -159,7 +159,7 @@ Digits50 TopTruth::advance_period(double guess) {
 }
 
 void TopTruth::advance_far(double time, double guess) {
-  // Away from a turning point, where the tilt says nothing about the time.
+  // Away from a turning point, where the tilt does not determine the time.
   advance(guess / 8);
   const Vector3<Digits50> omega0 = omega;
   const Quaternion q0 = attitude;

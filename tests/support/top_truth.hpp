@@ -23,17 +23,17 @@ struct TopTruth {
   Vector3<Digits50> omega;
   Eigen::Quaternion<Digits50> attitude;
 
-  /// An attitude of any norm is made a unit one.
+  /// An attitude of any norm is normalised.
   TopTruth(const Vector3<double>& moments, const Vector3<double>& rotor, double weight_moment,
            const Vector3<double>& omega0, const Eigen::Quaterniond& attitude0);
 
   void advance(const Digits50& time);
 
-  /// Far ahead, from the change in one period, raised to the number of periods. For a free top the
-  /// period is that of omega on body axes, for a Lagrange top that of the tilt; a guess is enough.
+  /// Advances far, by the change in one period raised to the number of periods. For a free top the
+  /// period is that of omega on body axes, for a Lagrange top that of the tilt. A guess is enough.
   void advance_far(double time, double period);
 
-  /// How far the truth's angular velocity and attitude (an angle) are from given ones.
+  /// Deviations of the truth's angular velocity and attitude (an angle) from given ones.
   [[nodiscard]] double rate_error(const Vector3<double>& other) const;
   [[nodiscard]] double attitude_error(const Eigen::Quaterniond& other) const;
 

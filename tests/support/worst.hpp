@@ -2,8 +2,8 @@
 
 namespace kreisel::test {
 
-/// The greatest of errors, and NaN once one of them is: std::max forgets a NaN that comes second, and
-/// what is no number would pass for no error.
+/// The greatest of errors, and NaN if one of them is. std::max ignores a NaN in second position,
+/// which would hide an invalid error.
 template <class S, class... More>
 [[nodiscard]] S worst_of(const S& first, const More&... others) {
   S worst = first;

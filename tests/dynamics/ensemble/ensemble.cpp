@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(results_do_not_depend_on_ranges) {
   BOOST_TEST((parts == part(0, 27)));
 }
 
-// Each is within its own estimate of the truth; that of a run alone held to 1e-14 counts as it.
+// Each member is within its own estimate of the truth, a single run held to 1e-14.
 BOOST_AUTO_TEST_CASE(members_agree_with_single_runs) {
   for (const double tolerance : {1e-6, 1e-10}) {
     const SolveOptions asked{.output_times = {0.1, 0.2}, .tolerance = tolerance};
@@ -120,15 +120,16 @@ BOOST_AUTO_TEST_CASE(members_agree_with_single_runs) {
       BOOST_TEST(report.error_estimate <= tolerance);
       BOOST_TEST(off <= report.error_estimate);
       BOOST_TEST(off_alone <= alone.members[i].report.error_estimate);
-      // The estimate is one: not far above the error of the worst lane, which sets the steps.
+      // The estimate is realistic: not far above the error of the worst lane, which determines the
+      // steps.
       BOOST_TEST(report.error_estimate > 0);
     }
   }
 }
 
-// Scenes of one kind with other moments of inertia lie side by side in a pack. Each keeps to its own
-// estimate, whether it does or not, but for one in 60 of some last digits; moments mixed up between
-// lanes would turn each another way.
+// Scenes of one type with different moments of inertia lie side by side in a pack. Each keeps its
+// own estimate, whatever the others do. One in 60 misses it by some last digits. Moments mixed up
+// between lanes would change the rotation.
 BOOST_AUTO_TEST_CASE(members_may_have_their_own_scenes) {
   static_assert(detail::lies_side_by_side<Gyro, Pack>);
   static_assert(detail::lies_side_by_side<EulerTop, Pack>);
@@ -137,7 +138,7 @@ BOOST_AUTO_TEST_CASE(members_may_have_their_own_scenes) {
     const auto factor = [&random] { return random.uniform(0.9, 1); };
     CardanMoments own = moments;
     own.rotor *= factor();
-    // Members 8 to 15 are not symmetric, 16 to 23 are by turns.
+    // Members 8 to 15 are not symmetric, 16 to 23 alternate.
     if (index / 8 == 1 || (index / 8 == 2 && index % 2 == 0)) own.rotor.x() *= 0.98;
     own.inner_ring *= factor();
     own.outer_ring *= factor();
@@ -172,7 +173,7 @@ BOOST_AUTO_TEST_CASE(members_may_have_their_own_scenes) {
       BOOST_TEST(report.error_estimate <= options.tolerance);
     }
     BOOST_TEST(beyond <= 1);
-    // A pack has one course of steps.
+    // All members of a pack share their steps.
     BOOST_TEST(result.members[0].report.effort.evaluations ==
                result.members[Pack::lanes - 1].report.effort.evaluations);
   };
@@ -188,8 +189,8 @@ BOOST_AUTO_TEST_CASE(another_seed_gives_other_members) {
   BOOST_TEST((with(1) != with(2)));
 }
 
-// One that cannot be made, and one that runs into gimbal lock: with massless rings nothing resists
-// alpha at beta = 90 degrees.
+// One member that cannot be made, and one that reaches gimbal lock: with massless rings nothing
+// resists alpha at beta = 90 degrees.
 BOOST_AUTO_TEST_CASE(a_failed_member_has_its_reason) {
   const Gyro gyro({.rotor = moments.rotor}, {}, {});
   const auto make = [](std::size_t index, MemberRandom& random) {
@@ -268,8 +269,8 @@ BOOST_AUTO_TEST_CASE(exceptions_of_the_progress_callback_pass) {
   }
 }
 
-// Tops that turn about their middle axis but for 1e-4: of most a first try errs by too much, and to 1e-12
-// rounding has grown to more.
+// Tops that turn about their middle axis, perturbed by 1e-4. In most, the error of the first run is
+// too large, and for 1e-12 rounding has grown too far.
 BOOST_AUTO_TEST_CASE(members_with_large_errors_run_again) {
   const EulerTop free({1, 2, 3});
   const auto beside_middle_axis = [](std::size_t, MemberRandom& random) {
@@ -319,7 +320,7 @@ BOOST_AUTO_TEST_CASE(runs_without_estimates_cost_half) {
   }
 }
 
-// Its load takes doubles alone.
+// Its load accepts doubles only.
 BOOST_AUTO_TEST_CASE(scenes_without_packs_run_one_by_one) {
   const auto load = [](const LoadContext<>&) { return Force<Body>{}; };
   using Top = FixedPointBody<RestingFrame<>, decltype(load)>;

@@ -25,7 +25,7 @@ namespace {
 constexpr int lanes = Pack::lanes;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Rates of random states on a pack against those of each lane alone, in units of the greatest.
+/// Rates of random states on a pack, against those of each single lane, relative to the greatest.
 template <class Scene>
 double rates_differ_by(const Scene& scene) {
   constexpr int n = int(Scene::Vector::RowsAtCompileTime);
@@ -59,7 +59,7 @@ const CardanMoments rotor_with_blades{.rotor = {0.005, 0.006, 0.008},
                                       .outer_ring = {0.006, 0.0045, 0.005}};
 const InertiaTensor<Body> brick{{2, {0.01, 0.02, 0.05}, {0.04, 0.05, 0.03, 0.001, 0.002, 0.003}}};
 
-/// Oscillators of one frequency and one amplitude a lane.
+/// Oscillators with a frequency and an amplitude for each lane.
 struct Oscillators {
   using Vector = Eigen::Matrix<Pack, 2, 1>;
 
@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(select_and_compare_lane_by_lane) {
   BOOST_TEST(y.lane(lanes - 1) == 1);
 }
 
-// Fused multiplications and the order of sums that a compiler is free in make a few u.
+// Fused multiplications and the order of sums, which the compiler may choose, cause a few u.
 BOOST_AUTO_TEST_CASE(move_scenes_like_doubles) {
   BOOST_TEST(rates_differ_by(EulerTop({0.002, 0.0025, 0.003}, {0.01, 0, 0.05}, {0, 0, 1})) <
              32 * eps);
@@ -146,8 +146,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(members_that_share_their_steps)
 
-// A small fast oscillator beside a large slow one: measured by the other's size it might err by 1e6
-// times as much. Each has (error in a step) * (steps) of its own, and no lane more.
+// A small fast oscillator beside a large slow one. Measured relative to the other's size, its error
+// might be 1e6 times as large. Each has (error in a step) * (steps) of its own.
 BOOST_AUTO_TEST_CASE(each_keep_the_relative_accuracy) {
   constexpr double accuracy = 1e-10;
   Oscillators field{1};
@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(each_keep_the_relative_accuracy) {
     const double x = amplitude * std::cos(field.frequency.lane(k) * end);
     BOOST_TEST(std::abs(y[0].lane(k) - x) <= accuracy * steps.effort().steps * amplitude);
   }
-  // It takes about as many steps as the fast one does alone.
+  // The pack takes about as many steps as the fast one alone.
   ExplicitRungeKutta alone(
       [](double, const Eigen::Vector2d& v) { return Eigen::Vector2d(10 * v[1], -10 * v[0]); }, 0.0,
       Eigen::Vector2d(1e-6, 0), {accuracy, 0});
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(allocate_no_memory_in_steps) {
   BOOST_TEST(test::heap::requests_of([&] { run.to(1); }) == 0U);
 }
 
-// Gimbal lock of massless rings, in one lane of them.
+// Gimbal lock of massless rings in one lane.
 BOOST_AUTO_TEST_CASE(stop_together) {
   const CardanGyro gyro({.rotor = {0.005, 0.005, 0.008}}, {}, RestingFrame<>{});
   PackedAdvance<std::remove_const_t<decltype(gyro)>>::States starts;

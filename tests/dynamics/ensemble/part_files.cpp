@@ -24,7 +24,7 @@ std::vector<std::string> rows(std::size_t count) {
 
 BOOST_AUTO_TEST_SUITE(part_files)
 
-// 300 members are one whole part and 44 of the next.
+// 300 members: one whole part and 44 of the next.
 BOOST_AUTO_TEST_CASE(list_the_missing_parts) {
   const Scratch folder;
   const PartFiles parts(folder.path() / "parts", "seed 1", 300);

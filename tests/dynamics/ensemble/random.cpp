@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(differ_by_seed_index_and_count) {
   BOOST_TEST(seen.size() == 3U * 4U * 100U);
 }
 
-// Means of n numbers: within five of their own deviations, for this seed once and for all.
+// Means of n numbers: within five of their standard deviations, for this fixed seed.
 BOOST_AUTO_TEST_CASE(have_their_distributions) {
   constexpr int n = 200000;
   MemberRandom random(7, 3);

@@ -22,8 +22,8 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-// The result is rounded once: sqrt(4) u/2 in the quaternion, twice that in the angle. The inside,
-// of 64 bits, may add as much again where the phase grows to 1e3.
+// The result is rounded once: sqrt(4) u/2 in the quaternion, twice that in the angle. The inner
+// calculation with 64 bits may add as much if the phase grows to 1e3.
 constexpr double rounded = 4 * u;
 
 const Eigen::Quaterniond anyhow(0.3, -0.5, 0.7, 1.1);
@@ -39,7 +39,7 @@ struct Errors {
   }
 };
 
-/// At 8 times up to the last; its eighth should be a double.
+/// At 8 times up to the last, whose eighth should be a double.
 Errors errors(const Vector3<double>& moments, const Vector3<double>& omega0, double last) {
   const FreeTop top(moments, omega0, anyhow);
   test::TopTruth truth(moments, Vector3<double>::Zero(), 0, omega0, anyhow);
@@ -74,8 +74,8 @@ BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series, data::xrange(40u), se
   BOOST_TEST(worst.rate <= rounded);
 }
 
-// 100 s of Dzhanibekov's nut: the angular velocity comes by the saddle up to ten times and leaves
-// it as the last digit of L^2 - 2 E I2 = 2 eps^2 says.
+// 100 s of Dzhanibekov's nut. The angular velocity passes the saddle up to ten times and leaves it
+// according to the last digit of L^2 - 2 E I2 = 2 eps^2.
 BOOST_DATA_TEST_CASE(motion_near_the_separatrix_keeps_its_digits,
                      data::make({1e-3, 1e-5, 1e-8, 1e-12}), eps) {
   const Errors worst = errors({1, 2, 3}, {eps, 2, eps}, 100);
@@ -116,7 +116,7 @@ BOOST_DATA_TEST_CASE(motion_after_1e4_periods_keeps_its_digits, data::xrange(12u
   truth.advance_far(time, top.period());
   Errors worst;
   worst.take(truth, top.at(time));
-  // The phase and the angle about L, which grows like L t/I1, are right to some 2^-64.
+  // The phase and the angle about L, which grows like L t/I1, have relative errors of some 2^-64.
   const double angle = top.momentum() / I.minCoeff() * time;
   BOOST_TEST(worst.attitude <= rounded + 8 * 0x1p-64 * angle);
   BOOST_TEST(worst.rate <= rounded + 8 * 0x1p-64 * angle);

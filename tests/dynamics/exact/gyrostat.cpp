@@ -25,8 +25,8 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-// The result is rounded once: sqrt(4) u/2 in the quaternion, twice that in the angle. The inside
-// has 64 bits.
+// The result is rounded once: sqrt(4) u/2 in the quaternion, twice that in the angle. The inner
+// calculation has 64 bits.
 constexpr double rounded = 4 * u;
 
 const Eigen::Quaterniond anyhow(0.3, -0.5, 0.7, 1.1);
@@ -39,14 +39,14 @@ struct Gyro {
   [[nodiscard]] Gyrostat exact() const { return {moments, rotor, omega, anyhow}; }
   [[nodiscard]] test::TopTruth truth() const { return {moments, rotor, 0, omega, anyhow}; }
 
-  /// The angle that L turns through, against the body and in space, at most.
+  /// An upper limit of the angle through which L turns, relative to the body and in space.
   [[nodiscard]] double angle(double time) const {
     const double L = (moments.cwiseProduct(omega) + rotor).norm();
     return (L + rotor.norm()) / moments.minCoeff() * time;
   }
 
-  /// Whether two of the four roots are complex: energy and momentum leave omega1 or omega2 (of the
-  /// two across the rotor) without a real zero as omega3 changes.
+  /// True if two of the four roots are complex. As omega3 changes, energy and momentum then leave
+  /// omega1 or omega2, both transverse to the rotor, without a real zero.
   [[nodiscard]] bool has_complex_roots() const {
     int k = 0;
     rotor.cwiseAbs().maxCoeff(&k);
@@ -61,7 +61,7 @@ struct Gyro {
   }
 };
 
-/// The body of four masses on each axis as in the test of FreeTop; the rotor on any of them.
+/// The body of four masses on each axis, as in the test of FreeTop; the rotor lies on any axis.
 Gyro any_gyro(unsigned seed) {
   test::Sample sample(seed);
   const double a = sample.magnitude(-2, 0);
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(rotor_at_rest_gives_the_free_top) {
   }
 }
 
-// (A - C) omega3 = h: to the body its rotor makes up for the moment it lacks.
+// (A - C) omega3 = h: the rotor makes up for the moment that the body lacks.
 BOOST_AUTO_TEST_CASE(a_rotor_can_make_any_rotation_steady) {
   const Vector3<double> omega(1, -2, 0.5);
   const SymmetricGyrostat top(2, 1, 0.5, omega, anyhow);
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(motion_agrees_with_the_taylor_series) {
             << " rad, rate " << rate << '\n';
 }
 
-// The phase and the angle about L are right to some 2^-64.
+// The phase and the angle about L have relative errors of some 2^-64.
 BOOST_DATA_TEST_CASE(gyrostat_after_1e4_periods_keeps_its_digits, data::xrange(12u), seed) {
   const Gyro gyro = any_gyro(seed);
   const Gyrostat top = gyro.exact();
@@ -199,8 +199,8 @@ BOOST_DATA_TEST_CASE(gyrostat_after_1e4_periods_keeps_its_digits, data::xrange(1
             << " rad\n";
 }
 
-// C ((C - B) omega3 + h)^2 = A (C - B)(B - A) omega1^2, to the bit at 0: from there the motion ends
-// at omega1 = 0, omega3 = -h/(C - B). Past 24 s the truth of 50 digits, too, leaves that again.
+// C ((C - B) omega3 + h)^2 = A (C - B)(B - A) omega1^2, exactly at 0: the motion ends at omega1 =
+// 0, omega3 = -h/(C - B). After 24 s the truth of 50 digits leaves that point as well.
 BOOST_DATA_TEST_CASE(motion_near_a_saddle_keeps_its_digits,
                      data::make({0.0, 1e-3, -1e-6, 1e-9, -1e-12, 1e-15}) *
                          data::make({3.75, -4.25}),
@@ -215,8 +215,8 @@ BOOST_DATA_TEST_CASE(motion_near_a_saddle_keeps_its_digits,
   }
 }
 
-// Equal moments across a rotor that makes up for what the third lacks: any rotation is steady. One
-// about an axis across the rotor is not, where the rotor pushes it on.
+// Equal moments transverse to a rotor that makes up for the third: any rotation is steady. A
+// rotation about a transverse axis is not steady if the rotor drives it.
 BOOST_AUTO_TEST_CASE(is_steady_if_its_momentum_is_constant) {
   const Vector3<double> any(1, -2, 0.5);
   BOOST_TEST(
@@ -276,7 +276,7 @@ BOOST_DATA_TEST_CASE(nearly_symmetric_bodies_keep_their_digits,
   }
 }
 
-// Which shares no formula: one goes along omega3, the other along the axis that L circles.
+// Both formulas share nothing: one goes along omega3, the other along the axis that L circles.
 BOOST_AUTO_TEST_CASE(a_weak_rotor_gives_the_free_top) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double middle : {0.1, 3.0}) {
@@ -304,7 +304,7 @@ BOOST_AUTO_TEST_CASE(symmetric_bodies_give_the_symmetric_gyrostat) {
   BOOST_TEST(test::same(any.at(9).angular_velocity, symmetric.at(9).angular_velocity));
 }
 
-// On an axis, and aslant where the rotor makes up for the moments: (C - B) omega3 + h = 0.
+// On an axis, and inclined if the rotor makes up for the moments: (C - B) omega3 + h = 0.
 BOOST_AUTO_TEST_CASE(steady_rotations_are_exactly_steady) {
   for (Gyro gyro :
        {Gyro{{2, 5, 6}, {0, 0, 3}, {0, 0, -0.7}}, Gyro{{2, 5, 6}, {0, 0, 3}, {0, 2, -3}},

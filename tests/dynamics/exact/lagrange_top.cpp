@@ -24,8 +24,8 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-// The result is rounded once: sqrt(4) u/2 in the quaternion, twice that in the angle. The inside,
-// of 64 bits, may add as much again where the phase grows to 1e3.
+// The result is rounded once: sqrt(4) u/2 in the quaternion, twice that in the angle. The inner
+// calculation with 64 bits may add as much if the phase grows to 1e3.
 constexpr double rounded = 4 * u;
 
 const Eigen::Quaterniond anyhow(0.3, -0.5, 0.7, 1.1);
@@ -53,13 +53,13 @@ struct Errors {
   }
 };
 
-/// Turned through in a time, by all phases together. They are right to some 2^-64 of it and,
-/// because they are counted from a turning point, of what it is in a nutation.
+/// Total angle of all phases in a time. Their relative error is some 2^-64 of this angle and of the
+/// angle of one nutation, because they are counted from a turning point.
 double angle(const Case& c, double time) {
   return (c.omega.norm() * (1 + c.C / c.A) + std::sqrt(4 * c.weight_moment / c.A)) * time;
 }
 
-/// At 16 times up to the last; its sixteenth should be a double.
+/// At 16 times up to the last, whose sixteenth should be a double.
 Errors errors(const Case& c, double last) {
   const LagrangeTop top(c.A, c.C, c.weight_moment, c.omega, c.attitude);
   test::TopTruth truth({c.A, c.A, c.C}, Vector3<double>::Zero(), c.weight_moment, c.omega,
@@ -126,7 +126,7 @@ BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series, data::xrange(24u), se
 }
 
 BOOST_DATA_TEST_CASE(limiting_motions_keep_their_digits, cases, c) {
-  // No longer: upon the homoclinic motion 50 digits are used up by exp(sqrt(kappa) t).
+  // No longer: on the homoclinic motion exp(sqrt(kappa) t) consumes 50 digits.
   const Errors worst = errors(c, 16);
   const double period = LagrangeTop(c.A, c.C, c.weight_moment, c.omega, c.attitude).period();
   const double in_nutation = std::isinf(period) ? 0 : angle(c, period);
@@ -196,8 +196,8 @@ BOOST_AUTO_TEST_CASE(sleeping_top_is_steady_to_the_bit) {
   }
 }
 
-// Without spin a push of v^2 = kappa at the lowest point lasts to the upper rest point; sqrt(6) is
-// no double, and which way the top falls is in its last digit.
+// Without spin, a velocity with v^2 = kappa at the lowest point leads exactly to the upper rest
+// point. sqrt(6) is no double, and its last digit decides to which side the top falls.
 BOOST_AUTO_TEST_CASE(homoclinic_motion_ends_upright) {
   const LagrangeTop top(3, 1, 3, {2, 0, 0}, hanging);
   BOOST_TEST(std::isinf(top.period()));
@@ -210,15 +210,15 @@ BOOST_AUTO_TEST_CASE(homoclinic_motion_ends_upright) {
   BOOST_TEST(nearly.rate <= rounded * nearly.fastest);
 }
 
-// L3 - L_vertical and the energy both miss those of the homoclinic motion by 1e-13. So small a
-// distance is what the truth's own 1e-27 in each step counts against.
+// L3 - L_vertical and the energy both differ from the homoclinic motion by 1e-13. Relative to so
+// small a distance the truth's own 1e-27 in each step matters.
 BOOST_AUTO_TEST_CASE(near_homoclinic_motion_returns_in_time) {
   const Errors worst = errors({"", 2, 1, 2, {1, 1 + 1e-13, 2}, {1, 1, 0, 0}}, 64);
   BOOST_TEST(worst.attitude <= 32 * u);
 }
 
-// Vertical or nearly so, tilted about x or about y: seen from axes turned about the vertical, and with
-// the body's own turned along, it is one motion.
+// The axis is vertical or nearly so, tilted about x or about y. Seen from axes turned about the
+// vertical, with the body's axes turned too, it is one motion.
 BOOST_AUTO_TEST_CASE(motion_does_not_depend_on_the_horizontal_axes) {
   const Eigen::Quaterniond quarter(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
   const auto turned = [&](const Eigen::Quaterniond& q) {
@@ -230,7 +230,7 @@ BOOST_AUTO_TEST_CASE(motion_does_not_depend_on_the_horizontal_axes) {
          {Vector3<double>(0.7, 0, 3), Vector3<double>(0, 0.7, 3), Vector3<double>(0, 0, 3)}) {
       const auto one = LagrangeTop(2, 1, 3, w, q).at(1.5);
       const auto other = LagrangeTop(2, 1, 3, quarter * w, turned(q)).at(1.5);
-      // The turn itself rounds, and what that is grows as the motion lets it.
+      // The rotation itself is rounded, and the motion amplifies the rounding.
       BOOST_TEST(other.attitude.angularDistance(turned(one.attitude)) <= 128 * u);
       BOOST_TEST((other.angular_velocity - quarter * one.angular_velocity).norm() <= 128 * u * 3);
     }

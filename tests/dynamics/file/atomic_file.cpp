@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(a_full_disk_leaves_the_old_file) {
   BOOST_TEST(folder.size() == 1u);
 }
 
-// A device stays one, as /dev/null must when root writes to it.
+// A device stays a device: /dev/null must stay one when root writes to it.
 BOOST_AUTO_TEST_CASE(a_device_is_written_and_not_replaced) {
   write("/dev/null", "new");
   BOOST_TEST(std::filesystem::is_character_file("/dev/null"));
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(a_link_stays_and_leads_to_the_new_file) {
   BOOST_CHECK_THROW(AtomicFile(folder.path() / "loop"), InvalidInput);
 }
 
-// A link in place of the draft would have another file overwritten.
+// Writing through a link in place of the draft would overwrite another file.
 BOOST_AUTO_TEST_CASE(a_draft_is_never_written_through_a_link) {
   const Scratch folder;
   folder.write("precious", "old");

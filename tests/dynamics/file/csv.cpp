@@ -14,7 +14,7 @@ using kreisel::test::Scratch;
 
 namespace {
 
-/// What reading the text, and the numbers of its column x, complains of; empty when it does not.
+/// The error message for a text and the numbers of its column x; empty if there is none.
 std::string complaint(const std::string& text) {
   const Scratch folder;
   const auto path = folder.write("table.csv", text);

@@ -47,7 +47,7 @@ std::vector<std::vector<double>> rows(const Log& log) {
 
 using Rows = std::vector<std::vector<double>>;
 
-/// The complaint about a text, without the folder; empty if it is read.
+/// The error message for a text, without the folder; empty if it is read.
 std::string complaint(const std::string& text, const LogOptions& options = {},
                       const std::vector<LogRequest>& requests = value) {
   const Scratch folder;
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(nanoseconds_since_1970_keep_their_digits) {
   BOOST_TEST((rows(read("t,value\n0.2,1\n", options)) == Rows{{0.3e-6, 1}}));
   options.time_zero = "1e-300";
   BOOST_TEST((rows(read("t,value\n1e20,1\n", options)) == Rows{{1e14, 1}}));
-  // The double next to what is written, as without any subtraction.
+  // The double nearest to the written number, without any subtraction.
   for (const std::string t : {"0.1", "1.000000000000000056e-01", "123456789.123456789", "4.9e-324",
                               "1.7976931348623157e308", "9007199254740993"}) {
     BOOST_TEST((rows(read("t,value\n" + t + ",1\n")) == Rows{{std::strtod(t.c_str(), nullptr), 1}}),
@@ -262,7 +262,7 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
   BOOST_TEST(complaint("Time,PtfmRoll,PtfmPitch,PtfmYaw\n0,1,2,3\n", {}, motion)
                  .ends_with("columns = { t = \"Time\", yaw = \"PtfmYaw\", pitch = \"PtfmPitch\", "
                             "roll = \"PtfmRoll\" }"));
-  // Motion capture: names that occur twice are given by number.
+  // Motion capture: names that occur twice are replaced by numbers.
   BOOST_TEST(complaint("Frame,Time (Seconds),QX,QY,QZ,QX\n0,0,0,0,0,1\n", {}, motion)
                  .ends_with("columns = { t = \"Time (Seconds)\", qw = 2, qx = 3, qy = \"QY\", qz = "
                             "\"QZ\" }"));
@@ -298,15 +298,15 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
              "}");
   BOOST_TEST(
       complaint("0;1\n1;2\n", by_number(1, 3)).starts_with("log.csv:1: column 3 for 'value'"));
-  // A column of text that is wanted as a number.
+  // A column of text where numbers are needed.
   BOOST_TEST(complaint("0,a\n1,b\n", by_number(1, 2)).starts_with("log.csv:1: value = 'a' is not"));
-  // A row of text with a number in it, alike but for that.
+  // A row of text that contains a number.
   BOOST_TEST(complaint("7,a\n0,1\n", by_number(1, 2)) ==
              "log.csv:1: value = 'a' is not a finite number; if it is above the rows, give  skip = "
              "1");
-  // Either a semicolon or a comma may separate these.
+  // The separator may be a semicolon or a comma.
   BOOST_TEST(complaint("0,5;1,0\n", by_number(1, 2)).find("decimal comma") != std::string::npos);
-  // A place needs three coordinates.
+  // A position needs three coordinates.
   BOOST_TEST(complaint("t,qw,qx,qy,qz,x\n0,1,0,0,0,0\n", {}, motion)
                  .starts_with("log.csv:1: no column for y, z among"));
   LogOptions part;
@@ -388,7 +388,7 @@ BOOST_AUTO_TEST_CASE(equal_times_are_an_error_or_merged) {
   BOOST_TEST((merged(LogDuplicates::first) == Rows{{0, 1}, {1, 2}, {2, 5}}));
   BOOST_TEST((merged(LogDuplicates::last) == Rows{{0, 1}, {1, 7}, {2, 5}}));
   BOOST_TEST((merged(LogDuplicates::mean) == Rows{{0, 1}, {1, 4}, {2, 5}}));
-  // q and -q are one attitude, angles that differ by a turn too.
+  // q and -q are one attitude; so are angles that differ by a full turn.
   LogOptions mean;
   mean.duplicates = LogDuplicates::mean;
   BOOST_TEST((rows(read("t,qw,qx,qy,qz\n0,0.8,0.6,0,0\n0,-0.8,-0.6,0,0\n", mean, motion)) ==
@@ -414,7 +414,7 @@ BOOST_AUTO_TEST_CASE(gaps_name_both_lines_and_their_length) {
   options = {};
   options.window = {0, 1};
   BOOST_TEST(read(text, options).size() == 101u);
-  // A gap after the run is no concern of it; what lies beyond is not read.
+  // A gap after the run does not matter; rows beyond the run are not read.
   options = {};
   options.run = {0, 0.9};
   BOOST_TEST(read(text, options).size() == 101u);

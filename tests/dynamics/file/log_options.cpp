@@ -20,7 +20,7 @@ const std::string rest =
 
 const std::string plain = "t,qw,qx,qy,qz\n0,1,0,0,0\n0.1,1,0,0,0\n0.2,1,0,0,0\n0.3,1,0,0,0\n";
 
-/// The motion that a guide with these keys takes from the text of a log.
+/// The motion that a guide with these keys reads from the text of a log.
 MotionLog<> motion(const std::string& log, const std::string& keys = "") {
   const Scratch folder;
   folder.write("log.csv", log);
@@ -30,7 +30,7 @@ MotionLog<> motion(const std::string& log, const std::string& keys = "") {
   return std::get<scene_guide::Table>(scene.guide.front()).log;
 }
 
-/// All mistakes that are told, without the folder.
+/// All reported mistakes, without the folder.
 std::string mistakes(const std::string& log, const std::string& keys = "") {
   const Scratch folder;
   folder.write("log.csv", log);
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(mistakes_in_keys_have_their_position) {
     const std::string found = mistakes(plain, keys);
     BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
   }
-  // Those of all keys are told at once, and the log is not read in vain.
+  // Mistakes in all keys are reported at once, before the log is read.
   BOOST_TEST(mistakes(plain, "skip = -1\nangles = 3\nsigma = 0") ==
              "s.toml:4:8: guide.skip: must be a whole number of lines, 0 to 1000000\n"
              "s.toml:5:10: guide.angles: must be a text, not a whole number");

@@ -15,7 +15,7 @@ using test::Scratch;
 
 namespace {
 
-/// The complaint about a text, without the folder; empty if it is read.
+/// The error message for a text, without the folder; empty if it is read.
 std::string complaint(const std::string& text, const LogOptions& options = {}) {
   const Scratch folder;
   try {
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(angles_turn_about_z_then_y_then_x) {
       YawPitchRoll<double>{170 * degree, -20 * degree, 5 * degree}.rotation());
   BOOST_TEST(log.motion.attitudes[1].angularDistance(expected) < 1e-14);
   BOOST_TEST(log.motion.positions[1] == Vector3<double>(1, 2, 3));
-  // Written to a tenth of a degree, and to centimetres.
+  // Written to a tenth of a degree and to centimetres.
   BOOST_TEST(std::abs(log.attitude_resolution / (0.05 * degree) - 1) < 1e-14);
   BOOST_TEST(log.position_resolution == 0.01);
   BOOST_TEST(log.time_resolution == 0.1);

@@ -1,4 +1,4 @@
-// What a scene file says, against the objects of the library that it means.
+// The contents of scene files, against the equivalent objects of the library.
 
 #include <boost/test/unit_test.hpp>
 
@@ -41,7 +41,7 @@ std::string mistakes(const std::string& text) {
   return "none";
 }
 
-/// The joint and all else of a body with one inertia.
+/// The joint and further keys of a body with one inertia.
 std::string one_body(const std::string& rest) {
   return "[[body]]\nname = \"a\"\nmass = 2\ninertia = [1, 1, 1]\n" + rest + "\n" + run;
 }
@@ -95,7 +95,7 @@ origin_acceleration = { terms = [ { amplitude = [1, 0, 2], frequency = 2, phase 
 BOOST_AUTO_TEST_CASE(move_on_the_earth_as_in_the_library) {
   check_same(guide("[guide]\n" + site), earth_frame({50, 30, 100}));
   check_same(guide("[guide]\n" + site + "rate = 0.5e-4\n"), earth_frame({50, 30, 100, 0.5e-4}));
-  // A gravity given as a number holds the centrifugal part.
+  // A gravity given as a number includes the centrifugal part.
   check_same(guide("[guide]\n" + site + "gravity = 9.81\n"),
              RotatingFrame<>{earth_rotation(EarthSite<>{50, 30, 100})});
 }
@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(integrate_logged_rates) {
   BOOST_CHECK_THROW((void)read("gravity = [0, 0, 1]\nsigma = -1\n"), SceneMistakes);
 }
 
-// A frame without logged accelerations is not accelerated, and does not fall either.
+// A frame without logged accelerations is not accelerated, and does not fall.
 BOOST_AUTO_TEST_CASE(rates_without_accelerations_do_not_fall) {
   const test::Scratch folder;
   (void)folder.write("log.csv", "t,wx,wy,wz\n0,0,0,1\n2,0,0,1\n4,0,0,1\n6,0,0,1\n");
@@ -226,8 +226,8 @@ BOOST_AUTO_TEST_CASE(points_in_the_given_direction) {
              1e-14);
 }
 
-// Both ways to say it give the effective gravity, but for its gradient over half a metre and the
-// earth's turning: 1.5e-6 m/s^2 and 0.5 u^2.
+// Both ways to specify gravity give the effective one. They differ by its gradient over half a
+// metre and the earth's rotation: 1.5e-6 m/s^2 and 0.5 u^2.
 BOOST_AUTO_TEST_CASE(is_effective_gravity_on_the_earth) {
   const double g = normal_gravity({50, 30, 100}).magnitude;
   for (const std::string& text :
@@ -337,7 +337,7 @@ BOOST_AUTO_TEST_CASE(may_be_rotors) {
   const auto rubbed = with("rotor = { mode = \"free\", speed = 3 }\ndamping = 0.1");
   BOOST_TEST((rubbed.bodies.at(0).rotor->mode == RotorMode::torque));
   BOOST_TEST(rubbed.bodies.at(0).rotor->torque == 0);
-  // A load may ask for the angle, which a rotor does not keep.
+  // A load may need the angle, which a rotor does not have.
   const std::string load = "\nload = { torque = [0, 0, 1] }";
   const auto loaded = with("rotor = { mode = \"torque\", torque = 2 }\nforce = 5" + load);
   BOOST_TEST(!loaded.bodies.at(0).rotor);
@@ -459,7 +459,7 @@ BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
   }
 }
 
-// In each place where a scene may be at odds with itself.
+// Each place at which a scene may be inconsistent.
 BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
   const std::string revolute = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
   const std::string prismatic = "joint = { kind = \"prismatic\", axis = [0, 0, 1] }\n";
@@ -563,7 +563,7 @@ BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
   }
 }
 
-// One line each, and none longer than a screen is wide several times.
+// One line each, at most a few screen widths long.
 BOOST_AUTO_TEST_CASE(quote_the_file_in_one_short_line) {
   const std::string found =
       mistakes("[guide]\nkind = \"a\\nb\\u007f" + std::string(100, 'c') + "\"\n" + body + run);
@@ -574,7 +574,7 @@ BOOST_AUTO_TEST_CASE(quote_the_file_in_one_short_line) {
              std::string::npos);
 }
 
-// Mass, tensor and axis are wrong at once, and all are told, in the order of the file.
+// Mass, tensor and axis are wrong at once, and all are reported, in the order of the file.
 BOOST_AUTO_TEST_CASE(are_reported_all_at_once) {
   const std::string found = mistakes(R"([[body]]
 name = "a"
@@ -593,7 +593,7 @@ t_end = "soon"
              "s.toml:7:9: solve.t_end: must be a number, not a text");
 }
 
-// What goes with a joint is not blamed where the joint is.
+// Keys of a joint are not reported as well if the joint itself is wrong.
 BOOST_AUTO_TEST_CASE(are_reported_only_once) {
   const std::string rest =
       "damping = 1\ninitial = { angle = 1 }\nrotor = { mode = \"free\", speed = 1 }";

@@ -1,4 +1,4 @@
-// docs/scene_files.md, sentence by sentence where tests/dynamics/file/scene_file.cpp has it not.
+// Sentences of docs/scene_files.md that tests/dynamics/file/scene_file.cpp does not test.
 
 #include <boost/test/unit_test.hpp>
 
@@ -34,7 +34,7 @@ const std::string ball = "joint = { kind = \"spherical\" }\n";
 const std::string floating = "joint = { kind = \"free\" }\n";
 const std::string weight = "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n";
 
-/// One body, whose keys come before all tables, and then the rest.
+/// One body, with its keys before all tables, and the rest.
 std::string one(const std::string& keys, const std::string& rest = "") {
   const bool has_inertia = keys.find("inertia") != std::string::npos;
   return "[[body]]\nname = \"a\"\nmass = 2\n" +
@@ -70,7 +70,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// The guide of a scene that runs to 1 s beside a log.
+/// The guide of a scene with a log that runs to 1 s.
 SceneFile beside(const std::string& log, const std::string& guide) {
   const test::Scratch folder;
   (void)folder.write("log.csv", log);
@@ -97,7 +97,7 @@ std::vector<std::string> texts_of_the_page() {
   return blocks;
 }
 
-/// A system at rest, in motion or turned, as a scene has it at t = 0.
+/// A system at rest, in motion or turned, with the values of a scene at t = 0.
 class AtStart {
  public:
   explicit AtStart(const std::string& text)
@@ -242,7 +242,7 @@ origin_velocity = [4, 5, 6]
 }
 
 // "A heave given as acceleration a sin(w t) needs origin_velocity = -a/w": 0.6/0.49 up and down for
-// an hour, and 3 km without it.
+// an hour. Without it: 3 km.
 BOOST_AUTO_TEST_CASE(heave_with_its_velocity_does_not_drift) {
   const auto greatest = [](const std::string& velocity) {
     SceneFile file =
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(heave_with_its_velocity_does_not_drift) {
   };
   const double heave = 0.6 / 0.49;
   const double held = greatest("origin_velocity = [" + std::to_string(0.6 / 0.7) + ", 0, 0]\n");
-  // The velocity has six decimals: half of the last of them makes 2 mm in an hour.
+  // The velocity has six decimals: half of the last one causes 2 mm in an hour.
   BOOST_TEST(std::abs(held - heave) <= 2e-3);
   BOOST_TEST(greatest("") > 3000);
 }
@@ -291,8 +291,8 @@ BOOST_AUTO_TEST_CASE(rates_start_with_the_window) {
                       2 * std::atan2(0.6, 0.8)) <= 1e-12);
 }
 
-// "sigma .. [a, b]: of the attitude's quaternion, and of the position", "0: no smoothing": what is
-// not smoothed goes through its rows.
+// "sigma .. [a, b]: of the attitude's quaternion, and of the position", "0: no smoothing": without
+// smoothing the motion passes through its rows.
 BOOST_AUTO_TEST_CASE(sigma_is_for_attitude_and_position) {
   std::string log = "t,yaw,pitch,roll,x,y,z\n";
   for (int i = 0; i <= 100; ++i) {
@@ -330,7 +330,7 @@ BOOST_AUTO_TEST_CASE(time_zero_keeps_nanoseconds_as_a_text) {
   BOOST_TEST(part.back() == 1.2);
 }
 
-// The blocks of keys at the end of "Logs", each beside a log as its comment describes it.
+// The blocks of keys at the end of "Logs", each with a log that its comment describes.
 BOOST_AUTO_TEST_CASE(logs_are_read_as_the_page_shows) {
   std::map<std::string, std::string> logs{
       {"state_groundtruth_estimate0.csv",
@@ -366,7 +366,7 @@ BOOST_AUTO_TEST_CASE(logs_are_read_as_the_page_shows) {
   }
 }
 
-// "At zero coordinates all axes are parallel to those of the guide, unless a joint turns them", and
+// "At zero coordinates all axes are parallel to those of the guide, unless a joint turns them".
 // "position and axes are on the parent's axes; orientation turns the body's axes".
 BOOST_AUTO_TEST_CASE(bodies_are_placed_on_their_parent) {
   const std::string child =

@@ -51,7 +51,7 @@ const Json& trajectory(const std::string& name) {
   throw std::out_of_range(name);
 }
 
-/// A parameter; one that is left out is 0.
+/// A parameter; 0 if it is absent.
 double parameter(const Json& p, const char* name) {
   return p.contains(name) ? number(p.at(name)) : 0.0;
 }
@@ -76,8 +76,8 @@ const CardanMoments unsymmetric{{.0055, .0045, .008}, {.002, .0015, .0028}, {.00
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
                                             boost::multiprecision::et_off>;
 
-/// The gyro by the recursion of Newton and Euler: each body on its own axes, no angle's sine but in
-/// the three rotations. Independent of the scene's formulas.
+/// The gyro by the recursion of Newton and Euler: each body on its own axes, with sines only in the
+/// three rotations. Independent of the scene's formulas.
 template <class S>
 struct Recursion {
   using V = Eigen::Matrix<S, 3, 1>;
@@ -110,7 +110,8 @@ struct Recursion {
     return R;
   }
 
-  /// What the inner neighbour of each body gets from it is the negative; [0] from the guide.
+  /// The moments on each body from its outer neighbour; [0] from the guide. The inner neighbour
+  /// gets the negative.
   std::array<V, 3> moments(const V& dqd, const V& rates, const V& base, const V& dbase) const {
     std::array<V, 3> torque;
     std::array<M, 3> R;
@@ -158,7 +159,7 @@ Vector3<double> rounded(const Recursion<Exact>::V& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// The greatest error of angular accelerations, relative to each one's own size or that of phi''.
+/// The greatest error of angular accelerations, relative to each one's own size or to phi''.
 double error_of(const Vector3<double>& x, const Vector3<double>& truth) {
   return (x - truth).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / truth.cwiseAbs().maxCoeff();
 }
@@ -182,7 +183,7 @@ Vector6 state_at_random(Sample& sample) {
       .finished();
 }
 
-/// Constant u and ou, whatever that means for the time before and after.
+/// Constant u and ou at one time; the motion before and after does not matter.
 struct Momentary {
   Vector3<double> u;
   Vector3<double> du;
@@ -229,7 +230,7 @@ double error_of_reactions(const Gyro& gyro, double t, const typename Gyro::State
                           const Json& truth) {
   const auto mine = list(gyro.reactions(t, s));
   double worst = 0;
-  double size = 0.1;  // what rings without mass carry is 0, made of terms of this size
+  double size = 0.1;  // reactions of massless rings are 0, a sum of terms of this size
   for (std::size_t i = 0; i < names.size(); ++i) {
     worst = test::worst_of(worst, std::abs(mine[i] - number(truth.at(names[i]))));
     size = std::max(size, std::abs(number(truth.at(names[i]))));
@@ -237,7 +238,7 @@ double error_of_reactions(const Gyro& gyro, double t, const typename Gyro::State
   return worst / size;
 }
 
-/// Runs a trajectory of the reference and compares everything it gives.
+/// Runs a trajectory of the reference and compares all its numbers.
 template <class M, class Rotor>
 Worst follow(const Json& c, M guide, Rotor rotor) {
   const CardanGyro gyro(moments(c.at("parameters")), bearings(c.at("parameters")), std::move(guide),
@@ -282,8 +283,8 @@ Worst follow(const Json& c, M guide, Rotor rotor) {
   return worst;
 }
 
-/// Steps at 1e-14 over up to 20 nutations of up to 100 rad; accelerations and moments magnify the
-/// error of the state by the square of the nutation's frequency over the size of the rates.
+/// Steps at 1e-14 over up to 20 nutations of up to 100 rad. Accelerations and moments amplify the
+/// error of the state by the nutation frequency squared over the size of the rates.
 void require_close(const Worst& worst) {
   BOOST_TEST(worst.angles < 1e-12);
   BOOST_TEST(worst.rates < 1e-12);
@@ -386,7 +387,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler_in_50_digits) {
   BOOST_TEST(worst_reaction < 1e-12);
 }
 
-// E11 of the catalogue of hard cases: light rings, a hair from 90 degrees.
+// E11 of the catalogue of hard cases: light rings, almost 90 degrees.
 BOOST_AUTO_TEST_CASE(keeps_its_digits_at_gimbal_lock) {
   for (const CardanMoments& heavy : {symmetric, unsymmetric}) {
     for (const double factor : {1.0, 1e-4, 1e-8, 0.0}) {
@@ -409,7 +410,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_digits_at_gimbal_lock) {
   }
 }
 
-// The state that counts from a reference has its sines to full accuracy next to 90 degrees too.
+// A state with a reference angle has full accuracy of its sines near 90 degrees too.
 BOOST_AUTO_TEST_CASE(does_not_depend_on_reference_angles) {
   const double reference = 1.5;
   const double rest = std::numbers::pi / 2 - reference + 1e-8;  // exact but for its last digit
@@ -423,8 +424,8 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_reference_angles) {
   BOOST_TEST(error_of(gyro.rates(0, y).tail<3>(), truth) < 1e-14);
 }
 
-// Next to 90 degrees it is the cosine that is nearly 0, next to 180 the sine: what is less than the
-// last digit of the angle is all there is to them.
+// Near 90 degrees the cosine is nearly 0, near 180 degrees the sine. Their values then depend on
+// digits below the last digit of the angle.
 BOOST_AUTO_TEST_CASE(has_accurate_sines_near_right_angles) {
   using L = long double;
   constexpr double pi = std::numbers::pi;
@@ -469,7 +470,7 @@ BOOST_AUTO_TEST_CASE(stops_at_a_singular_mass_matrix) {
     Vector6 near_it = y;
     near_it[1] += 1e-6;
     BOOST_TEST(massless.rates(0, near_it).allFinite());
-    // A regulated rotor takes its own inertia along, so there is no such angle.
+    // A regulated rotor includes its own inertia, so that no such angle exists.
     BOOST_TEST(CardanGyro({m.rotor, {0, 0, 0}, {0, 0, 0}}, {}, RestingFrame<>{}, RegulatedRotor{})
                    .rates(0, y)
                    .allFinite());
@@ -478,7 +479,7 @@ BOOST_AUTO_TEST_CASE(stops_at_a_singular_mass_matrix) {
   const CardanGyro needle({{1, 0, 1}, {0, 0, 0}, {1, 1, 1}}, {}, RestingFrame<>{});
   BOOST_CHECK_EXCEPTION((void)needle.rates(0, Vector6::Zero()), ComputationFailed,
                         says("inner ring"));
-  // Rings of 1e4 times the rotor's mass do not make more of the rounding of a quarter turn.
+  // Rings with 1e4 times the rotor's mass do not amplify the rounding of a quarter turn.
   for (const CardanMoments& m : {symmetric, unsymmetric}) {
     const CardanGyro rod({m.rotor, {1e4, 1e4, 0}, {0, 0, 0}}, {}, RestingFrame<>{});
     BOOST_CHECK_EXCEPTION((void)rod.rates(0, y), ComputationFailed, says("gimbal lock"));
@@ -490,7 +491,7 @@ BOOST_AUTO_TEST_CASE(stops_at_a_singular_mass_matrix) {
                           ComputationFailed, says("inner ring"));
     BOOST_TEST(needles.rates(0, Vector6::Unit(2)).allFinite());
   }
-  // Nor does a trial state that is not finite stop a run that a shorter step would save.
+  // A trial state that is not finite does not stop a run if a shorter step succeeds.
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   BOOST_TEST(
       !gyro.rates(0, Vector6::Constant(std::numeric_limits<double>::infinity())).allFinite());
@@ -518,7 +519,7 @@ BOOST_AUTO_TEST_CASE(is_refused_with_impossible_moments) {
   BOOST_CHECK_THROW(CardanGyro(symmetric, {}, rest, FreeRotor{-1}), InvalidInput);
   BOOST_CHECK_THROW(CardanGyro(symmetric, {}, rest, RegulatedRotor{nan}), InvalidInput);
   BOOST_CHECK_THROW(CardanGyro(symmetric, {}, rest, DrivenRotor{nan}), InvalidInput);
-  // Legal limits: rings without mass, a rotor that is a disc, one that is a needle in a ring.
+  // Legal limits: rings without mass, a rotor that is a disc, a needle in a ring.
   BOOST_CHECK_NO_THROW(CardanGyro({{1, 1, 2}}, {}, rest));
   BOOST_CHECK_NO_THROW(CardanGyro({{0, 1, 1}, inner}, {}, rest));
   BOOST_CHECK_NO_THROW(CardanGyro({{0, 1, 1}}, {}, rest, RegulatedRotor{}));
@@ -530,7 +531,7 @@ BOOST_AUTO_TEST_SUITE(invariants_of_a_cardan_gyro)
 
 namespace {
 
-/// The names of what is kept, and the greatest drift of any relative to its size.
+/// The names of the invariants, and the greatest drift of any relative to its size.
 template <class Gyro>
 std::vector<std::string> kept(const Gyro& gyro, double t_end = 5) {
   const typename Gyro::State start{0.1, -0.2, 0.3, 0.5, -0.4, 60};
@@ -576,8 +577,8 @@ BOOST_AUTO_TEST_CASE(are_listed_for_each_kind) {
   same(kept(CardanGyro(unsymmetric, {}, turntable, RegulatedRotor{})), {});
 }
 
-// On any base: the momentum's rate in space is what the case gives; the kinetic energy's is the
-// power of all torques, the base's included.
+// On any base. The momentum's rate in space has the values of the case. The kinetic energy's rate
+// is the power of all torques, including the base's.
 BOOST_AUTO_TEST_CASE(balance_momentum_and_energy_on_a_moving_base) {
   const HarmonicFrame<> base({{0.3, -0.2, 0.5}, {{{0.1, 0.2, -0.1}, 3, 0.4}}}, {}, 0, 2);
   const CardanGyro gyro(unsymmetric, brakes, base, RegulatedRotor{0.001});
@@ -622,7 +623,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_cardan_gyro_in_other_numbers)
 
-// Bodies, springs, friction, a drive and a base that all depend on everything.
+// Bodies, springs, friction, a drive and a base, each with all dependencies.
 BOOST_AUTO_TEST_CASE(has_an_exact_jacobian) {
   const auto base = [](const auto& t) {
     using S = std::decay_t<decltype(t)>;
@@ -694,7 +695,7 @@ BOOST_AUTO_TEST_CASE(has_the_digits_of_long_double) {
   }
 }
 
-// A guide of double gives ou, so that only the rate of ou is missing in df/dt.
+// A guide of doubles gives ou, so that df/dt lacks only the rate of ou.
 BOOST_AUTO_TEST_CASE(has_most_derivatives_on_a_guide_of_doubles) {
   const RotatingFrame<> turntable{{0.3, -0.2, 0.5}};
   const CardanGyro gyro(symmetric, {}, turntable);

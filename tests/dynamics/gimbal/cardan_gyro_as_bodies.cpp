@@ -1,5 +1,4 @@
-// A Cardan gyro is three bodies in three joints: two ways to the same numbers, which share no
-// formula.
+// A Cardan gyro as three bodies in three joints: two independent ways to the same numbers.
 
 #include <boost/test/unit_test.hpp>
 
@@ -37,7 +36,7 @@ BodyDescription described(const char* name, const char* parent, int axis,
           .forces = {force}};
 }
 
-/// What the drive gives, of the three kinds of rotors.
+/// The drive's torque, for the three kinds of rotors.
 template <class Rotor>
 double torque_of(const Rotor& rotor) {
   if constexpr (requires { rotor.torque; }) {
@@ -61,7 +60,7 @@ BodySystem<M> as_bodies(const CardanMoments& m, const CardanBearings& b, const M
   return {guide, std::move(bodies)};
 }
 
-/// The gyro counts its angles from where the springs are slack, the bodies from the joints' zero.
+/// The gyro's angles are 0 with slack springs, the bodies' at the joints' zero.
 Vector6 counted_from_zero(const CardanBearings& b, Vector6 y) {
   y[0] += b.outer.reference;
   y[1] += b.inner.reference;
@@ -91,7 +90,8 @@ void compare(const CardanMoments& m, const CardanBearings& b, const M& guide, co
       worst.accelerations,
       (dv - dv_bodies).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / dv.cwiseAbs().maxCoeff());
 
-  // Of the bodies each is what the outer one of two exerts, on the axes of the inner one.
+  // In a system of bodies the reaction is that of the outer body of two, on the axes of the inner
+  // one.
   const CardanReactions mine = gyro.reactions(t, gyro.from_vector(y));
   JointReactions theirs;
   bodies.reactions(t, z, theirs, w);

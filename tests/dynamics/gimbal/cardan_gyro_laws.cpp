@@ -1,5 +1,5 @@
-// What a Cardan gyro's laws say, against its equations; and the equations of paper 002 in its own
-// form, as corrected and as printed.
+// Laws of a Cardan gyro against its equations, and the equations of paper 002 in its own form,
+// corrected and as printed.
 
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
@@ -45,7 +45,7 @@ bool close(double x, double y, double relative) {
   return std::abs(x - y) <= relative * std::abs(y);
 }
 
-/// Where a case of the reference's drifts begins.
+/// Start of a drift case of the reference.
 CardanGyro<RestingFrame<>>::State drift_start(const Json& c) {
   if (c.contains("case")) return {0, 1.2, 0, 0, 3.387, 50};  // T7, to within 5 degrees of 90
   return {0, 0.5, 0, 0, number(c.at("betadot0")), 50};
@@ -55,7 +55,7 @@ CardanGyro<RestingFrame<>>::State drift_start(const Json& c) {
 
 BOOST_AUTO_TEST_SUITE(laws_of_the_cardan_gyro)
 
-// The drift measured over one nutation, whose length the reference gives, and over a hundred.
+// The drift over one nutation, with its length from the reference, and over a hundred.
 BOOST_AUTO_TEST_CASE(drift_agrees_with_the_reference) {
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   double worst = 0;
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(drift_agrees_with_the_reference) {
   BOOST_TEST_MESSAGE("drift: relative error " << worst);
 }
 
-// The law leaves out what is of second order in the amplitude, no more: a quarter at half of it.
+// The law leaves out terms of second order in the amplitude only: a quarter at half of it.
 BOOST_AUTO_TEST_CASE(drift_law_has_second_order) {
   double before = 0;
   for (const Json& c : reference().at("drift").at("data")) {
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(drift_law_has_second_order) {
   }
 }
 
-// Both momenta are the gyro's own, with alpha' in them, so that along a motion the tilt stays.
+// Both momenta are the gyro's own, including alpha', so that the tilt is constant along a motion.
 BOOST_AUTO_TEST_CASE(tilt_follows_from_the_momenta) {
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   for (const auto& start : {CardanGyro<RestingFrame<>>::State{0, 0.5, 0, 7, 1, 50},
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(tilt_follows_from_the_momenta) {
 BOOST_AUTO_TEST_CASE(massless_rings_cause_no_drift) {
   const CardanMoments bare{symmetric.rotor};
   BOOST_TEST(gimbal_drift(bare, 0.5, 0, 1, 50).drift == 0);
-  // Nor if alpha' makes up for the tilt: the gyro stands.
+  // Nor if alpha' compensates the tilt: the gyro does not drift.
   const GimbalDrift still = gimbal_drift(symmetric, 0.5, 0, 0, 50);
   BOOST_TEST(still.nutation_amplitude < 1e-15);
   BOOST_CHECK_THROW((void)gimbal_drift(unsymmetric, 0.5, 0, 1, 50), InvalidInput);
@@ -136,8 +136,8 @@ BOOST_AUTO_TEST_CASE(frequencies_are_foeppls) {
   BOOST_TEST(cardan_frequencies({{1, 1, 1}}, {}, 0).precession == 0);
 }
 
-// Rings without mass follow the rotor's axis, which stays in space: on a turntable at u the axis is
-// exp(-u t) n for those who turn with it.
+// Massless rings follow the rotor's axis, which is fixed in space: on a turntable with rate u the
+// axis appears as exp(-u t) n.
 BOOST_AUTO_TEST_CASE(kinematic_gimbal_error_appears) {
   const Json* c = nullptr;
   for (const Json& t : reference().at("trajectories")) {
@@ -185,7 +185,7 @@ using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
 
 enum class Kinematics { corrected, printed };
 
-/// What (35)-(39) determine.
+/// The unknowns of (35)-(39).
 struct Unknowns {
   Vector3<double> du_1;  ///< .u'_A, .u'_B, .u'_C of the rotor
   Vector3<double> du_2;  ///< of the inner ring
@@ -359,7 +359,7 @@ BOOST_AUTO_TEST_CASE(equations_35_to_39_corrected_are_the_scene) {
 BOOST_AUTO_TEST_CASE(printed_38_39_turn_rings_at_rest) {
   const double u_c = 100, b = 30 * degree;
   BOOST_TEST(close(u_c * std::sin(b), 50, 1e-15));  // u'_A3 by (39); u'_C2 = 100 by (38)
-  // and what that does to the acceleration
+  // and its effect on the acceleration
   const Vector6 y = (Vector6() << .3, .5, .7, .4, -.6, 50).finished();
   const Situation002 s{unsymmetric, y, {0, 0, 0}, {0, 0, 0}, -2 * .3, -1.5 * .5, 0};
   const Unknowns right = thirteen(s, Kinematics::corrected);

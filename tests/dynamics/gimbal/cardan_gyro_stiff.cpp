@@ -1,4 +1,4 @@
-// Cardan gyros with an inner bearing that is all but rigid.
+// Cardan gyros with an almost rigid inner bearing.
 
 #include <boost/test/unit_test.hpp>
 
@@ -42,7 +42,7 @@ double number(const Json& truth, std::size_t i, std::size_t k) {
 }
 
 /// 2 s (or the first 0.5 s) with the rotor at 500 rad/s against the reference, whose beta counts
-/// from 0 but in case f.
+/// from 0 except in case f.
 Outcome run(const char* name, double stiffness, double damping, bool deviations,
             const Accuracy& accuracy) {
   const Json truth = scene(name);
@@ -71,7 +71,7 @@ Outcome run(const char* name, double stiffness, double damping, bool deviations,
 
 }  // namespace
 
-// E12: no more work for 1e12 N m/rad than for 1e3.
+// E12: 1e12 N m/rad costs no more than 1e3.
 BOOST_AUTO_TEST_CASE(costs_the_same_at_any_stiffness) {
   struct Case {
     const char* name;
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(costs_the_same_at_any_stiffness) {
   }
 }
 
-// E15: an angle of 0.3 cannot tell a moment of 1e-2 N m at 1e12 N m/rad, the deviation can.
+// E15: an angle of 0.3 cannot represent a moment of 1e-2 N m at 1e12 N m/rad, the deviation can.
 BOOST_AUTO_TEST_CASE(has_its_moment_to_ten_digits) {
   const Outcome outcome = run("S4f_cardan_k1e12_d2e9_dev", 1e12, 2e9, true,
                               {.relative = 5e-11, .absolute_scale = 1e-13});
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(has_its_moment_to_ten_digits) {
   BOOST_TEST(outcome.angles < 1e-10);
 }
 
-// Whichever bearing it is in, or friction of the rotor alone.
+// Any bearing may be damped, or the rotor alone may have friction.
 BOOST_AUTO_TEST_CASE(is_stiff_wherever_it_is_damped) {
   const auto taken = [](const CardanBearings& bearings, double friction) {
     const CardanGyro gyro(moments, bearings, RestingFrame<>{}, FreeRotor{friction});
@@ -117,8 +117,8 @@ BOOST_AUTO_TEST_CASE(is_stiff_wherever_it_is_damped) {
   BOOST_TEST(taken({{}, {0, 0, reference_angle}}, 0) == "taylor");
 }
 
-// Half a last digit that a sum of moments is rounded by is 2.4e-12 rad after 7e4 rad of a spring's
-// oscillation, in every run alike.
+// Half a last digit of a sum of moments is 2.4e-12 rad after 7e4 rad of a spring's oscillation, in
+// every run alike.
 BOOST_AUTO_TEST_CASE(reports_phase_rounding_without_damping) {
   const Json truth = scene("S4d_cardan_k1e6_d0");
   const CardanGyro gyro(moments, {{0.5, 1e-3}, {1e6, 0, reference_angle}}, RestingFrame<>{});

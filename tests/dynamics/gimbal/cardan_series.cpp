@@ -37,7 +37,7 @@ CardanMoments moments(bool round) {
 
 const CardanBearings bearings{{0.02, 0.003, 0.4}, {0.015, 0.002, -0.7}};
 
-/// With all rotors that have a series, in bearings and without.
+/// All rotors that have a series, with bearings and without.
 template <class M>
 void hold_gyros(const std::string& what, const M& guide) {
   for (const bool round : {true, false}) {
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(agrees_on_analytic_guides) {
       }));
 }
 
-// Rings that weigh nothing leave only what the rotor resists with.
+// Without mass of the rings only the rotor resists.
 BOOST_AUTO_TEST_CASE(agrees_for_massless_rings) {
   for (const bool round : {true, false}) {
     hold_samples("without rings", CardanGyro({moments(round).rotor}, {}, RestingFrame<>{}));
@@ -100,7 +100,7 @@ BOOST_DATA_TEST_CASE(passes_through_gimbal_lock,
   }
 }
 
-// To the last bit: all coefficients of phi' are 0.
+// Exactly: all coefficients of phi' are 0.
 BOOST_AUTO_TEST_CASE(keeps_the_speed_of_regulated_rotors) {
   for (const bool round : {true, false}) {
     auto series = CardanGyro(moments(round), bearings, RestingFrame<>{}, RegulatedRotor{}).series();

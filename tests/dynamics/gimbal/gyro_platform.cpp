@@ -59,11 +59,11 @@ BodySystem<RestingFrame<>> loose(RotorMode mode) {
   return {RestingFrame<>{}, platform().bodies({.kind = JointKind::spherical}, mode)};
 }
 
-/// Where the five angles stand among eight, and then the rotors'.
+/// Indices of the five angles among eight, followed by the rotors.
 constexpr int angle_places[] = {0, 1, 3, 5, 6};
 constexpr int rotor_places[] = {2, 4, 7};
 
-/// At no attitude, with the rotors at the rates of their momenta.
+/// Without attitude, with the rotors at the rates of their momenta.
 RotorMatrices matrices(RotorMode mode, const Angles& q, const Vector8& u) {
   const auto system = loose(mode);
   BodyWorkspace w = system.workspace();
@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(has_matrices_21_to_24_and_26) {
              third * largest(p.gyroscopic(zero)));
 }
 
-// What C adds to the forces of motion: (25) and, in rows 1-3, W x (B^t A_R B u).
+// The part of C in the forces of motion: (25) and, in rows 1-3, W x (B^t A_R B u).
 BOOST_AUTO_TEST_CASE(has_the_matrix_25_at_zero_angles) {
   const GyroPlatform p = platform();
   const Angles zero = Angles::Zero();
@@ -141,12 +141,12 @@ BOOST_AUTO_TEST_CASE(has_the_matrix_25_at_zero_angles) {
         matrices(RotorMode::regulated, zero, u).c - matrices(RotorMode::free, zero, u).c;
     truth.head(3) -= W.cross(Vector3<double>((p.spin_inertia(zero) * u).head(3)));
     BOOST_TEST(largest(found - truth) <= 1e-15);
-    // The energy asks for it: (11) gives u^t G_A u = u^t A*' u/2, which a skew G_A cannot.
+    // Energy conservation requires it: (11) gives u^t G_A u = u^t A*' u/2, which a skew G_A cannot.
     BOOST_TEST((seed > 0 || std::abs(u.dot(found)) > 1e-5));
   }
 }
 
-// Nutations and precessions about rest, with what the lack of the block 1-3 makes of them.
+// Nutations and precessions about rest, with the effect of the missing block 1-3.
 BOOST_AUTO_TEST_CASE(swings_at_the_frequencies_of_the_reference) {
   const GyroPlatform p = platform();
   const Angles zero = Angles::Zero();
@@ -168,7 +168,7 @@ BOOST_AUTO_TEST_CASE(swings_at_the_frequencies_of_the_reference) {
       double worst = 0;
       for (const Json& root : c[as_printed ? "eig_printed26" : "eig_corrected_regulated"]) {
         const std::complex<double> truth(number(root[0]), number(root[1]));
-        // Zero is a root four times and more, which rounding takes apart.
+        // Zero is a root of multiplicity four or more, which rounding splits.
         if (std::abs(truth) < 1e-9) continue;
         worst = test::worst_of(
             worst, (found.array() - truth).abs().minCoeff<Eigen::PropagateNaN>() / std::abs(truth));
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(swings_at_the_frequencies_of_the_reference) {
   }
 }
 
-// At any motion of the platform: the complete equations against bodies on a guide that moves so.
+// At any motion of the platform: the complete equations against bodies on the same moving guide.
 BOOST_AUTO_TEST_CASE(complete_equations_contain_the_linear_ones) {
   const GyroPlatform p = platform();
   double worst = 0;
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(complete_equations_contain_the_linear_ones) {
   BOOST_TEST(wrong > 0.5);
 }
 
-// A platform that is moved gently: how far (27) goes, and what its printed sign in row 5 does.
+// A gently moved platform: the range of (27), and the effect of its printed sign in row 5.
 BOOST_AUTO_TEST_CASE(follows_a_moved_platform_by_27) {
   const GyroPlatform p = platform();
   const char* name = "T10_platform_prescribed_Omega_regulated";

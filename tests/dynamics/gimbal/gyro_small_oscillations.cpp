@@ -1,5 +1,5 @@
-// Paper 002 (44)-(48), completed, against the exact gyro on a guide that turns: the order of the
-// error in the angles, and what each part of J_f brings.
+// Paper 002 (44)-(48), completed, against the exact gyro on a turning guide: the order of the error
+// in the angles, and the effect of each part of J_f.
 
 #include <boost/test/unit_test.hpp>
 
@@ -24,7 +24,7 @@ constexpr double speed = 50;
 
 using Guiding = FrameMotion<Guide, Inertial>;
 
-/// u = eps (3, -2, 4), which oscillates if `frequency` is not 0; or u_z = 4 whatever eps is.
+/// u = eps (3, -2, 4), which oscillates if `frequency` is not 0; or u_z = 4 for any eps.
 struct Turning {
   double eps;
   double frequency;
@@ -84,13 +84,13 @@ BOOST_AUTO_TEST_CASE(err_in_the_stated_order) {
       order = before != 0 ? std::log2(before / error) : 0;
       before = error;
     }
-    // Over the last two: before that the next order shows.
+    // Over the last two samples: before, the next order is visible.
     BOOST_TEST(std::abs(order - law.order) < 0.05, law.name << ": " << order);
     BOOST_TEST_MESSAGE(law.name << ": order " << order << ", error " << before);
   }
 }
 
-// Of first order in the angles they are exact, however fast the guide turns.
+// To first order in the angles they are exact, for any rate of the guide.
 BOOST_AUTO_TEST_CASE(hold_on_a_fast_turning_guide) {
   const Turning turning{0.3, 30, true};
   for (const double t : {0.0137, 0.31}) {
@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_CASE(have_friction_in_both_bearings) {
   BOOST_TEST((more - Eigen::Matrix2d(Eigen::Vector2d(0.02, 0.03).asDiagonal())).norm() < 1e-15);
 }
 
-// Whoever leaves the drive's torque out, errs in second order where u_z changes.
+// Without the drive's torque the error has second order if u_z changes.
 BOOST_AUTO_TEST_CASE(need_the_torque_of_the_drive) {
   struct WithoutDrive : GyroSmallOscillations<Turning> {
     using GyroSmallOscillations::GyroSmallOscillations;
@@ -145,7 +145,7 @@ BOOST_AUTO_TEST_CASE(need_the_torque_of_the_drive) {
   BOOST_TEST(std::abs(order - 2) < 0.05, order);
 }
 
-// (46): J against the exact momentum of the rotor, at one moment.
+// (46): J against the exact momentum of the rotor, at one time.
 BOOST_AUTO_TEST_CASE(have_the_momentum_to_fourth_order) {
   const CardanGyro exact({unsymmetric}, {}, RestingFrame<>{}, RegulatedRotor{});
   const GyroSmallOscillations gyro(unsymmetric, {}, speed, RestingFrame<>{});

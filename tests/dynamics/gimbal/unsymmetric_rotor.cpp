@@ -1,5 +1,5 @@
-// The linear equations of a gyro on a guide at rest against the exact ones: (49), (50) and Foeppl's
-// generalised, and in which order of the angles they err.
+// Linear equations of a gyro on a guide at rest against the exact ones: (49), (50) and Foeppl's
+// generalised. The order of their error in the angles is tested too.
 
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
@@ -32,8 +32,8 @@ const Json& orders() {
   return json;
 }
 
-/// Runs the scene from starts of the sizes of the reference and compares the error of the angles
-/// with the reference's, and its order with k.
+/// Runs the scene from the reference's starts. Compares the error of the angles with the reference,
+/// and its order with k.
 template <class Scene>
 void errs_as(const std::string& name, const Scene& scene, double k) {
   const Json& expected = orders().at(name);
@@ -43,7 +43,7 @@ void errs_as(const std::string& name, const Scene& scene, double k) {
     const double reference = expected.at("err").at(i).get<double>();
     const auto off = departure(scene, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2);
     const double error = test::worst_of(off[0], off[1]);
-    // The reference looks at other times.
+    // The reference uses other times.
     BOOST_TEST(std::abs(error / reference - 1) < 0.01, name << ": " << error << ' ' << reference);
     if (before != 0) {
       const double order = std::log2(before / error);
@@ -53,7 +53,7 @@ void errs_as(const std::string& name, const Scene& scene, double k) {
   }
 }
 
-/// (49) as printed: half of what dM/dt has on its diagonal is missing.
+/// (49) as printed: half of the diagonal of dM/dt is missing.
 struct Printed : UnsymmetricRotor<> {
   using UnsymmetricRotor<>::UnsymmetricRotor;
 
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(printed_equations_err_in_first_order) {
           Printed({unsymmetric.rotor}, springs, speed), 1);
 }
 
-// With A = B both scenes are one.
+// With A = B both scenes are equal.
 BOOST_AUTO_TEST_CASE(symmetric_rotor_gives_foeppls_equations) {
   const UnsymmetricRotor<> one(symmetric, {{2, 0.01}, {1.5, 0.02}}, speed);
   const FoepplGyro<> other(symmetric, {{2, 0.01}, {1.5, 0.02}}, speed);

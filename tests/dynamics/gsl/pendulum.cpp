@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(quarter_turn_has_the_lemniscate_period) {
   BOOST_TEST(near(pendulum.period(), gamma * gamma / std::sqrt(std::numbers::pi) / 2, 4, 8));
 }
 
-// Quadrature and elliptic integral know nothing of one another.
+// Quadrature and elliptic integral are independent.
 BOOST_DATA_TEST_CASE(period_agrees_with_quadrature, amplitudes, amplitude) {
   const PendulumBody<double> body = PendulumBody<double>::thin_rod(1.0, 3.0);
   const PendulumCoefficients<double> c{4.0, 0, 0, 0, 0};
@@ -183,7 +183,8 @@ struct Start {
   }
 };
 
-// Swings, turns over both ways, starts turns away, comes close to the top from both sides, rests.
+// Swings, rotations in both directions, starts far away, motions near the top from both sides,
+// rest.
 BOOST_DATA_TEST_CASE(motion_agrees_with_the_taylor_series,
                      data::make(std::vector<Start>{{0, 0},
                                                    {1e-9, 0},
@@ -231,7 +232,7 @@ BOOST_DATA_TEST_CASE(fall_from_near_the_top_takes_logarithmic_time, data::make({
   const double time = std::log(8 / off) / 2;
   const double left_out = time * off * off / 16;
   BOOST_TEST(std::abs(pendulum.period() / 4 - time) <= time * 2 * u + left_out);
-  // It comes there with 4 rad/s.
+  // Its rate there is 4 rad/s.
   BOOST_TEST(std::abs(pendulum.at(time).angle) <= 4 * (time * 2 * u + left_out));
 }
 

@@ -34,7 +34,7 @@ Jacobian<2> circle_jacobian(double /*t*/, const State<2>& /*y*/) {
 
 State<2> on_the_circle(double t) { return {std::cos(t), std::sin(t)}; }
 
-/// y' = -k (y - cos t) - sin t, which leads back to cos t.
+/// y' = -k (y - cos t) - sin t, with the solution cos t.
 struct Stiff {
   double k;
 
@@ -54,7 +54,7 @@ bool starts_with(const Error& e, const char* words) {
 
 BOOST_AUTO_TEST_SUITE(gsl_steps)
 
-// msbdf, of order 5 at most, is not made for the last line.
+// msbdf, of order 5 at most, is not suitable for the last line.
 BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     for (const GslMethod method : methods) {
@@ -64,7 +64,7 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
       const double error = (steps.y() - State<2>(1, 0)).norm();
       BOOST_TEST_MESSAGE(static_cast<int>(method) << " at " << tolerance << ": " << error << " for "
                                                   << steps.effort().evaluations);
-      // The multistep methods err by more than they say.
+      // The errors of multistep methods exceed their estimates.
       const bool multistep = method == GslMethod::msadams || method == GslMethod::msbdf;
       BOOST_TEST(error < (multistep ? 500 : 10) * tolerance);
       steps.advance_to(0);
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
   }
 }
 
-// Explicit steps are limited by stability to some 1/k, so would take 1e9 of them.
+// Stability limits explicit steps to some 1/k: they would take 1e9 of them.
 BOOST_AUTO_TEST_CASE(ignore_stiffness_if_implicit) {
   for (const double k : {1e3, 1e6, 1e9}) {
     for (const GslMethod method : {GslMethod::msbdf, GslMethod::bsimp}) {
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(ignore_stiffness_if_implicit) {
   }
 }
 
-// y'' + k y' + k y = 0: the Jacobian is not symmetric, and the transposed one would not do.
+// y'' + k y' + k y = 0: the Jacobian is not symmetric, so that its transpose would fail.
 BOOST_AUTO_TEST_CASE(follow_the_slow_part_of_a_stiff_pair) {
   for (const double k : {1e4, 1e8}) {
     const auto field = [k](const auto& /*t*/, const auto& y) {
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(follow_the_slow_part_of_a_stiff_pair) {
   }
 }
 
-// GSL's own answer is success, with a NaN.
+// GSL itself returns success with a NaN.
 BOOST_AUTO_TEST_CASE(keep_the_last_state_at_the_field_edge) {
   const auto ends = [](double t, const State<2>& y) {
     return t > 1 ? State<2>(not_a_number, not_a_number) : circle(t, y);
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(keep_the_last_state_at_the_field_edge) {
   }
 }
 
-// sqrt(y) has no value below y = 0: a step that lands there is taken back, not passed on.
+// sqrt(y) has no value below y = 0: a step to such a point is repeated, not accepted.
 BOOST_AUTO_TEST_CASE(retry_a_step_that_leaves_the_field) {
   const auto field = [](double, const State<1>& y) { return State<1>(-std::sqrt(y[0])); };
   const auto jacobian = [](double, const State<1>& y) {
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(pass_on_exceptions_of_the_field) {
   BOOST_CHECK_THROW(steps.advance_to(2), std::domain_error);
 }
 
-// A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
+// A block of 1e-9 beside one of 1: its error is measured relative to its own size, if requested.
 BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   const auto field = [](double, const State<4>& y) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   BOOST_TEST(near(steps.y()[2], 1e-9, 1e-9, 1e6));
 }
 
-// msadams and msbdf ask for what is allowed of each component, and steer by it themselves.
+// msadams and msbdf read the allowed error of each component and control it themselves.
 BOOST_AUTO_TEST_CASE(measure_blocks_in_multistep_methods) {
   const auto field = [](const auto& /*t*/, const auto& y) {
     using S = typename std::decay_t<decltype(y)>::Scalar;

@@ -18,7 +18,7 @@ constexpr int order = most_series_order;
 constexpr double begin = 0.7;
 constexpr double unit = 0.25;
 
-/// A series at a part of its unit of time.
+/// A series at a fraction of its unit of time.
 template <class Coefficient>
 double at(double part, const Coefficient& coefficient) {
   double sum = 0;
@@ -36,7 +36,7 @@ void hold(const char* what, const Formula& formula) {
   }
 }
 
-/// What a guide gives as series against its motion.
+/// The series of a guide against its motion.
 template <class M>
 void hold_guide(const M& guide) {
   const Vector3<double> gravity(1, 2, -9);
@@ -94,7 +94,7 @@ BOOST_AUTO_TEST_CASE(give_the_apparent_field) {
   hold_guide(HarmonicFrame<>(u, a, 0, 2, X));
 }
 
-// Of a formula in which nothing moves all but the first coefficients are 0.
+// If nothing moves in a formula, all but the first coefficients are 0.
 BOOST_AUTO_TEST_CASE(may_be_at_rest) {
   const auto still = analytic([](const auto& t) {
     using T = std::decay_t<decltype(t)>;

@@ -200,19 +200,19 @@ BOOST_AUTO_TEST_CASE(centrifugal_part_follows_the_rotation_rate) {
   const NormalGravity still = normal_gravity(site);
   BOOST_TEST(near(still.magnitude - g, 7.292115e-5 * 7.292115e-5 * 6378137, 10, 4));
   BOOST_TEST((still.guide.angular_velocity == Vector3<double>::Zero()));
-  // At 45 degrees the ellipsoid, shaped by rotation, is not level without it.
+  // At 45 degrees the surface of the rotating ellipsoid is not level without rotation.
   site.latitude = 45;
   const double pull = 7.292115e-5 * 7.292115e-5 * 6378137 / 2;
   BOOST_TEST(near(normal_gravity(site).tilt, pull / 9.81, pull / 9.81, 0.01 / u));
-  // 17 turns a day: gravity is gone at the equator.
+  // 17 rotations a day: gravity vanishes at the equator.
   site.latitude = 0;
   site.rotation_rate = 17.1 * 7.292115e-5;
   BOOST_TEST(message_of([&] { (void)normal_gravity(site); }).find("gravity does not point down") !=
              std::string::npos);
 }
 
-// The plumb line is bent towards the pole above: 0.171" per km at 45 degrees (Heiskanen and Moritz,
-// 5-5).
+// The plumb line is curved towards the pole above: 0.171" per km at 45 degrees (Heiskanen and
+// Moritz, 5-5).
 BOOST_AUTO_TEST_CASE(vertical_tilts_with_height) {
   const NormalGravity at = normal_gravity({.latitude = 45, .azimuth = 90, .height = 1000});
   const double second = std::numbers::pi / 180 / 3600;
@@ -308,7 +308,7 @@ BOOST_DATA_TEST_CASE(spherical_gradient_is_right_to_one_per_cent, data::xrange(5
   BOOST_TEST((ellipsoid - sphere).norm() < 0.01 * ellipsoid.norm());
 }
 
-// Eastward, nothing changes sides: the meridian is a plane of symmetry.
+// Eastward, nothing changes by symmetry: the meridian is a plane of symmetry.
 BOOST_AUTO_TEST_CASE(east_west_gradient_lies_in_the_meridian) {
   const auto gradient =
       normal_gravity({.latitude = 40, .azimuth = 90, .height = 500}).guide.gravity_gradient;

@@ -22,7 +22,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 
-/// Every kind of guide motion against an independent way to the same pose and derivatives.
+/// Every kind of guide motion against an independent calculation of pose and derivatives.
 
 using namespace kreisel;
 using test::Digits50;
@@ -48,7 +48,7 @@ Pose<T> turn_about_z(double u, const T& t) {
   return {angles.rotation(), Vector3<T>(T(0), T(0), T(0))};
 }
 
-/// A pose that swings: yaw, pitch, roll and place as trend plus oscillation.
+/// A pose that swings: yaw, pitch, roll and position as trend plus oscillation.
 struct Swing {
   double trend[6] = {}, size[6] = {}, frequency[6] = {}, phase[6] = {};
 
@@ -74,7 +74,7 @@ struct Swing {
             Vector3<T>(part(3), part(4), part(5))};
   }
 
-  /// The same as the truth's kind of motion.
+  /// The same motion in the truth's type.
   test::Motion motion() const {
     const auto wave = [&](int i) {
       return test::Wave{0, trend[i], 0, size[i], frequency[i], phase[i]};
@@ -85,7 +85,7 @@ struct Swing {
 
 using Jet = test::Jet<Digits50>;
 
-/// The motion of a pose in 50 digits, by the jets that the truth is made of.
+/// The motion of a pose in 50 digits, by the jets of the truth.
 FrameMotion<Guide, Inertial, Digits50> differentiated(const Pose<Jet>& X) {
   const auto skew_part = [](const Matrix3<Digits50>& m) -> Vector3<Digits50> {
     return Vector3<Digits50>(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)) / Digits50(2);
@@ -131,7 +131,7 @@ using namespace kinds;
 
 BOOST_AUTO_TEST_SUITE(a_posed_frame)
 
-// Point masses are carried by the truth's guide; here only its own motion counts.
+// The truth's guide carries point masses; only its own motion matters here.
 BOOST_DATA_TEST_CASE(is_differentiated_exactly, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Swing swing = Swing::random(sample, 2);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(a_chain_from_earth_to_device)
 
 // earth -> ship -> device against ONE pose, the product of the three, differentiated in 50 digits.
-// Lengths count in earth radii for what the earth's centre sees: 6.4e6 m and 465 m/s.
+// Relative to the earth's centre, lengths are measured in earth radii: 6.4e6 m and 465 m/s.
 BOOST_DATA_TEST_CASE(agrees_with_the_product_of_poses, data::xrange(60u), seed) {
   test::Sample sample(seed);
   const Swing ship = Swing::random(sample, 20);
@@ -167,7 +167,7 @@ BOOST_DATA_TEST_CASE(agrees_with_the_product_of_poses, data::xrange(60u), seed) 
       differentiated(turn_about_z(u, time) * constant<Jet>(site) * ship(time) * device(time));
 
   BOOST_TEST(near(found.X.value.rotation, test::cast<double>(exact.X.value.rotation), 1.0, 90));
-  // 1e-14 of the greatest term in each: what the chain adds up is as large as that.
+  // 1e-14 of the greatest term in each, because the sums of the chain are that large.
   const double k = 1e-14 / test::u<>;
   const auto check = [&](const Vector3<double>& a, const Vector3<Digits50>& b, double scale) {
     return near(a, test::cast<double>(b), scale, k);
@@ -178,7 +178,7 @@ BOOST_DATA_TEST_CASE(agrees_with_the_product_of_poses, data::xrange(60u), seed) 
   BOOST_TEST(check(found.V.value.moment, exact.V.value.moment, 465 + 20 * rate));
   BOOST_TEST(check(found.dV.value.resultant, exact.dV.value.resultant, rate * rate));
   BOOST_TEST(check(found.dV.value.moment, exact.dV.value.moment, (465 + 20 * rate) * rate));
-  // What a body feels does not know the 465 m/s of the earth's surface but through rounding.
+  // A body's apparent field contains the 465 m/s of the earth's surface through rounding only.
   BOOST_TEST(
       check(found.origin_acceleration(), exact.origin_acceleration(), (465 + 20 * rate) * rate));
 }
@@ -196,7 +196,7 @@ BOOST_DATA_TEST_CASE(turns_with_the_earth, data::xrange(50u), seed) {
   frame.X = {site};
   frame.V = {{{0, 0, u}, {0, 0, 0}}};
   const auto exact = differentiated(turn_about_z(u, clock(t)) * constant<Jet>(site));
-  // The site's rotation is orthogonal to 2u only, which its 50-digit derivatives notice.
+  // The site's rotation is orthogonal to 2u only, which affects its 50-digit derivatives.
   BOOST_TEST(agree(frame(t), exact, 4, 32));
 }
 
@@ -252,7 +252,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(a_harmonic_frame)
 
-// q' = q u / 2 and x'' = q a q^-1 integrated step by step in long double, another way to the pose.
+// q' = q u / 2 and x'' = q a q^-1 integrated step by step in long double: an independent pose.
 BOOST_DATA_TEST_CASE(agrees_with_gyros_and_accelerometers, data::xrange(8u), seed) {
   test::Sample sample(seed);
   const auto series = [&](double size) {
@@ -344,7 +344,7 @@ BOOST_AUTO_TEST_CASE(refuses_invalid_motions) {
 
 BOOST_AUTO_TEST_SUITE_END()
 
-// u and ou without the pose are those of the whole motion to the last bit.
+// u and ou without the pose agree with those of the whole motion to the last bit.
 BOOST_DATA_TEST_CASE(rotation_agrees_with_the_whole_motion, data::xrange(20u), seed) {
   test::Sample sample(seed);
   const double t = sample.uniform(0, 10);

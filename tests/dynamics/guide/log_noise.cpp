@@ -55,13 +55,13 @@ double normal(test::Sample& sample) {
   return sum;
 }
 
-/// How a log is taken.
+/// Sampling of a log.
 struct Logger {
   double end = 10;
   double rate = 100;       ///< Hz
   int decimals = 17;       ///< of quaternion and position
   double white = 0;        ///< standard deviation
-  double jitter = 0;       ///< of the times, part of the step; they are written as they are
+  double jitter = 0;       ///< of the times, part of the step; the written times contain it
   double dropped = 0;      ///< part of the samples that are missing
   double gap_begin = 1e9;  ///< s
   double gap = 0;          ///< s
@@ -97,9 +97,9 @@ struct Logger {
   }
 };
 
-/// Place and velocity at the end, on guide axes, of a mass that hangs in the guide by springs of 3
-/// rad/s with a damping ratio of 0.2, from rest: all of the guide's motion moves it. Equal steps
-/// (Kutta), whose error is the same along all guides.
+/// Position and velocity at the end, on guide axes, of a mass on springs in the guide, from rest. 3
+/// rad/s, with a damping ratio of 0.2: the guide's whole motion excites it. Equal steps (Kutta),
+/// whose error is the same on all guides.
 template <class Guide>
 Eigen::VectorXd end_of_mass(const Guide& guide, double end, int steps) {
   using State = Eigen::Matrix<double, 6, 1>;
@@ -127,7 +127,7 @@ Eigen::VectorXd end_of_mass(const Guide& guide, double end, int steps) {
   return y;
 }
 
-/// True error of the end and what is told of it.
+/// True and estimated error of the end.
 struct Held {
   double truth;
   double told;
@@ -170,7 +170,7 @@ Logger any_logger(test::Sample& sample) {
 
 BOOST_AUTO_TEST_SUITE(the_noise_of_a_log)
 
-// 300 logs of all kinds, against the motion that was logged.
+// 300 logs of all kinds, against the logged motion.
 BOOST_AUTO_TEST_CASE(has_the_estimated_effect_on_the_end) {
   test::Sample sample(11);
   constexpr int logs = 300;

@@ -12,7 +12,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 
-/// A chain of moving frames is one moving frame: held against positions composed in 50 digits.
+/// A chain of moving frames is one moving frame, compared with positions composed in 50 digits.
 
 using namespace kreisel;
 using test::Digits50;
@@ -35,7 +35,7 @@ struct Chain {
 template <class S>
 Chain<S> chain(unsigned seed) {
   test::Sample sample(seed);
-  // The truth's guide is our earth, its body our ship.
+  // The truth's guide is the earth here, its body the ship.
   const test::Truth t = test::truth(sample, {});
   const auto real = [](const auto& x) { return test::cast<S>(x); };
   Chain<S> c;
@@ -85,8 +85,9 @@ BOOST_DATA_TEST_CASE(is_one_frame_in_fifty_digits, data::xrange(50u), seed) {
   BOOST_TEST(agree(c.earth * c.ship, c.both, terms(c), 64));
 }
 
-// Anchor: on a disc of 3 rad/s, 1 m out along x, a ship moves with the turn at 2 m/s. Inwards it is
-// accelerated by 9 (centripetal) and 2 x 3 x 2 (Coriolis), since its own way in the disc is straight.
+// Anchor: on a disc of 3 rad/s, at 1 m along x, a ship moves with the rotation at 2 m/s. Its inward
+//         acceleration is 9 (centripetal) and 2 x 3 x 2 (Coriolis), because its path in the disc is
+//         straight.
 BOOST_AUTO_TEST_CASE(adds_coriolis_and_centripetal_acceleration) {
   const FrameMotion<Earth, Inertial> disc{{}, {{{0, 0, 3}, {0, 0, 0}}}, {{{0, 0, 0}, {0, 0, 0}}}};
   FrameMotion<Ship, Earth> ship{{}, {{{0, 0, 0}, {0, 2, 0}}}, {{{0, 0, 0}, {0, 0, 0}}}};
@@ -96,7 +97,7 @@ BOOST_AUTO_TEST_CASE(adds_coriolis_and_centripetal_acceleration) {
   BOOST_TEST(both.origin_acceleration() == Vector3<double>(-9 - 12, 0, 0));
 }
 
-// Whether the ship joins the earth first or the device the ship makes no difference.
+// The chain is associative: earth and ship may be joined first, or ship and device.
 BOOST_DATA_TEST_CASE(is_associative, data::xrange(50u), seed) {
   struct Device {};
   const Chain<Digits50> first = chain<Digits50>(seed);

@@ -18,7 +18,7 @@ namespace {
 
 const Vector3<double> gravity(0, 0, -9.81);
 
-/// What gyros and accelerometers of a moving frame log.
+/// The log of gyros and accelerometers in a moving frame.
 template <class Motion>
 RatesLog logged(const Motion& motion, double end, int steps) {
   RatesLog log;
@@ -40,7 +40,7 @@ RatesStart start_of(const Motion& motion) {
           gravity};
 }
 
-/// Coning: an axis tilted by `tilt` against z goes round at `rate`, without turning about itself.
+/// Coning: an axis tilted by `tilt` against z rotates about z at `rate`, without spin about itself.
 struct Coning {
   double tilt;
   double rate;
@@ -71,7 +71,7 @@ double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
 
 BOOST_AUTO_TEST_SUITE(logged_rates)
 
-// Coning at 50 rad/s for 4 s, logged at 10 kHz, which leaves the spline to rounding.
+// Coning at 50 rad/s for 4 s, logged at 10 kHz, which reduces the spline's error to rounding.
 BOOST_AUTO_TEST_CASE(give_coning_in_closed_form) {
   const Coning coning{0.1, 50};
   RatesLog log;
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(give_many_turns_to_rounding) {
   BOOST_TEST(angle(Eigen::Quaterniond(frame(t).X.value.rotation), turned) < 3e-12);
 }
 
-// Attitude and place against the pose that was differentiated, to the order of the spline.
+// Attitude and position against the differentiated pose, to the order of the spline.
 BOOST_AUTO_TEST_CASE(give_the_motion_to_the_sixth_order) {
   const auto motion = posed(swell);
   const auto off = [&](int steps) {
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(give_the_motion_to_the_sixth_order) {
   BOOST_TEST(off(2000) < 1e-10);
 }
 
-// Kutta's steps, written down here, along the same spline of few samples.
+// Kutta's steps, written here, along the same spline of few samples.
 BOOST_AUTO_TEST_CASE(agree_with_another_integrator) {
   const auto motion = posed(swell);
   const RatesLog log = logged(motion, 6, 30);

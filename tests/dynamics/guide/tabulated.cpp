@@ -43,7 +43,7 @@ MotionLog<> logged(double end, int samples, double uneven = 0) {
     const Pose<double> X = swell(t);
     log.times.push_back(t);
     log.attitudes.emplace_back(X.rotation);
-    if (sample.once_in(2)) log.attitudes.back().coeffs() *= -1;  // loggers do that
+    if (sample.once_in(2)) log.attitudes.back().coeffs() *= -1;  // as real loggers do
     log.positions.push_back(X.translation);
   }
   return log;
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_SUITE(a_logged_motion)
 BOOST_DATA_TEST_CASE(is_followed_to_the_sixth_order, data::make({0.0, 0.3}), uneven) {
   const auto coarse = errors(TabulatedFrame<>(logged(20, 101, uneven)));
   const auto fine = errors(TabulatedFrame<>(logged(20, 201, uneven)));
-  // Two uneven grids are not each other's refinement: half an order is left to chance.
+  // Two uneven grids are no refinements of each other: half an order is left to chance.
   const double chance = uneven > 0 ? 0.5 : 0;
   const double least[] = {5.5, 4.5, 3.5, 5.5, 4.5, 3.5};
   for (int i = 0; i < 6; ++i) {
@@ -99,7 +99,7 @@ BOOST_DATA_TEST_CASE(is_followed_to_the_sixth_order, data::make({0.0, 0.3}), une
   BOOST_TEST(fine.attitude < 1e-7);
 }
 
-// Honest: never under the true error, and not over fifteen times it.
+// Reliable: never below the true error, and at most fifteen times as large.
 BOOST_DATA_TEST_CASE(reports_its_interpolation_error,
                      data::make({41, 101, 401, 1001}) * data::make({0.0, 0.3}), samples, uneven) {
   const TabulatedFrame<> frame(logged(20, samples, uneven));
@@ -145,7 +145,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_its_axes) {
   }
 }
 
-// Angular velocity and acceleration are derivatives of the attitude given, at the knots too.
+// Angular velocity and acceleration are derivatives of the returned attitude, at the knots too.
 BOOST_AUTO_TEST_CASE(has_the_rates_of_its_attitude) {
   const TabulatedFrame<> frame(logged(20, 41));
   constexpr double h = 1e-5;

@@ -23,7 +23,7 @@ namespace data = boost::unit_test::data;
 
 namespace {
 
-/// The sizes of what is summed in (7) and (9).
+/// The sizes of the terms in (7) and (9).
 Force<Body, Terms> balance_sizes(const Typed<Terms>& t) {
   const auto J = t.T * t.V_rel;
   const auto J_f = t.T * t.F;
@@ -58,8 +58,9 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(the_momentum_rate)
 
-// Anchor: a particle of 2 kg at O', which goes along x with 5: seen from the guide, its momentum
-// rests, though the velocity of the guide that it measures, v = (0, 3, 0) + z cross 5 t x, grows.
+// Anchor: a particle of 2 kg at O', which moves along x with 5. Seen from the guide its momentum is
+//         constant, although its velocity relative to the guide, v = (0, 3, 0) + z cross 5 t x,
+//         grows.
 BOOST_AUTO_TEST_CASE(by_hand) {
   const InertiaTensor<Body> T{{2, {0, 0, 0}, {}}};
   const Velocity<Body, Guide, Body> V_rel{{{0, 0, 0}, {5, 0, 0}}};
@@ -127,7 +128,7 @@ BOOST_AUTO_TEST_CASE(gives_the_reference_force) {
   }
 }
 
-// (7), (9) with momenta and rates from the point masses themselves.
+// (7), (9) with momenta and rates of the point masses themselves.
 BOOST_DATA_TEST_CASE(gives_the_newtonian_force, data::xrange(300u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();

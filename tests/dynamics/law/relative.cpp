@@ -73,11 +73,11 @@ double relative_error(const Motor<>& x, const Motor<>& y) {
 
 BOOST_AUTO_TEST_SUITE(the_nine_forms)
 
-// 1e-14 of the terms is asked for; 16u is 1.8e-15.
+// The requirement is 1e-14 of the terms; 16u is 1.8e-15.
 BOOST_AUTO_TEST_CASE(give_the_reference_forces) {
   for (const test::ReferenceCase& c : test::reference_cases()) {
     const MovingBody body = test::moving_body(c);
-    // Everything from the file, nothing from the kinematics of these tests.
+    // All data from the file, none from the kinematics of these tests.
     Typed<double> b;
     b.T = InertiaTensor<Body>::about_origin(static_cast<double>(c.mass), cast<double>(c.r_s),
                                             cast<double>(c.Theta_O));
@@ -117,7 +117,7 @@ BOOST_DATA_TEST_CASE(give_the_newtonian_force, data::xrange(300u), seed) {
   });
 }
 
-// The observers are tags: any three frames will do, and the axes may be any frame's.
+// The observers are tags: any three frames are allowed, and the axes may be any frame's.
 struct Earth {};
 struct Ship {};
 struct Gyro {};
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(the_parts)
 
 // Anchor: a particle of 2 kg at (3, 0, 0) of a guide that turns with 1 rad/s about z, moving in it
-// with 5 along x, and with it O' = the particle. Guide: -2 x 3 inwards; Coriolis: 2 x 2 x 5 along y.
+//         with 5 along x, together with O'. Guide: -2 x 3 inwards; Coriolis: 2 x 2 x 5 along y.
 BOOST_AUTO_TEST_CASE(by_hand) {
   const InertiaTensor<Body> T{{2, {0, 0, 0}, {}}};
   const Velocity<Body, Guide, Body> V_rel{{{0, 0, 0}, {5, 0, 0}}};
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(parts.total().value, Motor<>{{-6, 20, 0}, {0, 0, 0}}));
 }
 
-// Relative: what would be needed if the guide were inertial, the guide's rate of T V'.
+// Relative: the force in an inertial guide, the guide's rate of T V'.
 BOOST_DATA_TEST_CASE(relative_part_does_not_depend_on_the_guide, data::xrange(100u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
@@ -182,7 +182,7 @@ BOOST_DATA_TEST_CASE(relative_part_does_not_depend_on_the_guide, data::xrange(10
   BOOST_TEST(near(form_8.relative.value, expected, sizes<Guide, Guide>(t).relative.value, 16));
 }
 
-// Guide, in form (5): what the body would need if it were at rest in the guide.
+// Guide, in form (5): the force on a body at rest in the guide.
 BOOST_DATA_TEST_CASE(guide_part_is_the_force_of_a_body_at_rest, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const std::vector<test::PointMass> masses = sample.solid_masses();
@@ -269,8 +269,8 @@ BOOST_DATA_TEST_CASE(agrees_with_the_motion_for_all_observers, data::xrange(200u
   check_acceleration<Inertial>(body, dF.inertial);
 }
 
-// Anchor: free of force in a guide that turns with 1 rad/s about z, a particle at (3, 0, 0) at rest
-// in it flies outwards with 3.
+// Anchor: without force in a guide that turns with 1 rad/s about z, a particle at rest at (3, 0, 0)
+//         accelerates outwards with 3.
 BOOST_AUTO_TEST_CASE(by_hand) {
   const InertiaTensor<Body> T{{2, {0, 0, 0}, {1, 1, 1, 0, 0, 0}}};
   const Velocity<Guide, Inertial, Body> F{{{0, 0, 1}, {0, 3, 0}}};

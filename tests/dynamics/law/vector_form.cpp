@@ -89,7 +89,7 @@ void check_20(const MovingBody& body) {
   BOOST_TEST(near(P.value, body.force(), sizes_20(body), 12));
 }
 
-/// A body that turns about a point held in a moving guide.
+/// A body that turns about a point fixed in a moving guide.
 MovingBody fixed_point_body(unsigned seed) {
   test::Sample sample(seed);
   const std::vector<test::PointMass> masses = sample.solid_masses();
@@ -121,7 +121,7 @@ BOOST_DATA_TEST_CASE(give_the_newtonian_force_part_by_part, data::xrange(300u), 
   check_20(body);
 }
 
-// A ring without mass has no centre of mass and obeys them all the same.
+// A massless ring has no centre of mass, but obeys the equations.
 BOOST_AUTO_TEST_CASE(hold_without_mass) {
   MovingBody body = test::moving_body(3);
   body.T = {0, Vector3<Digits50>::Zero(), body.T.tensor};
@@ -148,7 +148,7 @@ BOOST_DATA_TEST_CASE(equation_19_needs_the_true_derivative, data::xrange(100u), 
   BOOST_TEST(near(parts.total().value - surplus, body.force(), scale.value, 16));
 }
 
-// The same equation with true rates, the moments of o(T V') and o(T F), in which no v' is left.
+// The same equation with true rates, the moments of o(T V') and o(T F), without v'.
 BOOST_DATA_TEST_CASE(printed_20_holds_for_true_rates, data::xrange(100u), seed) {
   const MovingBody body = test::moving_body(seed);
   const Typed<double> b = body.numbers();
@@ -160,8 +160,8 @@ BOOST_DATA_TEST_CASE(printed_20_holds_for_true_rates, data::xrange(100u), seed) 
   BOOST_TEST(near(printed, body.force(), sizes_20(body), 12));
 }
 
-// (48) as printed leaves v x (G + G_f), the momentum times the velocity of the fixed point: 0 only if
-// that point rests or the body is held at its centre of mass.
+// (48) as printed lacks v x (G + G_f), the momentum times the velocity of the fixed point. This
+// term is 0 only if the point rests or the body is fixed at its centre of mass.
 BOOST_AUTO_TEST_CASE(equation_48_needs_the_guide_velocity) {
   double largest = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -181,9 +181,10 @@ BOOST_AUTO_TEST_CASE(equation_48_needs_the_guide_velocity) {
   BOOST_TEST(largest > 0.5);
 }
 
-// Counterexample L: the guide is inertial, nothing acts; S goes with (1, 0, 0), the body spins with
-// (0, 0, 1), S at (1, 0, 0) from O'. So O' has (1, 0, 0) - z cross x = (1, -1, 0), and the momentum
-// about it turns by -v' x G. The printed (20b) has no v' x G and demands a torque of -1.
+// Counterexample L: the guide is inertial, nothing acts. S moves with (1, 0, 0), the body spins
+// with (0, 0, 1), and S is at (1, 0, 0) from O'. O' therefore moves with (1, 0, 0) - z cross x =
+// (1, -1, 0), and the momentum about it changes by -v' x G. The printed (20b) has no v' x G and
+// requires a torque of -1.
 BOOST_AUTO_TEST_CASE(printed_20_has_a_spurious_torque) {
   const InertiaTensor<Body> T{{1, {1, 0, 0}, {0, 1, 1, 0, 0, 0}}};
   const Velocity<Body, Guide, Body> V_rel{{{0, 0, 1}, {1, -1, 0}}};
@@ -191,7 +192,7 @@ BOOST_AUTO_TEST_CASE(printed_20_has_a_spurious_torque) {
   const Momentum<Body> J = T * V_rel;
   BOOST_TEST(same(J.value, Motor<>{{1, 0, 0}, {0, 0, 0}}));
 
-  // The momentum as a motor rests; its moment at the point O' that leaves changes by -v' x G.
+  // The momentum as a motor is constant; its moment at the receding point O' changes by -v' x G.
   const Rate<Guide, Momentum<Body>> none{};
   const PlainRate<Guide, Momentum<Body>> dJ = plain_rate(none, V_rel, J);
   const Motor<> printed{dJ.value.resultant + F.value.resultant.cross(J.value.resultant),
@@ -212,8 +213,8 @@ BOOST_AUTO_TEST_CASE(by_hand) {
                   Vector3<double>(-6, 20, 0)));
 }
 
-// Anchor: a guide whose origin moves with 10 along x while it turns with 1 about z needs 10 along y
-// for what it carries there; started with 1 rad/s^2, it needs 3 along y for what is at (3, 0, 0).
+// Anchor: a guide whose origin moves with 10 along x and turns with 1 about z. Bodies in it need 10
+//         along y. With 1 rad/s^2 they need 3 along y at (3, 0, 0).
 BOOST_AUTO_TEST_CASE(by_hand_with_an_accelerated_guide) {
   BOOST_TEST(same(particle_force<double>(1, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
                                          Motor<>{{0, 0, 1}, {10, 0, 0}}, Motor<>{}),
@@ -223,7 +224,7 @@ BOOST_AUTO_TEST_CASE(by_hand_with_an_accelerated_guide) {
                   Vector3<double>(0, 3, 7)));
 }
 
-// A particle at O': its place, velocity and acceleration in the guide are those of O'.
+// A particle at O': its position, velocity and acceleration in the guide are those of O'.
 BOOST_DATA_TEST_CASE(gives_the_newtonian_force, data::xrange(200u), seed) {
   test::Sample sample(seed);
   const double mass = sample.magnitude();
@@ -264,7 +265,7 @@ BOOST_DATA_TEST_CASE(gives_the_newtonian_force, data::xrange(200u), seed) {
   BOOST_TEST(near(P.value, cast<double>(truth.force), scale.value, 16));
 }
 
-// The motor form that it spells out: T oF + [F (T F)].
+// The motor form of this equation: T oF + [F (T F)].
 BOOST_DATA_TEST_CASE(equals_the_guide_part, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const Inertia<> T = test::inertia(sample.masses());
@@ -287,7 +288,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
   BOOST_TEST(same(euler_torque<double>(T, {0, 0, 0}, {1, 1, 1}), Vector3<double>(1, 2, 3)));
 }
 
-// Held at its origin: only the turning is left of the equation of motion.
+// Fixed at its origin: only the rotation is left of the equation of motion.
 BOOST_DATA_TEST_CASE(give_the_newtonian_torque, data::xrange(100u), seed) {
   test::Sample sample(seed);
   const std::vector<test::PointMass> masses = sample.solid_masses();

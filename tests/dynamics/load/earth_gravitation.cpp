@@ -30,15 +30,16 @@ const EarthSite<double> munich{.latitude = 48.1, .azimuth = 90, .height = 520};
 
 BOOST_AUTO_TEST_SUITE(the_earth_as_a_guide)
 
-// Gravitation as a load and the centrifugal part as the guide's motion make up normal gravity, along
-// the guide's x axis.
+// Gravitation as a load and the centrifugal part of the guide's motion add up to normal gravity,
+// along the guide's x axis.
 BOOST_AUTO_TEST_CASE(gives_a_body_at_rest_its_weight) {
   const FreeBody body(ball, earth_frame(munich), EarthGravitation{});
   const auto a = body.acceleration(body.situation(1234.5, {})).value.moment;
   BOOST_TEST(near(a, normal_gravity(munich).guide.effective_gravity, 10.0, 16));
 }
 
-// It turns with the site's rotation on the guide's axes, up, north and east of the same sign as there.
+// It rotates with the site's rotation on the guide's axes, with the same signs of up, north and
+// east.
 BOOST_AUTO_TEST_CASE(turns_as_the_pendulum_guide) {
   const auto motion = earth_frame(munich)(0);
   BOOST_TEST(
@@ -46,7 +47,8 @@ BOOST_AUTO_TEST_CASE(turns_as_the_pendulum_guide) {
   BOOST_TEST(motion.dV.value.resultant == Vector3<double>(0, 0, 0));
 }
 
-// Eastward deflection of a fall, u g t^3 cos(latitude) / 3 to leading order, and southward a trifle.
+// Eastward deflection of a fall, u g t^3 cos(latitude) / 3 to leading order, and a small southward
+// one.
 BOOST_AUTO_TEST_CASE(deflects_a_falling_body_to_the_east) {
   const FreeBody body(ball, earth_frame(munich), EarthGravitation{});
   const double t = 4;
@@ -60,7 +62,7 @@ BOOST_AUTO_TEST_CASE(deflects_a_falling_body_to_the_east) {
   BOOST_TEST(near(end.position.x(), g * t * t / 2, 100.0, 1e-5 / test::u<>));
 }
 
-// The same fall watched from a frame that does not turn.
+// The same fall, observed from a frame that does not turn.
 BOOST_AUTO_TEST_CASE(shows_the_same_fall_as_the_inertial_frame) {
   const auto earth = earth_frame(munich);
   const FreeBody on_earth(ball, earth, EarthGravitation{});
@@ -72,7 +74,7 @@ BOOST_AUTO_TEST_CASE(shows_the_same_fall_as_the_inertial_frame) {
   from.velocity.value = start.V.value;
   const auto a = Integrator(on_earth, 0, {}).to(60);
   const auto b = Integrator(in_space, 0, from).to(60);
-  // Twice the last place of an earth radius, accumulated over the steps.
+  // Twice the last digit of an earth radius, accumulated over the steps.
   BOOST_TEST(near(earth(60).X.point(a.position), b.position, 6.4e6, 16));
 }
 
@@ -89,8 +91,8 @@ BOOST_AUTO_TEST_CASE(keeps_the_energy_of_an_orbit) {
   BOOST_TEST(near(energy(Integrator(body, 0, start).to(6000)), e0, std::abs(e0), 200));
 }
 
-// In linear equations: the free-air gradient, with the centrifugal part of the guide in it, and half
-// of it back to the plumb line on either side.
+// In linear equations: the free-air gradient including the guide's centrifugal part, and half of it
+// towards the plumb line on either side.
 BOOST_AUTO_TEST_CASE(has_the_free_air_gradient) {
   const FreeBody body(ball, earth_frame(munich), EarthGravitation{});
   const auto linear = linearize<Guide, Body>(body, 0, body.to_vector({}));
@@ -100,7 +102,7 @@ BOOST_AUTO_TEST_CASE(has_the_free_air_gradient) {
   BOOST_TEST(std::abs(at(2) + 1.54e-6) < 1e-8);
 }
 
-// Of the ellipsoid's field, J2 leaves the terms from J4 on: 3 parts in a million.
+// J2 describes the ellipsoid's field except for terms from J4 on: 3 parts in a million.
 BOOST_AUTO_TEST_CASE(field_is_nearly_that_of_j2) {
   for (const double latitude : {0.0, 30.0, 48.1, 90.0}) {
     const auto X = earth_frame(EarthSite<double>{.latitude = latitude})(0).X;

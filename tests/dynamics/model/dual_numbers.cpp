@@ -35,7 +35,7 @@ T constant(double x) {
   }
 }
 
-/// Turns and drives about on all axes; the fifth derivatives of its accelerations are at most 500.
+/// Rotates and moves on all axes; the fifth derivatives of its accelerations are at most 500.
 const auto pose = [](const auto& t) {
   using std::cos;
   using std::sin;
@@ -47,7 +47,7 @@ const auto pose = [](const auto& t) {
                  Vector3<T>(T(sin(once_and_half * t)), T(t * t), T(half * cos(t)))};
 };
 
-/// The same of doubles alone, within its time.
+/// The same with doubles only, within its time.
 struct OfDoubles {
   std::optional<double> begin = {}, end = {};
 
@@ -68,7 +68,7 @@ Eigen::Matrix<S, 24, 1> all_of(const FrameMotion<Guide, Inertial, S>& motion) {
   return x;
 }
 
-/// How fast it all changes, in 50 digits: the difference errs by 1e-24.
+/// The rate of all numbers, in 50 digits: the difference errs by 1e-24.
 Numbers slope(double t) {
   const PosedFrame<decltype(pose), Guide, Inertial, Digits50> guide(pose);
   const Digits50 h("1e-12");
@@ -81,7 +81,7 @@ constexpr double h4 = 0x1p-40;  // the fourth power of the difference's step
 
 BOOST_AUTO_TEST_SUITE(scenes_in_dual_numbers)
 
-// Within its time, and where it begins and ends.
+// Within its time, and at both ends.
 BOOST_DATA_TEST_CASE(differentiate_a_guide_of_doubles,
                      data::make({-0.7, 0.4, 1.9}) * data::xrange(3), now, side) {
   OfDoubles guide;
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(refuse_a_guide_known_at_one_time) {
   BOOST_CHECK_THROW((void)detail::guide_at<Dual>(OfDoubles{0.4, 0.4}, t), InvalidInput);
 }
 
-// Of the fourth degree, to which the differences are exact.
+// A polynomial of the fourth degree, for which the differences are exact.
 BOOST_DATA_TEST_CASE(differentiate_by_differences, data::xrange(3), side) {
   constexpr double now = 0.75;
   const auto f = [side](double t) {

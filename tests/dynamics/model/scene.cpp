@@ -1,4 +1,4 @@
-// The concept of a scene, its optional hooks, and what is said of them.
+// The concept of a scene, its optional hooks, and the messages about them.
 
 #include <boost/test/unit_test.hpp>
 

@@ -26,8 +26,8 @@
 
 #include <support/sample.hpp>
 
-// What terms() says is in a scene is what its field computes: held against each term by its formula
-// (or against the field when what the term needs is taken away), at random states.
+// The list of terms() against the field, at random states. Each term is compared with its formula,
+// or with the change of the field if the term's cause is removed.
 
 using namespace kreisel;
 namespace data = boost::unit_test::data;
@@ -46,7 +46,7 @@ auto any_guide(const M& guide) {
   return *found;
 }
 
-/// Kept exactly where it does something, and every term that is dropped says why.
+/// Kept if it has an effect; every dropped term has a reason.
 void holds(const Terms& all, std::string_view name, double size) {
   const Term found = term(all, name);
   BOOST_TEST(found.kept == (size != 0), name << " = " << size);
@@ -59,8 +59,8 @@ InertiaTensor<Body> body(const Vector3<double>& centre, double product) {
   return InertiaTensor<Body>::about_centre(2, centre, T);
 }
 
-/// The sizes of the terms of a body's equation; `g` is what it feels of uniform gravity and of the
-/// guide, at the place r.
+/// The sizes of the terms of a body's equation. `g` is the apparent field of uniform gravity and of
+/// the guide, at the position r.
 template <class Scene>
 void check_body(const Scene& scene, const typename Scene::State& state, bool held,
                 const Vector3<double>& field) {
@@ -141,7 +141,7 @@ BOOST_DATA_TEST_CASE(agree_with_the_field, data::xrange(10u), seed) {
   const RotatingFrame<> table{sample.direction(), sample.direction()};
   const SteadyFrame<> steady{{exp(Motor<>{sample.direction(), {}})},
                              {{sample.direction(), sample.direction()}}};
-  // What is known of nothing may also turn unsteadily, and does.
+  // A guide of unknown type may turn unsteadily, and this one does.
   const auto shaken = [](double t) {
     PoseDerivatives<> p;
     p.q = Eigen::Quaterniond(1, t * t, t, 0);
@@ -164,7 +164,7 @@ BOOST_DATA_TEST_CASE(agree_with_the_field, data::xrange(10u), seed) {
   }
 }
 
-// A Cardan gyro's: the field on the guide against that on one at rest, and so on.
+// The terms of a Cardan gyro: the field on the guide against that on one at rest, and similarly.
 BOOST_AUTO_TEST_CASE(cardan_gyro_terms_have_their_stated_effect) {
   const auto y = CardanGyro<RestingFrame<>>::to_vector({0.2, 0.3, 0.7, 1, 2, 200});
   const CardanMoments round{{5, 5, 8}, {2, 3, 2.5}, {4, 4, 4.5}};
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(cardan_gyro_terms_have_their_stated_effect) {
     holds(all, "u x (Theta_i u)", turning);
     holds(all, "u' x (Theta_i u) + u x (Theta_i u') + Theta_i (u x u')", turning);
     holds(all, "A_1 - B_1, which turns with phi", moments.rotor.x() - moments.rotor.y());
-    // Another phi does nothing to a rotor that is symmetric.
+    // Another phi has no effect on a symmetric rotor.
     auto later = y;
     later[2] += 1;
     holds(all, "A_1 - B_1, which turns with phi",
@@ -205,7 +205,7 @@ BOOST_AUTO_TEST_CASE(cardan_gyro_terms_have_their_stated_effect) {
   BOOST_TEST(spun(DrivenRotor{3.0}).kept);
   BOOST_TEST(spun(FrictionlessRotor{}).why == "FrictionlessRotor");
   BOOST_TEST(spun(RegulatedRotor{}).why == "the motor keeps phi'");
-  // Springs and friction do something wherever there are any.
+  // Springs and friction have an effect if there are any.
   for (const CardanBearings& some :
        {CardanBearings{}, CardanBearings{{0.5, 0}, {}}, CardanBearings{{}, {0, 0.1}}}) {
     const CardanGyro gyro(round, some, table);
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(pendulum_terms_have_their_stated_effect) {
                            "m a g'_y: in F", "products of inertia: in E, F, H, K"}) {
     holds(terms(upright), name, 0);
   }
-  // Each by taking away what it needs.
+  // Each term by removing its cause.
   const double all = general(0, y)[1];
   const auto without = [&](const PendulumGuide<>& less) {
     return PendulumField(crooked, less, [](double w) { return 0.1 * w; })(0, y)[1] - all;
@@ -259,7 +259,7 @@ BOOST_AUTO_TEST_CASE(pendulum_terms_have_their_stated_effect) {
   holds(terms(general), "m a g'_y: in F", without({{1, 2, 3}, rates, {9, 0, 0}, {}}));
 }
 
-// Its spin turns nothing but the angle beside.
+// Its spin changes nothing but the angle.
 BOOST_AUTO_TEST_CASE(axisymmetric_terms_do_not_depend_on_spin) {
   const AxisymmetricBody top(1, 0.1, 0.02, 0.01, {0, 0, 0}, RestingFrame<>{},
                              UniformGravity<Guide>{{0, 0, -9.81}});
@@ -324,7 +324,7 @@ BOOST_AUTO_TEST_CASE(platform_terms_are_those_of_its_equations) {
   const GyroPlatform::Angles some = GyroPlatform::Angles::LinSpaced(0.1, 0.5);
   for (const auto equations :
        {PlatformEquations::printed, PlatformEquations::corrected, PlatformEquations::complete}) {
-    // Without spin and W' the products J W are all that is left.
+    // Without spin and W' only the products J W are left.
     const auto left = [&](const GyroPlatform::Angles& rates) -> GyroPlatform::Angles {
       return p.linear_accelerations(equations, W, {0, 0, 0}, some, rates, none);
     };
@@ -336,7 +336,7 @@ BOOST_AUTO_TEST_CASE(platform_terms_are_those_of_its_equations) {
   BOOST_TEST(terms(p).size() == p.terms(PlatformEquations::complete).size());
 }
 
-// It does not vanish: that it is left out is what somebody said.
+// It does not vanish: the user has declared it absent.
 BOOST_AUTO_TEST_CASE(omit_a_dropped_centrifugal_force) {
   const RotatingFrame<> table{{0, 0, 2}};
   const FreeBody whole(body({0, 0, 0}, 0), table);

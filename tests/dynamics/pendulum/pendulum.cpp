@@ -103,7 +103,7 @@ BOOST_DATA_TEST_CASE(coefficients_are_those_below_23, data::xrange(50u), seed) {
   BOOST_TEST(c.weight == ma * guide.effective_gravity.norm());
 }
 
-// A guide that turns with u pulls like a guide at rest in the gradient u^2 - u u^t.
+// A guide that turns with u acts like a guide at rest in the gradient u^2 - u u^t.
 BOOST_DATA_TEST_CASE(centrifugal_terms_equal_those_of_a_gradient, data::xrange(20u), seed) {
   Sample sample(seed);
   const PendulumBody<Exact> body = body_of(random_points(sample));

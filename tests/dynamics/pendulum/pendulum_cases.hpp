@@ -14,7 +14,7 @@
 #include <support/near.hpp>
 #include <support/sample.hpp>
 
-/// The pendulums of the reference files, and such of point masses at random.
+/// The pendulums of the reference files, and random pendulums of point masses.
 namespace kreisel::test::pendulum {
 
 using Exact = boost::multiprecision::cpp_bin_float_50;
@@ -29,7 +29,7 @@ inline Verdict near(const Exact& value, const Exact& truth, const Exact& scale, 
 
 inline Exact number(const Json& text) { return Exact(text.get<std::string>()); }
 
-/// The S nearest to what is written.
+/// The S nearest to the written number.
 template <class S>
 S decimal(const Json& text) {
   return static_cast<S>(number(text));
@@ -55,7 +55,7 @@ struct Given {
   S gravity;
 };
 
-/// The inputs of a case read straight into S, the way a program would.
+/// The inputs of a case read directly into S, as in a program.
 template <class S>
 Given<S> given(const Json& c) {
   const Json& i = c.at("inputs");
@@ -118,7 +118,7 @@ inline PendulumBody<Exact> body_of(const std::vector<PointMass>& points) {
   return body;
 }
 
-/// What a refused action says.
+/// The message of a refused action.
 inline std::string message_of(const auto& action) {
   try {
     action();

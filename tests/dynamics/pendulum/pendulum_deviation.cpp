@@ -160,7 +160,7 @@ BOOST_DATA_TEST_CASE(every_equilibrium_is_found, data::xrange(cases().size()), i
   }
 }
 
-// The scene knows no integrator: any stepper takes its field.
+// The scene does not depend on an integrator: any stepper accepts its field.
 BOOST_DATA_TEST_CASE(trajectory_agrees_with_the_reference, data::xrange(cases().size()), index) {
   namespace odeint = boost::numeric::odeint;
   using Real = long double;
@@ -189,7 +189,7 @@ BOOST_AUTO_TEST_CASE(the_papers_pendulum) {
   const auto answer = deviation(body, pendulum_guide(earth_guide(site, 9.81)));
   BOOST_TEST(near(answer.equilibrium.exact.value, Exact("1.355120825005733944908506e-10"),
                   Exact("1.355e-10"), 6));
-  // Changes of period that the first order of (25) does not see: -3.2e-20.
+  // Changes of period that the first order of (25) does not contain: -3.2e-20.
   BOOST_TEST(near(answer.period.relative_change_exact->value,
                   Exact("-3.213616788137386752216753e-20"), Exact("3.2e-20"), 12));
   BOOST_TEST(answer.period.relative_change_formula_25.value == 0);
@@ -240,7 +240,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(estimate)
 
-// Inputs come as decimals; the estimate of the double answer includes their rounding.
+// Inputs are decimals; the estimate of the double answer includes their rounding.
 BOOST_DATA_TEST_CASE(is_never_exceeded, data::xrange(cases().size()), index) {
   const Json& c = cases()[index];
   BOOST_TEST_CONTEXT(c.at("name").get<std::string>()) {
@@ -267,7 +267,7 @@ BOOST_DATA_TEST_CASE(is_never_exceeded, data::xrange(cases().size()), index) {
            number(c.at("finite_amplitude").at("period_s")));
     honest("turning", *answer.other_turning_point,
            number(c.at("finite_amplitude").at("other_turning_point_rad")));
-    // and is no blank cheque
+    // but not arbitrarily large
     BOOST_TEST(answer.equilibrium.exact.error <= 32 * u * abs(phi_0).convert_to<double>());
     BOOST_TEST(answer.period.exact_small->error <= 16 * u * small.convert_to<double>());
     BOOST_TEST(answer.period.at_amplitude->error <= 32 * u * small.convert_to<double>());
@@ -280,7 +280,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(against_fifty_digits)
 
-// Written anew from (23): plain sums, Newton, and differences of the potential in 50 digits.
+// An independent version of (23): plain sums, Newton, and differences of the potential in 50
+// digits.
 struct Plain {
   Exact e, f, h, k;
 
@@ -524,7 +525,7 @@ BOOST_AUTO_TEST_CASE(kept_terms_have_their_size) {
   BOOST_TEST(listed(answer.terms_kept).find("K: gravity gradient") != std::string::npos);
 }
 
-// About an upright axis gravity changes as much to one side as to the other.
+// About an upright axis gravity changes equally to both sides.
 BOOST_AUTO_TEST_CASE(name_terms_that_a_gradient_lacks) {
   PendulumGuide<double> guide = refused::hanging;
   guide.gravity_gradient = Eigen::Vector3d(-1e-6, -1e-6, 2e-6).asDiagonal();
@@ -546,7 +547,7 @@ BOOST_AUTO_TEST_CASE(name_terms_that_a_rotation_lacks) {
   BOOST_TEST(dropped.find("K: centrifugal: u_x^2 = u_y^2 and Phi_C = 0\n") != std::string::npos);
 }
 
-// What two products make up for is told from what is not there.
+// Two products that cancel are recognised as different from absent ones.
 BOOST_AUTO_TEST_CASE(name_terms_that_cancel) {
   // H = -G_xy (Theta_B - Theta_A) - (G_yy - G_xx) Phi_C = -1/4 + 2/8
   PendulumBody<double> body{1, 0.25, 0.5, 0.75, 0.75, 0, 0, 0.125};
@@ -572,7 +573,7 @@ BOOST_AUTO_TEST_CASE(guide_at_rest) {
   BOOST_TEST(!std::signbit(answer.equilibrium.formula_24.value));
 }
 
-// Beside what rounding makes of it, which the same period in long double tells.
+// Rounding is added; the same period in long double shows it.
 BOOST_AUTO_TEST_CASE(great_swings_report_the_quadrature_error) {
   const auto rod = PendulumBody<double>::thin_rod(0.75);
   const auto swing = [](const auto& body, const auto& guide, double amplitude) {
@@ -591,7 +592,7 @@ BOOST_AUTO_TEST_CASE(great_swings_report_the_quadrature_error) {
   }
 }
 
-// (24) says 0 where E + 2K = 0 and nothing is linear any more.
+// (24) gives 0 if E + 2K = 0 and nothing is linear any more.
 BOOST_AUTO_TEST_CASE(at_the_bifurcation_there_is_no_small_period) {
   const auto rod = PendulumBody<double>::thin_rod(1.5);                // theta 0.75, a 0.75
   PendulumGuide<double> guide{{-4, 0, 0}, {0, 0, 0}, {16, 0, 0}, {}};  // E = 12 = theta u^2

@@ -19,7 +19,7 @@ const double k = 19.62;
 const double earth_rate = 7.292115e-5;
 const double latitude = std::acos(-1.0) / 4;
 
-/// The centrifugal torque on a plane pendulum that hangs from the turning earth.
+/// The centrifugal torque on a plane pendulum on the rotating earth.
 const auto earth = []<class S>(const S& /*t*/, const S& angle, const S& /*rate*/) -> S {
   using std::cos;
   using std::sin;
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
   }
 }
 
-// Both parts together are the disturbed pendulum, which a brake holds by its whole rate.
+// Both parts together are the disturbed pendulum; a brake depends on its whole rate.
 BOOST_AUTO_TEST_CASE(adds_up_to_the_disturbed_pendulum) {
   const PendulumDeparture pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
     return S(t - S(0.3) * angle - S(0.2) * rate);

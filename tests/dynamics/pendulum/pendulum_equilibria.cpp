@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(agree_in_number_with_the_quartic) {
   BOOST_TEST(seen[4] > 1000);
 }
 
-// Against Newton's method in 64 bits, wherever on the circle and however small the terms are there.
+// Against Newton's method in 64 bits, anywhere on the circle and for any size of the terms there.
 BOOST_AUTO_TEST_CASE(have_all_the_digits_of_their_terms) {
   using L = long double;
   Sample sample(2);
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(have_all_the_digits_of_their_terms) {
   BOOST_TEST(worst <= 2);
 }
 
-// The circle is cut where no equilibrium is: hit by one, the signs at the ends of the cut are chance.
+// The circle is cut where no equilibrium is. If a cut hits one, the signs at its ends are random.
 BOOST_AUTO_TEST_CASE(are_not_lost_where_the_circle_is_cut) {
   for (int i = 0; i < 2000; ++i) {
     const double angle = 0.9 + (i - 1000) * 3e-17;
@@ -141,7 +141,8 @@ BOOST_DATA_TEST_CASE(a_merged_pair_is_reported_once_and_unstable, data::xrange(2
   BOOST_TEST(found.size() == 3u);
 }
 
-// m = cos 2(x - 0.9): the search cuts the circle at 0.9, and where it halves it there are all roots.
+// m = cos 2(x - 0.9): the search cuts the circle at 0.9, and all roots are at the points that halve
+// it.
 BOOST_AUTO_TEST_CASE(are_no_clusters_where_the_circle_is_halved) {
   const double at = 0.9;
   const auto found =
@@ -213,7 +214,7 @@ BOOST_AUTO_TEST_CASE(terms_that_cancel_at_0_give_exactly_0) {
   }
 }
 
-// F = H: they cancel at pi, not at 0, beside which the root lies.
+// F = H: they cancel at pi, not at 0, and the root is near pi.
 BOOST_AUTO_TEST_CASE(terms_that_cancel_at_pi_give_exactly_pi) {
   for (const double f : {1e-3, -1e-3, 1e-10}) {
     const PendulumCoefficients<double> c{1, 0, f, f, 0};
@@ -233,7 +234,7 @@ BOOST_AUTO_TEST_CASE(a_root_costs_as_little_as_newtons_method) {
   const double root = detail::root_in_bracket(0.0, 3.0, 1.0, 0.0, look);
   BOOST_TEST(test::near(root, std::acos(0.0), 1.0, 1));
   BOOST_TEST(looks <= 6);
-  // From where Newton's method leaves the bracket, or goes to and fro.
+  // Starts from which Newton's method leaves the bracket or oscillates.
   BOOST_TEST(
       test::near(detail::root_in_bracket(-1.0, 3.1, 3.1, 0.0, look), std::acos(0.0), 1.0, 1));
   looks = 0;
@@ -243,7 +244,7 @@ BOOST_AUTO_TEST_CASE(a_root_costs_as_little_as_newtons_method) {
   };
   BOOST_TEST(test::near(detail::root_in_bracket(-1.0, 1.0, 0.9, 0.0, to_and_fro), 0.3, 0.3, 4));
   BOOST_TEST(looks <= 120);
-  // As near as is asked.
+  // As accurate as requested.
   looks = 0;
   BOOST_TEST(std::abs(detail::root_in_bracket(0.0, 3.0, 1.0, 1e-3, look) - std::acos(0.0)) < 1e-6);
   BOOST_TEST(looks <= 4);

@@ -40,12 +40,12 @@ BOOST_DATA_TEST_CASE(both_turning_points_have_the_same_height, data::xrange(300u
   const double other = rest.angle + there.other_turning_point;
   const double size = std::abs(c.e()) + std::abs(c.f) + std::abs(c.h) + std::abs(c.k);
   BOOST_TEST(near(c.potential(other), c.potential(release), size, 64));
-  // It falls at the release, and nothing between is as high.
+  // It falls at the release, and no point between is as high.
   BOOST_TEST((c.moment(release) > 0) == (other < release));
   for (int i = 1; i < 200; ++i) {
     BOOST_TEST_REQUIRE(c.potential(release + (other - release) * i / 200) < c.potential(release));
   }
-  // Released at the other point it comes back, in the same time.
+  // Released at the other point it returns in the same time.
   if (std::abs(there.other_turning_point) < 3.14) {
     const auto back = period_at_amplitude(rod, c, all, rest, there.other_turning_point);
     const double steepest = std::min(std::abs(c.moment(release)), std::abs(c.moment(other)));
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(the_mirrored_pendulum_swings_alike) {
   }
 }
 
-// Two wells at +-arccos(1/1.8), the barrier between them at 0: released above it, it passes.
+// Two wells at +-arccos(1/1.8), with the barrier between them at 0: released above it, it passes.
 BOOST_AUTO_TEST_CASE(a_high_release_passes_the_barrier) {
   const PendulumCoefficients<double> c{1, 0, 0, 0, -0.9};
   const double rest = nearest_stable(equilibria(c)).angle;
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(infinite_periods_are_refused) {
              "3.141592654 rad: it stays there");
   BOOST_TEST(message_of([&] { (void)swing(plain, 3.2); }) ==
              "amplitude = 3.2 rad lies outside [-3.141592654, 3.141592654] rad");
-  // So little below the top it is, to rounding, as high as the top.
+  // This close to the top it is, to rounding, as high as the top.
   BOOST_CHECK_EXCEPTION((void)swing(plain, std::acos(-1.0) - 4.4e-14), ComputationFailed,
                         [](const auto& error) {
                           return std::string(error.what()).starts_with("the period is infinite");
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(infinite_periods_are_refused) {
   // 1 - cos p = sin^2 p, p = pi/2: E (1 - cos p) + K sin^2 p = 1 - 1 = 0.
   const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
   const double rest = nearest_stable(equilibria(wells)).angle;
-  // From either side, to one barrier.
+  // From either side, to the same barrier.
   for (const double release : {std::acos(0.0), -std::acos(0.0)}) {
     BOOST_CHECK_EXCEPTION((void)swing(wells, release - rest), ComputationFailed,
                           [](const auto& error) {
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(infinite_periods_are_refused) {
   }
 }
 
-// Also where nothing is as far to the other side.
+// Also if no point on the other side is as far.
 BOOST_AUTO_TEST_CASE(a_release_at_another_equilibrium_is_refused) {
   const PendulumCoefficients<double> c{1, 0, 0.2, 0.3, 0.7};
   const auto all = equilibria(c);
@@ -130,8 +130,8 @@ BOOST_AUTO_TEST_CASE(a_release_at_another_equilibrium_is_refused) {
   BOOST_TEST(others == 3);
 }
 
-// The slope is  m (E' + 2 K') + F' (3 m^2 + d^2)/2  next to the equilibrium: where m and d are off by
-// a part delta, it is off by no more than  delta (|m| |E' + 2 K'| + |F'| (3 m^2 + d^2)).
+// The slope is m (E' + 2 K') + F' (3 m^2 + d^2)/2 next to the equilibrium. If m and d are off by a
+// part delta, the slope is off by at most delta (|m| |E' + 2 K'| + |F'| (3 m^2 + d^2)).
 BOOST_DATA_TEST_CASE(rounding_is_amplified_as_predicted, data::xrange(100u), seed) {
   Sample sample(seed);
   const bool third = seed % 2 == 0;  // E' + 2 K' = 0: the moment is of second order
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(size_bounds_the_moment) {
   }
 }
 
-// Two equal barriers of K alone: E and F have no part in what counts as equally high.
+// Two equal barriers of K alone: E and F do not count in the comparison of heights.
 BOOST_AUTO_TEST_CASE(release_at_barrier_height_is_refused) {
   BOOST_CHECK_EXCEPTION((void)swing({0, 0, 0, 0, 1}, std::acos(0.0) - 1e-9), ComputationFailed,
                         [](const auto& error) {
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(near_a_barrier_the_error_reached_is_named) {
   BOOST_CHECK_NO_THROW((void)swing(wells, std::acos(0.0) + 1e-6 - rest));
 }
 
-// So near a barrier that rounding outgrows what a doubling of the nodes still changes.
+// So near a barrier that rounding exceeds the change by doubling the nodes.
 BOOST_AUTO_TEST_CASE(quadrature_ends_at_rounding) {
   const PendulumCoefficients<double> wells{1, 0, 0, 0, -1};
   const auto all = equilibria(wells);
@@ -202,8 +202,8 @@ BOOST_AUTO_TEST_CASE(a_small_swing_needs_few_nodes) {
   BOOST_TEST(swing({1, 0, 0, 0, 0}, 1e-9).nodes == 17);  // 8 intervals and twice as many
 }
 
-// By the arithmetic-geometric mean, T = 2 pi/agm(1, cos(amplitude/2)): sums of many terms are not
-// rounded as often as there are terms.
+// By the arithmetic-geometric mean, T = 2 pi/agm(1, cos(amplitude/2)): rounding in sums of many
+// terms does not grow with their number.
 BOOST_AUTO_TEST_CASE(great_swings_do_not_accumulate_rounding) {
   using L = long double;
   const PendulumCoefficients<double> c{1, 0, 0, 0, 0};
@@ -225,7 +225,7 @@ BOOST_AUTO_TEST_CASE(great_swings_do_not_accumulate_rounding) {
   }
 }
 
-// Upside down nothing is stable, and without weight there is nothing to compare with.
+// Upside down nothing is stable, and without weight there is no reference period.
 BOOST_AUTO_TEST_CASE(undefined_periods_are_refused) {
   const PendulumCoefficients<double> c{.weight = 3};
   const double up = std::acos(-1.0);

@@ -24,7 +24,7 @@ const PendulumBody<> crooked{.mass = 2,
                              .phi_b = -0.04,
                              .phi_c = 0.06};
 
-/// Turns, is about to turn faster, and feels gravity from aside.
+/// The guide turns, accelerates its rotation, and has gravity at an angle.
 const PendulumGuide<> in_a_turn{.angular_velocity = {0.4, -0.9, 0.5},
                                 .angular_acceleration = {0.3, 0.2, -0.6},
                                 .effective_gravity = {9, 2, -1}};
@@ -60,8 +60,8 @@ BOOST_AUTO_TEST_CASE(is_unavailable_with_damping_or_changes) {
   static_assert(!KnowsSeries<decltype(PhysicalPendulum(rod, in_a_turn, brake))>);
 }
 
-// In a frame about to turn faster nothing is conserved and no closed form is known. Held against
-// Verner's steps, which take the field.
+// In an accelerating frame nothing is conserved and no closed form is known. Compared with Verner's
+// steps, which use the field.
 BOOST_AUTO_TEST_CASE(moves_the_pendulum_on_a_turning_guide) {
   const PhysicalPendulum pendulum(crooked, in_a_turn);
   const auto by = [&](Method method) {

@@ -29,7 +29,7 @@ using Digits50 = boost::multiprecision::cpp_bin_float_50;
 constexpr double u = 0x1p-53;
 constexpr double earth_rate = 7.292115e-5;
 
-/// phi.. = -19.62 sin phi, held still.
+/// phi.. = -19.62 sin phi, on a guide at rest.
 const PendulumBody<> rod{.mass = 1, .arm = 0.5, .theta_b = 1, .theta_c = 1};
 const RestingPendulumGuide<> room{39.24};
 
@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_CASE(errs_at_the_start_by_rounding_only) {
   const SteadyPendulumMotion<exact::Real> motion(rod.cast<exact::Real>(),
                                                  pendulum.coefficients<exact::Real>(), 0.1, 0.1);
   const double told = detail::SteadyPendulumMotionError(motion, 3)(3, 0);
-  // Half a last digit of each, twice, and what the phase is off at time 0.
+  // Half a last digit of each, twice, and the error of the phase at time 0.
   const auto per_phase = std::max(motion.angle_per_phase(), motion.rate_per_phase()) / 0.1L;
   BOOST_TEST(test::near(told, 2 * u + double(motion.phase_error(0) * per_phase), told, 4));
   BOOST_TEST(told < 2.2 * u);
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(begins_at_the_given_time) {
   }
 }
 
-// Elliptic functions, which know nothing of phases and series: swings of 1e-9 to 3 rad, and turning over.
+// Elliptic functions, independent of phases and series: swings of 1e-9 to 3 rad, and rotation.
 BOOST_AUTO_TEST_CASE(agrees_with_elliptic_functions_at_rest) {
   const PhysicalPendulum pendulum(rod, room);
   using State = decltype(pendulum)::State;
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_elliptic_functions_at_rest) {
       greatest_rate = std::max(greatest_rate, std::abs(rate));
       const double off = test::worst_of(std::abs(run.states[i].angle - angle) / greatest_angle,
                                         std::abs(run.states[i].rate - rate) / greatest_rate);
-      // The elliptic functions err by 1.5u themselves.
+      // The elliptic functions themselves err by 1.5u.
       worst = test::worst_of(worst, off / (run.errors[i] + 4 * u));
       BOOST_TEST(off <= run.errors[i] + 4 * u);
     }
@@ -169,7 +169,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_elliptic_functions_at_rest) {
   BOOST_TEST_MESSAGE("against elliptic functions: at most " << worst << " of what is told");
 }
 
-// Before the phase has gone far, half a unit in the last place of each answer is all that is off.
+// Before the phase has advanced far, the error is half a unit in the last digit of each answer.
 BOOST_AUTO_TEST_CASE(reports_its_rounding) {
   const PhysicalPendulum pendulum(rod, room);
   std::vector<double> times;
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(reports_its_rounding) {
   }
   BOOST_TEST(worst >= u / 2);
 
-  // Counted from the beginning, whenever that is.
+  // Time counts from the beginning, whenever that is.
   constexpr double begin = 0x1p20;
   for (double& t : times) t += begin;
   const auto later =
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(reports_its_rounding) {
   BOOST_TEST(later.errors.back() <= 1.01 * run.errors.back());
 }
 
-// Counted from the nearest of two wells: 1e-9 rad beside 0 has all its digits.
+// Angles count from the nearest of two wells: 1e-9 rad near 0 has all its digits.
 BOOST_AUTO_TEST_CASE(counts_from_the_nearest_well) {
   const PendulumCoefficients<> c{1, 0, 0.1, -0.1, 0.9};  // the other one is at -3.0 rad
   for (const double angle : {1e-9, -1e-9}) {
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(counts_from_the_nearest_well) {
   }
 }
 
-// A barrier at -2.04 rad parts it from the well that is nearest, at -2.29 rad: it swings in the other.
+// A barrier at -2.04 rad separates it from the nearest well, at -2.29 rad: it swings in the other.
 BOOST_AUTO_TEST_CASE(stays_in_its_well) {
   const PendulumCoefficients<> c{1, 0, -0.7, -0.7, 0.2};
   const double angle = -2;
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(stays_in_its_well) {
   }
 }
 
-// After eight turns either way it swings as before them; 16 pi is rounded by 7e-15.
+// After eight turns in either direction it swings as before; 16 pi is rounded by 7e-15.
 BOOST_AUTO_TEST_CASE(does_not_depend_on_whole_turns) {
   const PendulumCoefficients<> c{1, 0, 0.1, -0.2, -0.9};
   const double turns = 32 * std::acos(0.0);
@@ -235,7 +235,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_whole_turns) {
   }
 }
 
-// Hardly over the barrier its phase runs so unevenly that Newton's steps for it leave their bracket.
+// Just above the barrier its phase runs so unevenly that Newton's steps for it leave their bracket.
 BOOST_AUTO_TEST_CASE(agrees_near_the_unstable_rest) {
   const PhysicalPendulum pendulum(rod, room);
   for (const double over : {1.001, 1.003, 1.01}) {
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(agrees_near_the_unstable_rest) {
   }
 }
 
-// Any E, F, H and K: one well or two, swings over one or both, and turning over, against Taylor series.
+// Any E, F, H and K: one well or two, swings over one or both, and rotation, against Taylor series.
 BOOST_AUTO_TEST_CASE(agrees_with_taylor_series) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -298,7 +298,8 @@ BOOST_AUTO_TEST_CASE(reports_the_angle_of_a_phase) {
   BOOST_TEST(std::abs(motion.rate_per_phase() - amplitude) <= 0.05 * amplitude);
 }
 
-// So near a barrier that the Fourier series is too long, steps take over; so they do at rest and in a fall without end.
+// Near a barrier the Fourier series is too long, and steps are used instead. The same holds at rest
+// and in an endless fall.
 BOOST_AUTO_TEST_CASE(is_solved_by_steps_beyond_the_series) {
   const PhysicalPendulum pendulum(rod, room);
   for (const double rate : {2 * std::sqrt(19.62), 2 * std::sqrt(19.62) * (1 + 1e-9), 0.0}) {
@@ -310,7 +311,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_beyond_the_series) {
   }
 }
 
-// With damping, and on a guide that moves, there are steps; the equation is that of PendulumField.
+// With damping, and on a moving guide, steps are used; the equation is that of PendulumField.
 BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
   const auto brake = [](const auto& rate) { return 0.1 * rate; };
   const PhysicalPendulum damped(rod, room, brake);
@@ -323,8 +324,8 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
   BOOST_TEST(slow.report.invariants.empty());
   BOOST_TEST(std::abs(slow.states[0].angle - angle) <= 2e-16);
 
-  // The guide turns about the pendulum's axis as fast as it likes: against the room phi + its angle
-  // moves on its own.
+  // The guide turns about the pendulum's axis at any rate: relative to the room, phi + its angle
+  // moves independently.
   const auto turning = [](double t) {
     return PendulumGuide<>{.angular_velocity = {0, 0, 0.3 * t},
                            .angular_acceleration = {0, 0, 0.3}};
@@ -336,7 +337,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
   BOOST_TEST(run.report.tolerance_kept);
   BOOST_TEST(std::abs(run.states[0].angle - (0.2 + 5 - 0.15 * 25)) <= 1e-11);
 
-  // Gravity across: the same swing, a quarter of a turn further on.
+  // Gravity at right angles: the same swing, shifted by a quarter turn.
   const PhysicalPendulum across(rod, PendulumGuide<>{.effective_gravity = {0, 39.24, 0}});
   const double quarter = std::acos(-1.0) / 2;
   const auto turned =
@@ -345,7 +346,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
       solve(PhysicalPendulum(rod, room), {.angle = 0.4}, {.output_times = {5}, .tolerance = 1e-12});
   BOOST_TEST(turned.report.method == straight.report.method);
   BOOST_TEST(std::abs(turned.states[0].angle - quarter - straight.states[0].angle) <= 1e-14);
-  // Turning over so fast that of its series one sine is left, or one cosine.
+  // Rotation so fast that one sine or one cosine is left of its series.
   const SolveOptions soon{.output_times = {0.3, 0.5}, .tolerance = 1e-12};
   const auto whirled = solve(across, {.angle = 0.4 + quarter, .rate = 3e4}, soon);
   const auto upright = solve(PhysicalPendulum(rod, room), {.angle = 0.4, .rate = 3e4}, soon);
@@ -354,7 +355,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
     BOOST_TEST(std::abs(apart) <= 2e-11);  // eleven last digits of 15000 rad
   }
 
-  // Pulled nowhere it runs on, and pushed steadily as what falls does.
+  // Without torque it rotates uniformly, with a constant one it accelerates uniformly.
   const auto angle_at_5 = [](double push) {
     const PhysicalPendulum floating(rod, PendulumGuide<>{.angular_acceleration = {0, 0, push}});
     BOOST_TEST(floating.conserved(0, {}).empty() == (push != 0));
@@ -366,7 +367,7 @@ BOOST_AUTO_TEST_CASE(is_solved_by_steps_without_energy) {
   BOOST_TEST(std::abs(angle_at_5(0.3) - (5.2 - 0.15 * 25)) <= 1e-11);
 }
 
-// Without gravity, on a guide that turns about an axis across, twice its angle is a pendulum's.
+// Without gravity, on a guide that turns about a transverse axis, twice its angle is a pendulum's.
 BOOST_AUTO_TEST_CASE(swings_on_a_guide_that_turns_across) {
   constexpr double u = 2;
   const exact::PendulumMotion truth(u * u, 0.8, 0);  // Theta_B = Theta_C, Theta_A = 0

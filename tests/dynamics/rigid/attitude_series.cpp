@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(agrees_for_bodies_on_analytic_guides) {
                AxisymmetricBody(1, -0.3, 0.25, 0.06, point, ship, inertial));
 }
 
-// A series of the guide serves the steps of the body that lie within its reach, and no others.
+// A series of the guide serves the steps of the body within its reach, and no others.
 BOOST_AUTO_TEST_CASE(continues_beyond_the_guides_series) {
   const HarmonicFrame<> slow({{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}},
                              {{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, 0.2}}}, 0, 60);
@@ -105,8 +105,8 @@ BOOST_AUTO_TEST_CASE(continues_beyond_the_guides_series) {
   }
 }
 
-// The same from the motion of the guide itself: at whatever times in whatever order, with steps that
-// are nearly as long as the series reaches, and where every other coefficient vanishes.
+// The apparent field against that of the guide's own motion, at any times in any order. Steps are
+// nearly as long as the series reaches, and in one case every other coefficient vanishes.
 BOOST_AUTO_TEST_CASE(gives_the_apparent_field_at_any_time) {
   const HarmonicSeries<> heave{{0.1, 0.2, 9}, {{{1, -0.5, 2}, 0.7, std::numbers::pi / 2}}};
   const HarmonicFrame<> even({{0.1, -0.2, 0.3}, {}}, heave, -60, 60);
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(gives_the_apparent_field_at_any_time) {
         const Vector3<double> du = now.dV.value.resultant;
         const Vector3<double> g =
             in_guide.g - now.origin_acceleration() - du.cross(point) - u.cross(u.cross(point));
-        // Angles to 13 rad are rounded in both, 25 terms summed up.
+        // Angles to 13 rad are rounded in both, 25 terms are summed.
         BOOST_TEST(near(sum.resultant, u, 1.0, 64));
         BOOST_TEST(near(sum.moment, g, 20.0, 64));
       }
@@ -181,7 +181,7 @@ BOOST_AUTO_TEST_CASE(agrees_for_tops) {
   hold_samples("with a rotor", EulerTop({1, 1.7, 2.4}, {0.5, -0.3, 2}, {0.3, 1, -0.4}));
 }
 
-// A symmetric body keeps its spin to the last bit: all coefficients of it are 0.
+// A symmetric body keeps its spin exactly: all coefficients of the spin are 0.
 BOOST_AUTO_TEST_CASE(keeps_the_spin_of_symmetric_bodies) {
   auto series = EulerTop({2, 2, 3}, {0, 0, 5}).series();
   Eigen::Matrix<double, 7, 25> c;

@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_a_body_on_its_own_axes) {
   }
 }
 
-// The fast top of 3000 rad/s, whose attitude a closed form gives to the last digits.
+// The fast top of 3000 rad/s, with the attitude of a closed form to the last digits.
 BOOST_AUTO_TEST_CASE(does_not_resolve_the_spin) {
   const double weight_moment = 0.1 * 9.81 * 0.05;
   const Eigen::Quaterniond q(std::cos(0.25), std::sin(0.25), 0, 0);
@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(does_not_resolve_the_spin) {
   BOOST_TEST(resal.effort().evaluations < 0.4 * own_axes.effort().evaluations);
 }
 
-// With the spin ten times as fast and its momentum the same, nothing changes but the spin.
+// With ten times the spin and the same angular momentum, nothing changes but the spin.
 BOOST_AUTO_TEST_CASE(costs_as_much_as_its_nutation) {
   const Eigen::Quaterniond q(std::cos(0.25), std::sin(0.25), 0, 0);
   double slow = 0;

@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(turns_for_ever_about_a_principal_axis) {
   }
 }
 
-// Spherical: w constant to the last bit. Symmetric: the axial spin.
+// Spherical: w is exactly constant. Symmetric: the axial spin is.
 BOOST_AUTO_TEST_CASE(keeps_the_invariants_of_its_symmetry) {
   const Vector3<double> w(0.1, 0.7, -0.3);
   const EulerTop sphere({2, 2, 2});
@@ -76,12 +76,12 @@ BOOST_AUTO_TEST_CASE(keeps_kovalevskayas_invariant) {
   BOOST_TEST(d.kovalevskaya < 1e-11);
   BOOST_TEST(d.energy < 1e-11);
   BOOST_TEST(d.vertical_momentum < 1e-11);
-  // A top that is not hers does not keep it.
+  // A top of another kind does not keep it.
   BOOST_TEST(drift(EulerTop({2, 2, 1.1}, {0.7, -0.3, 0}), {tilted, {0.5, 1, 2}}, 10).kovalevskaya >
              0.01);
 }
 
-// With the weight and a rotor's momentum in no special direction.
+// With weight and a rotor's momentum in general directions.
 BOOST_AUTO_TEST_CASE(keeps_energy_and_vertical_momentum) {
   const auto d =
       drift(EulerTop({1, 2, 2.5}, {0.7, -0.3, 1.1}, {0.2, -1, 0.5}), {tilted, {0.5, 1, 2}}, 100);
@@ -113,7 +113,8 @@ BOOST_AUTO_TEST_CASE(names_its_invariants) {
   BOOST_TEST(kept(EulerTop({2, 2, 1}, {0.7, -0.3, 0}, {0, 0, 0.5})) == always);
 }
 
-// A sleeping top stands however long; just under the critical spin it falls, just over it does not.
+// A sleeping top stands for any time. Just below the critical spin it falls, just above it does
+// not.
 BOOST_AUTO_TEST_CASE(sleeps_above_the_critical_spin) {
   const double A = 2, C = 1, k = 3;
   const double critical = std::sqrt(4 * A * k) / C;
@@ -136,7 +137,8 @@ BOOST_AUTO_TEST_CASE(sleeps_above_the_critical_spin) {
   BOOST_TEST(tilt(0.95 * critical) > 0.1);
 }
 
-// With a rotor at constant relative speed the whole momentum stays in space, not the carrier's.
+// With a rotor at constant relative speed the total momentum is constant in space, not the
+// carrier's.
 BOOST_AUTO_TEST_CASE(may_carry_a_regulated_rotor) {
   const Vector3<double> h(0.2, -1, 0.5);
   const EulerTop gyrostat({1, 2, 2.5}, {0, 0, 0}, h);
@@ -145,7 +147,7 @@ BOOST_AUTO_TEST_CASE(may_carry_a_regulated_rotor) {
   BOOST_TEST(d.momentum.maxCoeff<Eigen::PropagateNaN>() < 1e-12);
 }
 
-// The same top as a body held in a guide at rest.
+// The same top as a body with a fixed point in a guide at rest.
 BOOST_AUTO_TEST_CASE(agrees_with_a_body_on_a_guide_at_rest) {
   const Vector3<double> moments(0.45, 0.47, 0.08), r_s(0.05, -0.02, 0.3);
   const double m = 2, g = 9.81;

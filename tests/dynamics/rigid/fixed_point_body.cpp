@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_references) {
   }
 }
 
-// The joint carries force but no torque, and the parts add up to what acts.
+// The joint carries force but no torque, and the parts add up to the total load.
 BOOST_AUTO_TEST_CASE(gives_the_parts_of_its_reaction) {
   const Json c = reference_cases().at(2);
   const auto body = reference_body(c);
@@ -140,7 +140,8 @@ BOOST_AUTO_TEST_CASE(gives_the_parts_of_its_reaction) {
   const double size = 20;
   BOOST_TEST(near(r.reaction.value.moment, Vector3<double>(0, 0, 0), size, 8));
   BOOST_TEST(near(r.parts.total().value, (r.applied + r.reaction).value, size, 2));
-  // The force at the joint moves the centre of mass: m a_s = weight + reaction, a_s from the motion.
+  // The force at the joint accelerates the centre of mass: m a_s = weight + reaction, a_s from the
+  // motion.
   const auto& [t, X, V_rel, guide, T] = r.situation;
   const Vector3<double> force = r.parts.total().value.resultant;
   const auto V_dot = r.dV_rel.value.resultant;
@@ -184,7 +185,7 @@ BOOST_DATA_TEST_CASE(agrees_with_eulers_top_on_a_guide_at_rest, data::xrange(50u
   BOOST_TEST(near(euler_torque(T.value.tensor, u, du), Vector3<double>(0, 0, 0), size, 16));
 }
 
-// With its centre of mass in the fixed point and no loads, a body does not feel the guide.
+// With its centre of mass at the fixed point and no loads, a body does not depend on the guide.
 BOOST_AUTO_TEST_CASE(ignores_the_guide_if_fixed_at_its_centre) {
   const auto swing = [](const auto& t) {
     using std::sin;
@@ -209,7 +210,7 @@ BOOST_AUTO_TEST_CASE(ignores_the_guide_if_fixed_at_its_centre) {
   BOOST_TEST(near(found, Pose<>::from(b.attitude).rotation, 1.0, 1e-12 / test::u<>));
 }
 
-// (22): a body at rest in the guide needs the force of the guide part, and nothing else.
+// (22): a body at rest in the guide needs only the force of the guide part.
 BOOST_DATA_TEST_CASE(at_rest_in_the_guide_obeys_22, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const auto T = lopsided_body();
@@ -235,7 +236,7 @@ Eigen::Matrix<double, 7, 1> swung(M guide) {
 
 }  // namespace
 
-// u = 0 in any kind of guide: not nearly the same numbers but the same.
+// u = 0 in any kind of guide: exactly the same numbers.
 BOOST_AUTO_TEST_CASE(moves_alike_on_all_guides_at_rest) {
   struct Ship {};
   const auto rest = swung(RestingFrame<>{});
@@ -254,7 +255,7 @@ BOOST_AUTO_TEST_CASE(moves_alike_on_all_guides_at_rest) {
   BOOST_TEST(swung([](double) { return FrameMotion<Guide, Inertial>{}; }) == rest);
 }
 
-// Slowly, down to numbers that only just exist: no division by |u|, nothing but rounding changes.
+// Slowly, down to the smallest numbers: no division by |u|, nothing but rounding changes.
 BOOST_AUTO_TEST_CASE(is_exact_on_a_guide_that_hardly_turns) {
   const auto rest = swung(RestingFrame<>{});
   for (const double u : {1e-20, 1e-160, 1e-300, 1e-320}) {
@@ -263,8 +264,8 @@ BOOST_AUTO_TEST_CASE(is_exact_on_a_guide_that_hardly_turns) {
   }
 }
 
-// Of a guide in steady motion gravity and acceleration are made up beforehand, of any other when they
-// are felt.
+// Gravity and acceleration are computed once for a guide in steady motion, and at each evaluation
+// for any other.
 BOOST_AUTO_TEST_CASE(has_the_same_field_on_a_known_guide) {
   const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
   const auto on = [](const auto& guide) {
@@ -280,7 +281,7 @@ BOOST_AUTO_TEST_CASE(has_the_same_field_on_a_known_guide) {
   }
 }
 
-// The guide stops as it stands at 2 s; what its motion makes felt at the fixed point stays.
+// The guide stops in its pose at 2 s; the effect of its motion at the fixed point is kept.
 BOOST_AUTO_TEST_CASE(without_guide_rate_it_is_as_on_one_at_rest) {
   const Vector3<double> u(0.3, -0.2, 0.5);
   const Vector3<double> a(1, 2, 3);
@@ -303,7 +304,7 @@ BOOST_AUTO_TEST_CASE(is_refused_if_its_rotation_is_undetermined) {
   BOOST_CHECK_THROW(held(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, needle)), InvalidInput);
   BOOST_CHECK_THROW(held(InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Zero())),
                     InvalidInput);
-  // Aside of the fixed point the same needle is a good body.
+  // Away from the fixed point the same needle is a valid body.
   BOOST_CHECK_NO_THROW(held(InertiaTensor<Body>::about_centre(1, {0.1, 0, 0}, needle)));
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   BOOST_CHECK_THROW(FixedPointBody(lopsided_body(), {nan, 0, 0}, guide), InvalidInput);

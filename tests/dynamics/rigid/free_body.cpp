@@ -25,7 +25,7 @@ namespace data = boost::unit_test::data;
 
 namespace {
 
-/// A guide that yaws, pitches, rolls and is thrown about.
+/// A guide that yaws, pitches, rolls and is shaken.
 constexpr auto rough = [](const auto& t) {
   using std::sin;
   using S = std::decay_t<decltype(t)>;
@@ -45,8 +45,8 @@ const double tight = 1e-12 / test::u<>;  // 1e-12 in units of rounding
 
 BOOST_AUTO_TEST_SUITE(a_free_body)
 
-// Without loads the centre of mass goes straight and the momentum stays, in the inertial frame; from
-// the rough guide that is a wild motion, and the guide's own motion must drop out of it.
+// Without loads the centre of mass moves straight and the momentum is constant, in the inertial
+// frame. Seen from the rough guide that is a wild motion, and the guide's own motion must cancel.
 BOOST_AUTO_TEST_CASE(moves_straight_for_any_guide_motion) {
   const auto guide = posed(rough);
   const FreeBody body(lopsided_body(), guide);
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(moves_straight_for_any_guide_motion) {
   }
 }
 
-// (21): a point mass. The centre of mass of a body that does not turn is one.
+// (21): a point mass, like the centre of mass of a body that does not turn.
 BOOST_DATA_TEST_CASE(is_a_particle_with_all_mass_at_the_origin, data::xrange(50u), seed) {
   test::Sample sample(seed);
   const double m = sample.magnitude(-1, 1);
@@ -88,7 +88,7 @@ BOOST_DATA_TEST_CASE(is_a_particle_with_all_mass_at_the_origin, data::xrange(50u
   BOOST_TEST(near(needed, force, 20 * std::max(m, 1.0), 16));
 }
 
-// A body on a spring, on rubber and in a field, in a guide at rest: its energy stays.
+// A body on a spring, on rubber and in a field, in a guide at rest: its energy is constant.
 BOOST_AUTO_TEST_CASE(keeps_its_energy_on_springs) {
   Matrix3<double> K;
   K << 30, 2, 0, 2, 20, 1, 0, 1, 25;
@@ -107,8 +107,9 @@ BOOST_AUTO_TEST_CASE(keeps_its_energy_on_springs) {
   BOOST_TEST(near(energy(5, run.to(5)), energy(0, start), 100.0, tight));
 }
 
-// What loads give to a body is what their potentials lose, less what their dampers take: by lengths
-// and places a little before and after, whose differences err by (3 h)^2/6 and by 1e-14/h.
+// The work of loads equals the loss of their potentials, minus the work of their dampers. Lengths
+// and positions a little before and after give the differences, which err by (3 h)^2/6 and by
+// 1e-14/h.
 BOOST_DATA_TEST_CASE(loses_the_power_of_its_dampers, data::xrange(20u), seed) {
   test::Sample sample(seed);
   LoadContext<> s;
@@ -153,8 +154,8 @@ BOOST_DATA_TEST_CASE(loses_the_power_of_its_dampers, data::xrange(20u), seed) {
                   tolerance));
 }
 
-// On a guide that turns steadily the energy in the guide with the centrifugal potential -F.(T F)/2
-// stays (Jacobi's integral).
+// On a steadily turning guide the energy with the centrifugal potential -F.(T F)/2 is constant
+// (Jacobi's integral).
 BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_turntable) {
   SteadyFrame<> turntable;
   turntable.V = {{{0, 0, 1.5}, {0, 0, 0}}};
@@ -173,7 +174,7 @@ BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_turntable) {
   BOOST_TEST(near(integral(5, run.to(5)), integral(0, start), 100.0, tight));
 }
 
-// The same load given on three kinds of axes, where they coincide.
+// The same load given on three kinds of axes that coincide.
 BOOST_AUTO_TEST_CASE(accepts_loads_on_any_axes) {
   const Pose<double> tilt{YawPitchRoll<>{0.3, -0.5, 1.1}.rotation(), {1, 2, 3}};
   const Pose<double> lean{YawPitchRoll<>{-0.7, 0.2, 0.4}.rotation(), {-1, 0, 2}};
@@ -206,7 +207,7 @@ BOOST_AUTO_TEST_CASE(is_refused_if_impossible) {
   const Matrix3<double> needle = Vector3<double>(1, 1, 0).asDiagonal();
   const auto T = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, needle);
   BOOST_CHECK_THROW(FreeBody(T, RestingFrame<>{}), ComputationFailed);
-  // Nor is one that rounding has made thick, on whichever axis it lies.
+  // A body that rounding has made thick is refused too, on any axis.
   for (int axis = 0; axis < 3; ++axis) {
     Matrix3<double> rounded = Matrix3<double>::Identity();
     rounded(axis, axis) = 1e-17;
@@ -216,8 +217,8 @@ BOOST_AUTO_TEST_CASE(is_refused_if_impossible) {
   }
 }
 
-// Of a guide in steady motion gravity and acceleration are made up beforehand, of any other when they
-// are felt.
+// Gravity and acceleration are computed once for a guide in steady motion, and at each evaluation
+// for any other.
 BOOST_AUTO_TEST_CASE(has_the_same_field_on_a_known_guide) {
   const RotatingFrame<> steady{{0.3, -0.2, 0.5}, {1, 2, 3}};
   const auto on = [](const auto& guide) {
@@ -233,7 +234,7 @@ BOOST_AUTO_TEST_CASE(has_the_same_field_on_a_known_guide) {
   }
 }
 
-// The guide stops as it stands at 2 s; what its origin's acceleration makes felt stays.
+// The guide stops in its pose at 2 s; the effect of its origin's acceleration is kept.
 BOOST_AUTO_TEST_CASE(without_guide_rate_it_is_as_on_one_at_rest) {
   const Vector3<double> a(1, 2, 3);
   const UniformGravity<Inertial> gravity{{0.1, 0.2, -9.81}};
@@ -258,7 +259,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(oblate_gravitation)
 
-// The force is the gradient of the potential, and the sphere is GM/r^2.
+// The force is the gradient of the potential, and the sphere has GM/r^2.
 BOOST_DATA_TEST_CASE(has_a_potential, data::xrange(20u), seed) {
   test::Sample sample(seed);
   const OblateGravitation<> field;
@@ -281,8 +282,8 @@ BOOST_DATA_TEST_CASE(has_a_potential, data::xrange(20u), seed) {
   BOOST_TEST(near(sphere(p).norm(), 3.986004418e14 / p.squaredNorm(), 10.0, 8));
 }
 
-// Fields of gravity take a wheel for all the same however it is turned: the wheel as a rotor moves
-// its carrier as an ordinary body does. Of other loads nothing is known.
+// Fields of gravity treat a wheel alike at all its angles: the wheel as a rotor moves its carrier
+// like an ordinary body. Other loads may depend on the angle.
 BOOST_AUTO_TEST_CASE(gravitation_may_act_on_a_rotor) {
   const auto satellite = [](auto load, bool rotor) {
     BodyDescription carrier;

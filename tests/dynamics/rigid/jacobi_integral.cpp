@@ -26,10 +26,10 @@ InertiaTensor<Body> lopsided_body() {
 
 struct Drift {
   double largest;
-  double energy_exchanged;  ///< how far the kinetic energy runs meanwhile: what has to cancel
+  double energy_exchanged;  ///< range of the kinetic energy meanwhile: the part that must cancel
 };
 
-/// Of what the scene names, over 10 s.
+/// The drift of the scene's invariants over 10 s.
 template <class Scene, class KineticEnergy>
 Drift drift(const Scene& scene, const typename Scene::State& start, const std::string& name,
             const KineticEnergy& kinetic) {
@@ -57,7 +57,7 @@ constexpr auto of_body = [](const auto& body) {
       [&body](double t, const auto& state) { return body.body_outputs(t, state).kinetic_energy; };
 };
 
-// Steps held to 1e-13 drift by some 1e-12 of the energies that are exchanged.
+// Steps held to 1e-13 drift by some 1e-12 of the exchanged energies.
 void holds(const Drift& found) {
   BOOST_TEST(found.energy_exchanged > 0.1);
   BOOST_TEST(found.largest <= 1e-11 * found.energy_exchanged);

@@ -18,7 +18,7 @@ constexpr double u = std::numeric_limits<double>::epsilon() / 2;
 
 Vector3<double> vector(const Vec4d& a) { return {a[0], a[1], a[2]}; }
 
-/// Of a body with moments from 0.2 to 1 on any axes.
+/// A tensor of a body with moments from 0.2 to 1 on any axes.
 Symmetric3<double> random_tensor(test::Sample& sample) {
   const Matrix3<double> R = sample.rotation();
   const Vector3<double> moments(sample.uniform(0.2, 1), sample.uniform(0.2, 1),
@@ -57,7 +57,8 @@ BOOST_AUTO_TEST_CASE(recognise_a_body_of_revolution) {
   BOOST_TEST(T.along() == 3);
 }
 
-// By four roundings, and neighbours the other way, so that their difference moves by as much.
+// By four roundings, with neighbours in the opposite direction, so that their difference changes as
+// much.
 BOOST_AUTO_TEST_CASE(are_perturbed_by_ulps) {
   const detail::GeneralTensor T({2, 3, 4, 0, 0, 0});
   const detail::GeneralTensor moved = T.perturbed_by_ulps();
@@ -80,9 +81,9 @@ BOOST_AUTO_TEST_CASE(solve_linear_equations) {
         detail::PrincipalTensor<>({T.xx, T.yy, T.zz}));
     BOOST_TEST(vector(principal.solve(vec4d(detail::components(M)))) ==
                M.cwiseQuotient(Vector3<double>(T.xx, T.yy, T.zz)));
-    const detail::PackedTensor<detail::GeneralTensor> general{detail::GeneralTensor(T)};
-    const Vec4d w = general.solve(vec4d(detail::components(M)));
-    // Moments of 0.2 to 1 make at most 5 times as much of what is rounded.
+    const detail::TensorOfFour<detail::GeneralTensor> general{detail::GeneralTensor(T)};
+    const Four w = general.solve(four(detail::components(M)));
+    // Moments of 0.2 to 1 amplify rounding at most 5 times.
     BOOST_TEST((T.matrix() * vector(w) - M).norm() <= 5 * 8 * u * M.norm());
     BOOST_TEST(w[3] == 0);
   }

@@ -38,8 +38,8 @@ constexpr auto aircraft = [](const auto& t) {
                  Vector3<S>(S(60.0 * t), S(0.1 * sin(3.0 * t)), S(0.2 * sin(2.0 * t)))};
 };
 
-/// An engine of 150 kg on four mounts below its centre of mass, z down, drawn by `off` beside where
-/// the mounts are unloaded.
+/// An engine of 150 kg on four mounts below its centre of mass, z down, displaced by `off` from the
+/// position with unloaded mounts.
 template <class M>
 auto engine(M guide, double stiffness, const Vector3<double>& gravity = {0, 0, 9.81},
             const Vector3<double>& off = {0, 0, 0}) {
@@ -51,7 +51,7 @@ auto engine(M guide, double stiffness, const Vector3<double>& gravity = {0, 0, 9
     for (const double y : {-0.3, 0.3}) {
       const Vector3<double> foot(x, y, 0.25);
       const Vector3<double> k = stiffness * Vector3<double>(0.6, 0.7, 1);
-      // Preload by a quarter of the weight: at rest the engine sits where it was drawn.
+      // Preload by a quarter of the weight: at rest the engine is in its drawn position.
       mounts.push_back(
           {foot + off, foot, k.asDiagonal(), (0.005 * k).asDiagonal(), {0, 0, -150 * 9.81 / 4}});
     }
@@ -97,10 +97,10 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(small_oscillations)
 
-// f - C q' - K q is the force that the exact equations leave over when q'' = 0, to first order: its
-// difference quotients in each of the twelve variables. (At q'' other than 0 the exact equations have
-// products of q and q'' besides, the first-order part of the tensor.)
-BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearized) {
+// f - C q' - K q is the residual force of the exact equations at q'' = 0, to first order: its
+// difference quotients in each of the twelve variables. At other q'' the exact equations also
+// contain products of q and q'', the first-order part of the tensor.
+BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearised) {
   const auto linear = engine(posed(aircraft), 2e5, {0, 0, 9.81}, {0.002, -0.001, 0.003});
   const auto exact = linear.exact();
   using Linear = std::remove_const_t<decltype(linear)>;
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearized) {
   }
 }
 
-// A guide whose type says nothing gives them anew each time.
+// A guide of unknown type computes them anew each time.
 BOOST_AUTO_TEST_CASE(do_not_depend_on_the_guides_type) {
   const auto hold = [](const auto& guide, const Vector3<double>& gravity) {
     const auto hidden = [guide](double t) { return guide(t); };
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(err_by_the_square_of_the_motion) {
   BOOST_TEST(std::log2(whole.displacement / half.displacement) > 1.8);
 }
 
-// On an aircraft in a turn the engine follows, to the square of what it swings.
+// On an aircraft in a turn the engine follows, up to the square of its swing.
 BOOST_AUTO_TEST_CASE(describe_an_engine_on_an_aircraft) {
   const auto linear = engine(posed(aircraft), 2e5);
   const auto error = linear_error(linear, {}, 0, 1, 20);

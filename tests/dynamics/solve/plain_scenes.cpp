@@ -13,8 +13,9 @@
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/tree/body_system.hpp>
 
-/// The scenes that people write first: rest, right angles, tiny starts, light damping, one output.
-/// Right values are of scipy's DOP853 at two tolerances and of closed forms, unless said otherwise.
+/// The first scenes of many users: rest, right angles, tiny starts, light damping, one output.
+/// Reference values are from scipy's DOP853 at two tolerances and closed forms, unless stated
+/// otherwise.
 
 using namespace kreisel;
 
@@ -35,12 +36,12 @@ struct Case {
   double tolerance = 1e-10;
 };
 
-/// By the default method and by those that share no code with it.
+/// By the default method and by methods that share no code with it.
 const std::vector<Case> cases = {{Method::automatic},       {Method::taylor},
                                  {Method::verner98},        {Method::radau13},
                                  {Method::automatic, 1e-6}, {Method::automatic, 1e-13}};
 
-/// Holds the first angle at the outputs against what is right, to 1.2 of the error that is told.
+/// Compares the first angle at the outputs with the reference, within 1.2 of the reported error.
 template <class Scene>
 void check(const Scene& scene, const typename Scene::State& start, const std::vector<double>& times,
            const std::vector<double>& right, double digits) {
@@ -60,8 +61,8 @@ void check(const Scene& scene, const typename Scene::State& start, const std::ve
   }
 }
 
-/// Holds the evaluations of the default method against those of another one, and their first angles
-/// against each other.
+/// Compares the evaluations of the default method with those of another one, and their first
+/// angles.
 template <class Scene>
 void costs_at_most(double times, Method method, const Scene& scene,
                    const typename Scene::State& start, SolveOptions options) {
@@ -115,7 +116,7 @@ BOOST_AUTO_TEST_CASE(a_body_at_rest_stays_there) {
   }
 }
 
-// Right values: 60 digits of a Taylor series of order 60.
+// Reference values: 60 digits of a Taylor series of order 60.
 BOOST_AUTO_TEST_CASE(two_pendulums_released_horizontally) {
   auto upper = body({0, 1, 0}, 1, {0, 0, -1}, {0.1, 0.1, 0.1});
   auto lower = upper;
@@ -128,7 +129,7 @@ BOOST_AUTO_TEST_CASE(two_pendulums_released_horizontally) {
   check(scene, state, {4}, {-0.2634352815830}, 1e-12);
 }
 
-// Growth of a motion that is smaller than the error allowed is no error to be damped.
+// Growth of a motion below the allowed error is no error that may be damped.
 BOOST_AUTO_TEST_CASE(an_upright_pendulum_falls_by_every_method) {
   const BodySystem scene(RestingFrame<>{}, {body({0, 1, 0}, 1, {0, 0, 1}, {0.1, 0.1, 0.1})},
                          UniformGravity<Guide>{{0, 0, -g}});
@@ -149,8 +150,8 @@ BOOST_AUTO_TEST_CASE(an_upright_pendulum_falls_by_every_method) {
   }
 }
 
-// The sizes by which errors count are those of the whole way, not of outputs alone: this sledge is at
-// rest at its only output, after 1000 m/s.
+// The reference sizes of errors are those of the whole motion, not of the outputs alone. This
+// sledge is at rest at its only output, after 1000 m/s.
 BOOST_AUTO_TEST_CASE(the_report_does_not_depend_on_outputs) {
   auto sledge = body({1, 0, 0}, 1, {0, 0, 0}, {1, 1, 1});
   sledge.joint.kind = JointKind::prismatic;
@@ -180,8 +181,8 @@ BOOST_AUTO_TEST_CASE(the_report_does_not_depend_on_outputs) {
   }
 }
 
-// A pendulum that passes its lowest point at its only output, and a body that falls back to where it
-// was thrown from.
+// A pendulum that passes its lowest point at its only output, and a body that falls back to its
+// start.
 BOOST_AUTO_TEST_CASE(closed_forms_do_not_depend_on_outputs) {
   const auto check_end = [](const auto& scene, const auto& start, double end) {
     std::vector<double> often;
@@ -208,7 +209,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_do_not_depend_on_outputs) {
   check_end(flies, thrown, 2 * 1000 / g);
 }
 
-// A mode of 1e5 rad/s that is damped away, by ratios down to 1e-3, before the first output.
+// A mode of 1e5 rad/s that decays before the first output, with damping ratios down to 1e-3.
 BOOST_AUTO_TEST_CASE(lightly_damped_modes_cost_no_more) {
   auto outer = body({1, 0, 0}, 0.5, {0, 0, 0}, {0.006, 0.0045, 0.005});
   outer.forces = {{.stiffness = 2, .damping = 0.001}};
@@ -232,8 +233,8 @@ BOOST_AUTO_TEST_CASE(lightly_damped_modes_cost_no_more) {
   }
 }
 
-// A gyrocompass of 2400 rad/s: it nutates at 2446 rad/s, which a damper takes away at 2.5 per second.
-// Each output is 10 s after the one before.
+// A gyrocompass of 2400 rad/s. It nutates at 2446 rad/s, and a damper removes the nutation at 2.5
+// per second. Outputs are 10 s apart.
 BOOST_AUTO_TEST_CASE(damped_nutations_need_not_be_resolved) {
   auto ring = body({1, 0, 0}, 0.2, {0, 0, 0}, {2e-3, 1e-3, 1e-3});
   auto housing = body({0, 1, 0}, 0.5, {0.005, 0, 0}, {1e-3, 1e-3, 1e-3});
@@ -253,8 +254,8 @@ BOOST_AUTO_TEST_CASE(damped_nutations_need_not_be_resolved) {
   costs_at_most(2, Method::radau13, scene, state, options);
 }
 
-// A round wheel of 1000 rad/s in a gimbal, as a joint like others: of what cancels but for rounding,
-// terms of order 20 make much.
+// A round wheel of 1000 rad/s in a gimbal, as an ordinary joint: terms of order 20 amplify
+// quantities that cancel up to rounding.
 BOOST_AUTO_TEST_CASE(a_fast_round_wheel_costs_no_more_by_series) {
   auto rod = body({0, 1, 0}, 1, {0, 0, -1}, {0.1, 0.1, 0.1});
   auto gimbal = body({1, 0, 0}, 1, {0, 0, 0}, {0.1, 0.2, 0.15});

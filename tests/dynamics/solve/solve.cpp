@@ -44,7 +44,7 @@ std::vector<double> every(double step, double end) {
   return times;
 }
 
-/// The true error of a trajectory by the measure that solve() reports in.
+/// The true error of a trajectory in the measure of solve()'s report.
 template <class Truth>
 double true_error(const Trajectory<EulerTop::State>& found, const Truth& truth) {
   detail::ErrorMeasure<EulerTop> distance(1e-3);
@@ -58,12 +58,12 @@ double true_error(const Trajectory<EulerTop::State>& found, const Truth& truth) 
   return worst;
 }
 
-/// Counts how honest estimates are.
+/// Statistics of true errors over estimates.
 struct Honesty {
   int runs = 0;
   int within = 0;  ///< true / estimate in [0.1, 1]
   double greatest = 0;
-  double dearest = 0;  ///< evaluations, of those of the run that is returned, to 1e-12 and above
+  double dearest = 0;  ///< greatest evaluations over those of the returned run, for 1e-12 and above
   bool promises_kept = true;
 
   void note(const RunReport& report, double error) {
@@ -81,7 +81,8 @@ struct Honesty {
 
 BOOST_AUTO_TEST_SUITE(the_solver)
 
-// Against closed forms: free tops of all kinds and Lagrange's tops, from loose to the tightest.
+// Against closed forms: free tops of all kinds and Lagrange's tops, from coarse to the finest
+// tolerances.
 void tells_its_error_honestly(Method method) {
   Honesty honesty;
   for (unsigned seed = 0; seed < 20; ++seed) {
@@ -106,7 +107,8 @@ void tells_its_error_honestly(Method method) {
   BOOST_TEST_MESSAGE(name(method) << ": " << honesty.within << " of " << honesty.runs
                                   << " in [0.1, 1], greatest " << honesty.greatest << ", dearest "
                                   << honesty.dearest);
-  // Where the first pair misses, a second one in finer steps beside three cheap runs: 5.32 measured.
+  // If the first pair misses, a second one with finer steps runs beside three coarse ones: 5.32
+  // measured.
   BOOST_TEST(honesty.dearest <= 5.5);
   BOOST_TEST(honesty.within >= 0.95 * honesty.runs);
   BOOST_TEST(honesty.greatest <= 3);
@@ -115,7 +117,7 @@ void tells_its_error_honestly(Method method) {
 BOOST_AUTO_TEST_CASE(reports_its_error_by_stages) { tells_its_error_honestly(Method::verner98); }
 BOOST_AUTO_TEST_CASE(reports_its_error_by_series) { tells_its_error_honestly(Method::taylor); }
 
-// Bodies on guides that move steadily know their series; held against steps that do not.
+// Bodies on steadily moving guides have series; compared with steps that do not use them.
 BOOST_AUTO_TEST_CASE(uses_the_series_if_the_scene_has_one) {
   const Matrix3<double> Theta = Vector3<double>(0.25, 0.27, 0.06).asDiagonal();
   const FixedPointBody body(InertiaTensor<Body>::about_origin(2, {0, 0, -0.3}, Theta), {0, 0, 1},
@@ -145,8 +147,8 @@ BOOST_AUTO_TEST_CASE(uses_the_series_if_the_scene_has_one) {
 }
 
 // A pair of runs costs 1 + 10^(1/9) = 2.29 of the coarser one, or more by a rejected step and the
-// steps that end at the middle, and three at 1e-3 in place of 1e-10 cost 3 10^(-7/9) = 0.5; outputs cost
-// ten evaluations in each step that has some, and none where the steps are series.
+// steps that end at the middle. Three at 1e-3 in place of 1e-10 cost 3 10^(-7/9) = 0.5. Outputs
+// cost ten evaluations in each step with outputs, and none if the steps are series.
 BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   const EulerTop top({1, 1.7, 2.4});
   const EulerTop::State start{tilted, {1, 2, 3}};
@@ -169,9 +171,9 @@ BOOST_AUTO_TEST_CASE(costs_little_more_than_the_run_alone) {
   BOOST_TEST(many.all_evaluations <= 26.0 / 16 * 1.02 * few.all_evaluations);
 }
 
-// Where the error comes out too great, the finer run takes over: a long way costs little more than
-// the pair that stands, 3.07 times the answer, and 0.76 to know what rounding grows to in both. This
-// top errs by some 30 times what a step may.
+// If the error is too great, the finer run takes over. A long run then costs little more than the
+// accepted pair, 3.07 times the answer. The growth of rounding costs 0.76 in both. This top errs by
+// some 30 times the bound of a step.
 BOOST_AUTO_TEST_CASE(continues_from_the_finer_run) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
   const Vector3<double> w(0, 0, 100);
@@ -184,7 +186,7 @@ BOOST_AUTO_TEST_CASE(continues_from_the_finer_run) {
   BOOST_TEST(run.report.all_evaluations <= 4 * run.report.effort.evaluations);
 }
 
-// Near the separatrix an error grows by 1e3 and more; the promise is on the whole run all the same.
+// Near the separatrix an error grows by 1e3 and more; the tolerance still holds for the whole run.
 BOOST_AUTO_TEST_CASE(keeps_its_tolerance_if_errors_grow) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const EulerTop top({1, 2, 3});
@@ -200,8 +202,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_tolerance_if_errors_grow) {
   BOOST_TEST(run.report.error_estimate <= 1e-8);
 }
 
-// The same by the closed form, which is what is taken unless steps are asked for: no evaluations, and
-// the last digits.
+// The same by the closed form, which is the default: no evaluations, and the last digits.
 BOOST_AUTO_TEST_CASE(uses_the_closed_form_if_it_exists) {
   const Vector3<double> w(1e-3, 2, 1e-3);
   const auto check = [](const EulerTop& top, const Vector3<double>& start, const auto& truth) {
@@ -217,7 +218,7 @@ BOOST_AUTO_TEST_CASE(uses_the_closed_form_if_it_exists) {
         exact::SymmetricGyrostat(2, 3, 0.5, w, tilted));
   check(EulerTop({1, 2, 2.5}, {0, 0, 0}, {0, 0.5, 0}), w,
         exact::Gyrostat({1, 2, 2.5}, {0, 0.5, 0}, w, tilted));
-  // Begun at another time, the same motion later.
+  // Started at another time: the same motion later.
   const EulerTop top({1, 2, 3});
   const auto later = solve(top, {tilted, w}, {.begin = 1000, .output_times = {1010}});
   const auto now = solve(top, {tilted, w}, {.output_times = {10}});
@@ -254,7 +255,8 @@ BOOST_AUTO_TEST_CASE(reports_the_error_of_closed_forms) {
   BOOST_TEST(honesty.greatest <= 1);
 }
 
-// Where double precision ends, the best there is comes back, and says that it is not what was asked.
+// At the limit of double precision the best result is returned, with a report that it misses the
+// tolerance.
 BOOST_AUTO_TEST_CASE(reports_a_missed_tolerance) {
   const Vector3<double> w(1e-5, 2, 1e-5);
   const EulerTop top({1, 2, 3});
@@ -324,7 +326,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_cancelled) {
   BOOST_TEST(run.states.size() == 30U);
 }
 
-// A load that has no value after 3 s.
+// A load without a value after 3 s.
 BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_it_fails) {
   const auto broken = [](const LoadContext<>& s) {
     const double none = std::numeric_limits<double>::quiet_NaN();
@@ -339,7 +341,7 @@ BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_it_fails) {
   BOOST_TEST(run.states.size() == 3U);
 }
 
-// A fast top whose weight does not lie on its axis: no closed form.
+// A fast top whose weight is not on its axis: no closed form.
 BOOST_AUTO_TEST_CASE(splits_fast_tops) {
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0.02, 0, 0.045});
   const EulerTop::State start{tilted, {0, 0, 3000}};
@@ -385,7 +387,7 @@ BOOST_AUTO_TEST_CASE(changes_the_method_for_a_stiff_field) {
   }
 }
 
-/// Follows the cosine, ever closer: y' = -exp(3t) (y - cos t) - sin t.
+/// A follower of the cosine, ever stiffer: y' = -exp(3t) (y - cos t) - sin t.
 struct Follower {
   template <class S>
   using One = Eigen::Matrix<S, 1, 1>;
@@ -417,7 +419,7 @@ BOOST_AUTO_TEST_CASE(changes_the_method_on_the_way) {
   }
 }
 
-/// An oscillation about 0 that may not leave a circle.
+/// An oscillation about 0 that must not leave a circle.
 struct Walled {
   using Vector = Eigen::Matrix<double, 2, 1>;
   struct State {
@@ -439,8 +441,8 @@ struct Walled {
   [[nodiscard]] static State from_vector(const Vector& y) { return {y[0], y[1]}; }
 };
 
-// The runs that tell what rounding grows to err by more than the answer, and may go where it does not:
-// what is thrown there is no fault of the answer.
+// The companion runs for the growth of rounding have larger errors than the answer and may leave
+// the field. Their exceptions do not affect the answer.
 BOOST_AUTO_TEST_CASE(tolerates_failing_companion_runs) {
   const Walled scene{.wall = 1 + 1e-4};
   const auto found = solve(scene, {1, 0}, {.output_times = {5, 10}, .tolerance = 1e-11});
@@ -451,8 +453,8 @@ BOOST_AUTO_TEST_CASE(tolerates_failing_companion_runs) {
                     std::domain_error);
 }
 
-// Moments of which one is 1e-5 of the others leave the rates fewer digits than the state has: the
-// run beside begins with a body that is last digits another.
+// One moment is 1e-5 of the others, so that the rates have fewer digits than the state. The
+// companion run starts with a body that differs in its last digits.
 BOOST_AUTO_TEST_CASE(reports_the_effect_of_rounded_inertia) {
   const Vector3<double> moments(1, 1, 1e-5), w(1, 2, 3);
   const Matrix3<double> Theta = moments.asDiagonal();
@@ -466,7 +468,7 @@ BOOST_AUTO_TEST_CASE(reports_the_effect_of_rounded_inertia) {
              found.report.error_estimate);
 }
 
-// Undamped, the same bearing is an oscillation: it is resolved, not damped.
+// Without damping the same bearing oscillates: the oscillation is resolved, not damped.
 BOOST_AUTO_TEST_CASE(resolves_undamped_fast_motions) {
   const CardanMoments moments{
       .rotor = {5e-4, 5e-4, 8e-4}, .inner_ring = {2e-4, 3e-4, 2.5e-4}, .outer_ring = {4e-4, 1, 1}};
@@ -483,8 +485,8 @@ BOOST_AUTO_TEST_CASE(resolves_undamped_fast_motions) {
   BOOST_TEST(by_stages.report.tolerance_kept);
 }
 
-// In a bearing that is hardly stiff the last digits of implicit steps are worse than those of explicit
-// ones, which stability makes dearer, but not by much.
+// In a moderately stiff bearing the last digits of implicit steps are worse than those of explicit
+// ones. Stability makes explicit steps only a little more expensive.
 BOOST_AUTO_TEST_CASE(prefers_explicit_steps_for_last_digits) {
   const CardanMoments moments{.rotor = {5e-4, 5e-4, 8e-4},
                               .inner_ring = {2e-4, 3e-4, 2.5e-4},
@@ -512,7 +514,7 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_on_request) {
   BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
 }
 
-// All steps end at the outputs, and between near ones two runs might be the same.
+// All steps end at the outputs; between near outputs two runs might have the same steps.
 BOOST_AUTO_TEST_CASE(reports_fixed_step_errors_at_near_outputs) {
   const double A = 3e-4, C = 1e-4, k = 0.04905;
   const EulerTop top({A, A, C}, {0, 0, k});
@@ -526,7 +528,7 @@ BOOST_AUTO_TEST_CASE(reports_fixed_step_errors_at_near_outputs) {
   }
 }
 
-// One output a billionth of the run before another: as many steps as each interval needs.
+// Two outputs are a billionth of the run apart: each interval gets the steps that it needs.
 BOOST_AUTO_TEST_CASE(takes_fixed_steps_to_uneven_outputs) {
   const EulerTop top({1, 2, 3});
   const EulerTop::State start{tilted, {1, 2, 3}};
@@ -539,7 +541,7 @@ BOOST_AUTO_TEST_CASE(takes_fixed_steps_to_uneven_outputs) {
   BOOST_TEST(true_error(found, truth) <= found.report.error_estimate);
 }
 
-// 1e-14 beside the separatrix steps of any length round the same digits away.
+// At 1e-14 from the separatrix steps of any length lose the same digits by rounding.
 BOOST_AUTO_TEST_CASE(reports_the_growth_of_rounding) {
   const Vector3<double> w(std::sqrt(2.0) * (1 + 1e-14), 1.5, 1);
   const EulerTop top({2, 3, 4});
@@ -554,9 +556,8 @@ BOOST_AUTO_TEST_CASE(reports_the_growth_of_rounding) {
   }
 }
 
-// Rings without mass 1e-8 rad from gimbal lock, where the last digit of beta is worth 1e-8 of the
-// rate of alpha: by chance alone, pairs of runs would promise in a third of all cases what neither
-// of them keeps.
+// Massless rings 1e-8 rad from gimbal lock, where the last digit of beta changes the rate of alpha
+// by 1e-8. Two runs agree by chance in a third of all cases, for tolerances that neither keeps.
 BOOST_AUTO_TEST_CASE(detects_chance_agreement_near_gimbal_lock) {
   using Gyro = CardanGyro<RestingFrame<>>;
   using LongVector = Eigen::Matrix<long double, 6, 1>;
@@ -572,7 +573,7 @@ BOOST_AUTO_TEST_CASE(detects_chance_agreement_near_gimbal_lock) {
         .beta = std::numbers::pi / 2 - 1e-8 * (1 + 0.1 * i), .alpha_rate = 0.3, .phi_rate = 100};
     ExplicitRungeKutta<LongVector, decltype(field)> steps(
         field, 0.0L, Gyro::to_vector(start).cast<long double>(), {.relative = 1e-15}, Gyro::blocks);
-    std::vector<Gyro::Vector> way;  // by whose sizes errors are measured
+    std::vector<Gyro::Vector> way;  // reference sizes of errors
     for (int k = 1; k <= 100; ++k) way.push_back(steps.advance_to(end * k / 100).cast<double>());
     const Gyro::Vector truth = way.back();
     for (const Method method : {Method::automatic, Method::radau13}) {
@@ -592,8 +593,9 @@ BOOST_AUTO_TEST_CASE(detects_chance_agreement_near_gimbal_lock) {
   BOOST_TEST(broken * 10 <= kept, broken << " of " << kept << " promises broken");
 }
 
-// Heavy tops without symmetry tumble irregularly: what steps err by grows by 1e3 and more, they have to
-// be as fine as rounding, and two runs may agree by chance: 40 of 800 would err by more than they tell.
+// Heavy asymmetric tops move chaotically: errors of steps grow by 1e3 and more, and must be as
+// small as rounding. Two runs may agree by chance: without a test 40 of 800 would exceed their
+// reported error.
 BOOST_AUTO_TEST_CASE(reports_its_error_in_chaotic_motion) {
   using LongVector = Eigen::Matrix<long double, 7, 1>;
   const std::vector<double> times = every(7, 70);
@@ -653,8 +655,8 @@ BOOST_AUTO_TEST_CASE(reports_its_error_in_chaotic_motion) {
   BOOST_TEST(broken * 100 <= runs);
 }
 
-// Tops that turn about their middle axis but for 1e-1 to 1e-6: rounding has grown to some 1e-10, and a
-// tolerance of 1e-14 is out of reach. Two runs agree by chance in 20 of 159 cases.
+// Tops that turn about their middle axis, perturbed by 1e-1 to 1e-6. Rounding has grown to some
+// 1e-10, so that a tolerance of 1e-14 is out of reach. Two runs agree by chance in 20 of 159 cases.
 BOOST_AUTO_TEST_CASE(reports_grown_rounding) {
   test::Sample sample(7);
   int runs = 0;
@@ -686,9 +688,9 @@ BOOST_AUTO_TEST_CASE(reports_grown_rounding) {
   BOOST_TEST(beyond * 20 <= runs);
 }
 
-// Bodies that turn about their middle axis but for 1e-4: what rounding grows to, some 1e-8, is more than
-// what steps err by, and about the tolerance. Were it not looked for, 29 of 312 promises would be
-// broken, for two runs agree by chance.
+// Bodies that turn about their middle axis, perturbed by 1e-4. Rounding grows to some 1e-8, which
+// exceeds the truncation error and is about the tolerance. Without its estimate 29 of 312 promises
+// would be broken, because two runs agree by chance.
 BOOST_AUTO_TEST_CASE(keeps_its_tolerance_if_rounding_grows) {
   const EulerTop top({1, 2, 3});
   const FixedPointBody body(
@@ -728,8 +730,8 @@ BOOST_AUTO_TEST_CASE(keeps_its_tolerance_if_rounding_grows) {
   BOOST_TEST(broken * 100 <= kept);
 }
 
-// A top that does not nutate, though it could: of 3000 rad/s, which nothing but stability has the steps
-// follow. Cheap ones that are shaken go ways of their own there, 1e5 times too far for rounding.
+// A top of 3000 rad/s that could nutate but does not: only stability limits its steps. Coarse
+// perturbed runs are unstable here, with deviations 1e5 times those of rounding.
 BOOST_AUTO_TEST_CASE(ignores_instability_of_coarse_steps) {
   const AxisymmetricBody top(0.1, 0.05, 3e-4, 1e-4, {0, 0, 0}, RestingFrame<>{},
                              UniformGravity<Guide>{{0, 0, -9.81}});
@@ -745,8 +747,8 @@ BOOST_AUTO_TEST_CASE(ignores_instability_of_coarse_steps) {
   }
 }
 
-// Ten times finer steps err by a tenth. By much more it is rounding, and by much less rounding too, of
-// which two runs agree by chance; of an error as great as the motion nothing is known.
+// Ten times finer steps have a tenth of the error. A much larger or smaller ratio is rounding; two
+// runs may agree by chance. If the error is as large as the motion, nothing is known about it.
 BOOST_AUTO_TEST_CASE(recognises_rounding_by_its_order) {
   const SolveOptions options{.output_times = {1}, .tolerance = 1e-8};
   const detail::AdaptiveRuns runs(options);
@@ -761,8 +763,8 @@ BOOST_AUTO_TEST_CASE(recognises_rounding_by_its_order) {
   BOOST_TEST((judged(0, 1e-12) == std::pair(false, false)));
 }
 
-// A tolerance of 1e-6 is about what rounding has grown to. Pairs that are tried until two agree do so in
-// the end: 24 of 50 runs erred by more than they told, by up to 24 times as much.
+// A tolerance of 1e-6 is about the grown rounding. Pairs that repeat until two agree will agree at
+// last: 24 of 50 runs then exceeded their reported error, by up to 24 times.
 BOOST_AUTO_TEST_CASE(does_not_repeat_until_runs_agree) {
   const EulerTop top({1, 2, 3});
   int beyond = 0;
@@ -783,8 +785,8 @@ BOOST_AUTO_TEST_CASE(does_not_repeat_until_runs_agree) {
   BOOST_TEST(beyond <= 6);
 }
 
-// What each step errs by adds up with the square of time, what is rounded hardly does: at 4e-16 a step
-// this top erred by 1.4e-10 in the end.
+// Truncation errors add up with the square of time, rounding errors hardly do. At 4e-16 a step this
+// top erred by 1.4e-10 in the end.
 BOOST_AUTO_TEST_CASE(refines_steps_below_rounding_in_long_runs) {
   const Vector3<double> w(0.2, 0.1, 5);
   const auto run =
@@ -797,8 +799,8 @@ BOOST_AUTO_TEST_CASE(refines_steps_below_rounding_in_long_runs) {
   BOOST_TEST(run.report.error_estimate <= 3e-10);
 }
 
-// Over many steps the start of the run beside is moved by what rounding takes; what that grows to had
-// hidden half of what Radau's steps err by at their finest: 6e-12 after 3000 rad, told as 3e-12.
+// Over many steps the companion run's start is moved by the rounding. The growth of that had hidden
+// half of the error of Radau's finest steps: 6e-12 after 3000 rad, reported as 3e-12.
 BOOST_AUTO_TEST_CASE(separates_truncation_from_rounding) {
   const Vector3<double> w(1, -2, 300);
   const EulerTop top({3e-4, 3e-4, 1e-4}, {0, 0, 0.04905});
@@ -813,7 +815,7 @@ BOOST_AUTO_TEST_CASE(separates_truncation_from_rounding) {
   BOOST_TEST(error <= run.report.error_estimate);
 }
 
-// Errors are relative to sizes, and the size of a quaternion means nothing.
+// Errors are relative to sizes, and the size of a quaternion has no meaning.
 BOOST_AUTO_TEST_CASE(accepts_attitudes_of_any_norm) {
   const EulerTop top({1, 2, 3});
   const Vector3<double> w(1, 2, 3);
@@ -838,7 +840,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_limit_of_evaluations) {
   }
 }
 
-// A start whose squares leave the range of double.
+// A start whose squares exceed the range of double.
 BOOST_AUTO_TEST_CASE(normalises_attitudes_of_extreme_norm) {
   detail::ErrorMeasure<EulerTop> distance(1e-3);
   const EulerTop::State a{Eigen::Quaterniond(1, 0, 0, 0), {1, 2, 3}};
@@ -859,7 +861,8 @@ BOOST_AUTO_TEST_CASE(refuses_unsuitable_methods) {
       (void)solve(free, start,
                   {.output_times = {1}, .discontinuities = {0.5}, .method = Method::gauss16}),
       InvalidInput);
-  // No closed form: not symmetric, weight aside of the axis or below, a rotor aside or under weight.
+  // No closed form: not symmetric, weight off the axis or below, a rotor off the axis or under
+  // weight.
   for (const EulerTop& top :
        {EulerTop({1, 2, 3}, {0, 1, 1}), EulerTop({1, 1, 1.5}, {0, 1, 1}),
         EulerTop({1, 1, 1.5}, {0, 0, -1}), EulerTop({1, 2, 3}, {0, 0, 0}, {0, 1, 1}),

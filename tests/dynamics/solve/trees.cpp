@@ -17,7 +17,7 @@
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
-/// Trees of bodies, whose states have a size known at run time only.
+/// Trees of bodies, whose states have a size known only at run time.
 
 using namespace kreisel;
 
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(solves_trees_of_bodies) {
   }
 }
 
-// A tree in which nothing can move has states without a number, which no method minds.
+// A tree in which nothing can move has an empty state, which all methods accept.
 BOOST_AUTO_TEST_CASE(solves_trees_without_motion) {
   const InertiaTensor<Body> block{{2, {0, 0, -1}, {2.6, 2.6, 0.1}}};
   const BodySystem system(RestingFrame<>{}, {{.name = "block", .inertia = block}},
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(solves_trees_without_motion) {
   }
 }
 
-// The Cardan gyro with the stiff bearing once more, as three bodies.
+// The Cardan gyro with the stiff bearing again, as three bodies.
 BOOST_AUTO_TEST_CASE(changes_the_method_for_stiff_trees) {
   const Vector3<double> rotor(5e-4, 5e-4, 8e-4), inner(2e-4, 3e-4, 2.5e-4), outer(4e-4, 1, 1);
   const auto body = [](const char* name, const char* parent, const Vector3<double>& axis,
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(changes_the_method_for_stiff_trees) {
             {.stiffness = stiffness, .rest = 0.3, .damping = 2e-3 * stiffness}),
        body("rotor", "inner ring", {0, 0, 1}, rotor, {})});
   auto start = system.rest();
-  start.coordinates[1] = 0.3;  // where the gyro's angle begins to count
+  start.coordinates[1] = 0.3;  // where the gyro's angle is 0
   start.rates << 0.5, 0, 500;
   const SolveOptions options{.output_times = {0.5, 1, 1.5, 2}, .tolerance = 1e-9};
   const auto as_bodies = solve(system, start, options);
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(changes_the_method_for_stiff_trees) {
   }
 }
 
-// Random trees against finer steps of another kind. The error that is told is that of the steps.
+// Random trees against finer steps of another method. The reported error is that of the steps.
 BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
   using Scene = BodySystem<RestingFrame<>>;
   int runs = 0;
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
     auto start = system.rest();
     for (double& q : start.coordinates) q += sample.uniform(-0.5, 0.5);
     for (double& v : start.rates) v = sample.uniform(-1, 1);
-    // So often that the sizes by which errors count, those of all steps, are those of the outputs.
+    // So often that the reference sizes, those of all steps, equal those of the outputs.
     SolveOptions options{.output_times = {}, .tolerance = 1e-13, .method = Method::verner98};
     for (int i = 0; i <= 200; ++i) options.output_times.push_back(0.01 * i);
     const auto truth = solve(system, start, options);
@@ -145,7 +145,7 @@ namespace {
 
 using Resting = BodySystem<RestingFrame<>>;
 
-/// Of coordinates or rates, by their size.
+/// Distance of coordinates or rates, relative to their size.
 double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).lpNorm<Eigen::Infinity>() / std::max(1.0, b.lpNorm<Eigen::Infinity>());
 }
@@ -169,8 +169,8 @@ const Gravity weight = UniformGravity<Guide>{{0, 0, -9.81}};
 
 }  // namespace
 
-// Against steps, which know nothing of it. Steps take the tensor about an axis and the arm as rounded:
-// 1e-13 are 100 such roundings of the angles turned through.
+// Against steps without a closed form. They use the tensor about an axis and the arm as rounded:
+// 1e-13 is 100 such roundings of the total angle.
 BOOST_AUTO_TEST_CASE(recognises_pendulums_and_tops) {
   test::Sample sample(11);
   const auto vector = [&sample] {
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(recognises_pendulums_and_tops) {
           1.3, vector(), 2 * Matrix3<double>::Identity() - 0.3 * a * a.transpose());
     } else if (kind == JointKind::free) {
       body.joint.orientation = attitude();
-    } else {  // Lagrange's top, upright and hanging down; Euler's, as nothing pulls
+    } else {  // Lagrange's top, upright and hanging; Euler's, if no load acts
       const double arm = i % 8 == 2 ? 0.5 : -0.5;
       body.inertia = InertiaTensor<Body>::about_origin(1.3, {0, 0, arm},
                                                        Vector3<double>(1.5, 1.5, 0.7).asDiagonal());
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(uses_steps_for_other_systems) {
   using enum JointKind;
   const RestingFrame<> still;
   const InertiaTensor<Body> rod{{1, {0.3, 0, 0}, {0.1, 0.2, 0.2}}};
-  BOOST_TEST(!by_steps(one(revolute, rod), still));  // which this is all about
+  BOOST_TEST(!by_steps(one(revolute, rod), still));  // the subject of this test
   BodyDescription other = one(revolute, rod);
   other.forces = {{.stiffness = 1}};
   BOOST_TEST(by_steps(other, still));
@@ -249,7 +249,7 @@ BOOST_AUTO_TEST_CASE(uses_steps_for_other_systems) {
   other = one(revolute, rod);
   other.loads = {ConstantLoad<Body>{{0, 0, 1}}};
   BOOST_TEST(by_steps(other, still));
-  BOOST_TEST(by_steps(one(revolute, rod), still, {}));  // nothing pulls
+  BOOST_TEST(by_steps(one(revolute, rod), still, {}));  // no load acts
   BOOST_TEST(by_steps(one(revolute, rod), RotatingFrame<>{{0, 0, 0.1}}));
   BOOST_TEST(by_steps(one(prismatic, rod), still));
   BOOST_TEST(by_steps(one(free, rod), still));  // the centre of mass is not at the origin
@@ -285,7 +285,7 @@ BOOST_AUTO_TEST_CASE(follows_a_pendulum_for_any_time) {
   BOOST_TEST(off <= 1e-9);  // of 9.81/0.6 as rounded
 }
 
-// From whichever output, of whichever attempt: the same states and the same report.
+// From any output of any run: the same states and the same report.
 BOOST_AUTO_TEST_CASE(continues_from_a_checkpoint_exactly) {
   const InertiaTensor<Body> bob{{2, {0, 0, -1}, {0.6, 0.6, 0.1}}};
   const BodyDescription swinging{

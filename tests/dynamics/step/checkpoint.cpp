@@ -34,7 +34,7 @@ void set(const std::vector<double>& numbers) {
 
 BOOST_AUTO_TEST_SUITE(a_checkpoint)
 
-// Sizes first, then what there is of numbers; other sizes are those of another run.
+// First the number of values, then the values; other numbers of values belong to another run.
 BOOST_AUTO_TEST_CASE(restores_its_numbers_and_refuses_others) {
   Checkpoint taken;
   Numbers from;

@@ -32,7 +32,7 @@ bool starts_with(const Error& e, const std::string& words) {
 
 BOOST_AUTO_TEST_SUITE(cvode_steps)
 
-// bdf, of order 5 at most, is not made for the last line.
+// bdf, of order 5 at most, is not suitable for the last line.
 BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     for (const CvodeMethod method : methods) {
@@ -51,7 +51,7 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_there_and_back) {
   }
 }
 
-// y' = -k (y - cos t) - sin t leads back to cos t. Explicit steps are limited by stability to 1/k.
+// y' = -k (y - cos t) - sin t has the solution cos t. Stability limits explicit steps to 1/k.
 BOOST_AUTO_TEST_CASE(ignore_stiffness_by_bdf) {
   for (const double k : {1e3, 1e6, 1e9}) {
     const auto field = [k](const auto& t, const auto& y) {
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(ignore_stiffness_by_bdf) {
   }
 }
 
-// y'' + k y' + k y = 0: the Jacobian is not symmetric, and the transposed one would not do.
+// y'' + k y' + k y = 0: the Jacobian is not symmetric, so that its transpose would fail.
 BOOST_AUTO_TEST_CASE(follow_the_slow_part_of_a_stiff_pair) {
   constexpr double k = 1e6;
   const auto field = [](const auto& /*t*/, const auto& y) {
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(pass_on_exceptions_of_the_field) {
   }
 }
 
-// A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
+// A block of 1e-9 beside one of 1: its error is measured relative to its own size, if requested.
 BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   const auto field = [](double, const State<4>& y) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);

@@ -67,7 +67,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(jumps_of_the_field)
 
-// A thrust of 1 from t = 1 on: y = (t - 1)^2 / 2. Told of the jump, the steps lose nothing by it.
+// A thrust of 1 from t = 1 on: y = (t - 1)^2 / 2. The declared discontinuity costs the steps no
+// accuracy.
 BOOST_AUTO_TEST_CASE(cost_nothing_if_declared) {
   const auto thrust = [](double t, const State& y) { return State(y[1], t < 1 ? 0 : std::cos(t)); };
   const auto run = [&](bool told) {
@@ -85,7 +86,7 @@ BOOST_AUTO_TEST_CASE(cost_nothing_if_declared) {
   BOOST_TEST(told_cost < cost / 2);
 }
 
-// A pulse of 1 ms in 100 s would be stepped over.
+// A step would miss a pulse of 1 ms in 100 s.
 BOOST_AUTO_TEST_CASE(are_not_stepped_over) {
   const auto pulse = [](double t, const State& y) {
     return State(y[1], t >= 50 && t < 50.001 ? 1000 : 0);
@@ -126,7 +127,7 @@ BOOST_AUTO_TEST_CASE(count_in_the_given_direction) {
   BOOST_TEST(near(*advance_to_event(steps, height, 100, Crossing::falling), 3 * pi, 10.0, 64));
 }
 
-// g = 0 at the start is no event; nor does the end of the run hide one before it.
+// g = 0 at the start is no event; the end of the run hides no event before it.
 BOOST_AUTO_TEST_CASE(do_not_count_the_start) {
   auto steps = turning();
   const auto height = [](double, const State& y) { return y[1]; };
@@ -135,7 +136,7 @@ BOOST_AUTO_TEST_CASE(do_not_count_the_start) {
   BOOST_TEST(advance_to_event(steps, height, 3.2).has_value());
 }
 
-// Two crossings in one step of a polynomial, which steps as far as it likes.
+// Two crossings in one step of a polynomial, whose steps are arbitrarily long.
 BOOST_AUTO_TEST_CASE(are_both_found_in_one_step) {
   const auto clock = [](double, const State&) { return State(1, 0); };
   ExplicitRungeKutta steps(clock, 0.0, State(0, 0));

@@ -25,7 +25,7 @@ using State = Eigen::Matrix<double, n, 1>;
 /// A circle of period 2 pi, entered at angle 0.
 State<2> circle(double /*t*/, const State<2>& y) { return {-y[1], y[0]}; }
 
-/// The error after a turn of the circle in steps held to `tolerance`, and what they cost.
+/// The error after a turn of the circle in steps held to `tolerance`, and their cost.
 struct Turn {
   double error, evaluations;
 };
@@ -48,8 +48,8 @@ BOOST_AUTO_TEST_CASE(have_rows_that_sum_to_the_nodes) {
   }
 }
 
-// Quadrature of powers, the order conditions of a field that depends on time alone; the embedded
-// weights are of order 8, so for t^8 they must be wrong, or the estimate were always 0.
+// Quadrature of powers: the order conditions of a field that depends on time alone. The embedded
+// weights have order 8. For t^8 they must be wrong, or the estimate would always be 0.
 BOOST_AUTO_TEST_CASE(integrate_powers_of_time) {
   for (int power = 0; power < 9; ++power) {
     long double ninth = 0;
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time) {
   }
 }
 
-// sum b_i a_ij c_j^k = 1/((k+1)(k+2)): what ties b, a and c together.
+// sum b_i a_ij c_j^k = 1/((k+1)(k+2)): the conditions that combine b, a and c.
 BOOST_AUTO_TEST_CASE(integrate_powers_of_time_twice) {
   for (int power = 0; power < 8; ++power) {
     long double sum = 0;
@@ -78,8 +78,8 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time_twice) {
   }
 }
 
-// The stages of the polynomial: of order 8 each, but for the field's answer to their own error; and
-// the ninth power, which t^8 alone has.
+// The stages of the polynomial have order 8 each, apart from the field's response to their own
+// error. The ninth power occurs for t^8 alone.
 BOOST_AUTO_TEST_CASE(integrate_powers_of_time_within_the_step) {
   const auto node = [](std::size_t j) {
     return j < Verner98::stages ? Verner98::node[j] : Verner98::later_node[j - Verner98::stages];
@@ -100,8 +100,8 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time_within_the_step) {
   BOOST_TEST(std::abs(sum(Verner98::ninth, 8) - 1 / 9.0L) <= 1e-12L);
 }
 
-// A nonlinear field at fixed steps (a wide-open tolerance lets every step stand): halving the step
-// divides the error by 2^9.
+// A nonlinear field at fixed steps: a coarse tolerance accepts every step. Halving the step divides
+// the error by 2^9.
 BOOST_AUTO_TEST_CASE(converge_with_order_nine) {
   using Wide = Eigen::Matrix<long double, 1, 1>;
   const auto error = [](int n) {
@@ -165,9 +165,9 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy) {
   BOOST_TEST(turn_of_a_circle(1e-14).evaluations < 1100);
 }
 
-// A fast angle on which nothing depends runs on beside a circle. A step of Euler's for every
-// hundredfold of its rate, and as rounding of so large a change lets steps grow more slowly, a step
-// or two of 16 evaluations: 165 in place of 1442 for steps that begin as small as the rate is great.
+// A fast angle on which nothing depends, beside a circle. The start costs one Euler step for every
+// hundredfold of its rate. Rounding of so large a change slows the growth of steps, which costs a
+// step or two of 16 evaluations. 165 evaluations, not 1442 with first steps according to the rate.
 BOOST_AUTO_TEST_CASE(start_by_curvature_not_by_a_running_angle) {
   const auto evaluations = [](double rate) {
     const auto field = [rate](double, const State<3>& y) { return State<3>(-y[1], y[0], rate); };
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(start_by_curvature_not_by_a_running_angle) {
   BOOST_TEST(evaluations(-1e6) == evaluations(1e6));
 }
 
-// From rest, or where a step of Euler's leaves the field: sqrt(1 - y^2) has no value beyond y = 1.
+// From rest, or if an Euler step leaves the field: sqrt(1 - y^2) has no value beyond y = 1.
 BOOST_AUTO_TEST_CASE(start_at_rest_and_at_the_field_edge) {
   const auto from_rest = [](double t, const State<1>& /*y*/) { return State<1>(t * t); };
   ExplicitRungeKutta resting(from_rest, 0.0, State<1>(0.0), {.relative = 1e-12});
@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(stay_if_the_end_is_the_start) {
   BOOST_TEST(steps.effort().evaluations == 0);
 }
 
-// 1e6 additions of 0.1 in plain double are off by 1e-6: the clock must not be.
+// 1e6 additions of 0.1 in plain double are off by 1e-6: the time must not be.
 BOOST_AUTO_TEST_CASE(keep_time) {
   const auto clock = [](double, const State<1>&) { return State<1>(1.0); };
   ExplicitRungeKutta steps(clock, 0.0, State<1>(0.0));
@@ -222,8 +222,8 @@ BOOST_AUTO_TEST_CASE(keep_time) {
   BOOST_TEST(near(steps.y()[0], 10000.0, 10000.0, 2));
 }
 
-// Coefficients rounded to 53 bits err to the same side in each step: energy drifted by 7e-14, and in
-// a thousand periods the phase by 8e-12, were it not made good.
+// Coefficients rounded to 53 bits err to the same side in each step. Uncorrected, the energy
+// drifted by 7e-14, and in a thousand periods the phase by 8e-12.
 BOOST_AUTO_TEST_CASE(do_not_drift) {
   const double amplitude = 0.7;
   const auto swing = [](double, const State<2>& y) { return State<2>(y[1], -std::sin(y[0])); };
@@ -238,11 +238,11 @@ BOOST_AUTO_TEST_CASE(do_not_drift) {
   BOOST_TEST_MESSAGE("energy off by " << drift << ", phase by " << steps.y()[1] / amplitude);
   // A random walk of half a last digit in each of 8e4 steps.
   BOOST_TEST(std::abs(drift) <= 3e-14);
-  // The time of so many periods is rounded to 1e-12 itself.
+  // The time of so many periods itself is rounded to 1e-12.
   BOOST_TEST(std::abs(steps.y()[1]) <= 3e-12);
 }
 
-// sqrt(1 - y) has no value beyond y = 1: a step that lands there is taken back, not passed on.
+// sqrt(1 - y) has no value beyond y = 1: a step to such a point is repeated, not accepted.
 BOOST_AUTO_TEST_CASE(retry_a_step_that_leaves_the_field) {
   const auto field = [](double, const State<1>& y) { return State<1>(-std::sqrt(y[0])); };
   ExplicitRungeKutta steps(field, 0.0, State<1>(1.0), {.relative = 1e-10});
@@ -250,7 +250,8 @@ BOOST_AUTO_TEST_CASE(retry_a_step_that_leaves_the_field) {
   BOOST_TEST(near(steps.y()[0], 0.01, 1.0, 1e6));
 }
 
-// The same of a field that throws there; where it does so at every step, however short, that is told.
+// The same with a field that throws there. If it throws at every step, however short, its message
+// is passed on.
 BOOST_AUTO_TEST_CASE(retry_a_step_at_which_the_field_throws) {
   const auto field = [](double, const State<1>& y) {
     if (y[0] < 0) throw ComputationFailed("no root below 0");
@@ -295,7 +296,7 @@ BOOST_AUTO_TEST_CASE(refuse_a_field_that_is_not_finite) {
   BOOST_TEST(steps.effort().evaluations == 1);
 }
 
-// A block of 1e-9 beside one of 1: its error is measured by its own size, if that is asked for.
+// A block of 1e-9 beside one of 1: its error is measured relative to its own size, if requested.
 BOOST_AUTO_TEST_CASE(measure_errors_relative_to_each_block) {
   const auto field = [](double, const State<4>& y) {
     return State<4>(-y[1], y[0], -3 * y[3], 3 * y[2]);
@@ -327,8 +328,8 @@ BOOST_AUTO_TEST_CASE(distinguish_stiff_from_fast_fields) {
   }
 }
 
-// The field is a difference of terms that leave 1e-12 of rounding, and the solution stays below the
-// 1e-3 that counts as large: 1e-17 is asked of each step, which only steps of 1e-5 s would keep.
+// The field is a difference of terms with a rounding of 1e-12, and the solution stays below
+// absolute_scale = 1e-3. The required 1e-17 a step would need steps of 1e-5 s.
 BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
   const auto field = [](double t, const State<2>& y) {
     return State<2>(y[1], -y[0] + 1e-3 * (((1e4 + std::cos(7 * t)) - 1e4) - std::cos(7 * t)));
@@ -341,7 +342,8 @@ BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
   BOOST_TEST(std::abs(steps.y()[0] - 1e-5 * std::cos(10.0)) < 1e-14);
 }
 
-// 10 digits of the change in each step, up or down, are a random walk; what rests is left at rest.
+// Perturbations of 10 units in the last digit of each step, up or down, are a random walk; a state
+// at rest stays at rest.
 BOOST_AUTO_TEST_CASE(deviate_by_their_perturbation) {
   const auto made = [](double digits) {
     const auto field = [](double, const Eigen::Vector3d& y) {
@@ -380,7 +382,7 @@ BOOST_AUTO_TEST_CASE(refuse_invalid_accuracies) {
 
 BOOST_AUTO_TEST_SUITE_END()
 
-// States whose size is known at run time only.
+// States of dynamic size.
 BOOST_AUTO_TEST_SUITE(explicit_steps_of_any_size)
 
 namespace {
@@ -448,7 +450,7 @@ BOOST_AUTO_TEST_CASE(agree_with_steps_of_fixed_size) {
     compare(fixed.y());
     BOOST_TEST(in_place.effort().evaluations == fixed.effort().evaluations);
   }
-  // Within a step, and on from there.
+  // Within a step, and further from there.
   fixed.step_towards(10);
   in_place.step_towards(10);
   const double length = fixed.t() + 3;
@@ -465,7 +467,7 @@ BOOST_AUTO_TEST_CASE(agree_with_steps_of_fixed_size) {
   worst = test::worst_of(worst, (in_place.y() - fixed.y()).norm() / fixed.y().norm());
   BOOST_TEST_MESSAGE("fixed and run-time size differ by " << worst);
   BOOST_TEST(worst < 1e-13);
-  // and back where they began, by steps of 1e-12
+  // and back to the start, by steps of 1e-12
   BOOST_TEST((in_place.y() - start()).norm() < 1e-9);
 }
 

@@ -11,7 +11,7 @@ using namespace kreisel;
 
 BOOST_AUTO_TEST_SUITE(factors)
 
-// Solutions against Eigen's, by complete pivoting, of systems whose first pivot is 0.
+// Solutions against Eigen's with complete pivoting, of systems whose first pivot is 0.
 template <class Number>
 void solve_systems() {
   using Factors = detail::Factors<Number>;
@@ -26,7 +26,7 @@ void solve_systems() {
       typename Factors::Vector x = b;
       f.solve(x);
       const typename Factors::Vector expected = A.fullPivLu().solve(b);
-      // Partial pivoting loses the condition's digits; these matrices have up to 1e4 or so.
+      // Partial pivoting loses the digits of the condition; these matrices have up to 1e4 or so.
       const double condition = A.norm() * A.inverse().norm();
       const double bound = 10 * std::numeric_limits<double>::epsilon() * condition;
       BOOST_TEST(

@@ -35,7 +35,7 @@ struct Pendulum {
   }
 };
 
-/// What a pendulum let go at `amplitude` is off by after `periods`.
+/// The error after `periods` of a pendulum released at `amplitude`.
 struct Drift {
   double phase;   ///< rad
   double energy;  ///< relative
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(gauss_steps)
 
-// A swing in long double, because of order 16 little more than one halving can be seen even so.
+// A swing in long double. Even so, order 16 shows little more than one halving.
 template <int stages>
 double observed_order(long double amplitude, double coarse) {
   using Wide = State<2, long double>;
@@ -115,8 +115,8 @@ BOOST_AUTO_TEST_CASE(converge_with_order_two_s) {
   BOOST_TEST(std::abs(observed_order<8>(2, 2) - 16) < 1);
 }
 
-// The energy of the explicit steps falls all the time; that of these walks, and is here after 300
-// swings of every size where it started, to the last digits.
+// The energy of the explicit steps falls all the time. That of these steps is a random walk; here
+// it returns after 300 swings of every size to its start, to the last digits.
 BOOST_AUTO_TEST_CASE(keep_energy_and_phase_over_many_swings) {
   const Pendulum pendulum;
   double worst_energy = 0;
@@ -133,8 +133,8 @@ BOOST_AUTO_TEST_CASE(keep_energy_and_phase_over_many_swings) {
   BOOST_TEST(worst_phase < 3e-12);
 }
 
-// Six steps a swing, and no more than rounding to be seen; the energy of the explicit steps is off
-// by ten times as much after a fifth of the time.
+// Six steps a swing, with an error no larger than rounding. The energy of the explicit steps has
+// ten times that error after a fifth of the time.
 BOOST_AUTO_TEST_CASE(are_better_than_explicit_in_long_runs) {
   const Pendulum pendulum;
   GaussIRK gauss(pendulum, 0.0, State<2>(0.1, 0), 0.236);
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(go_there_and_back) {
   BOOST_TEST(steps.t() == 0);
 }
 
-// 20000 additions of 0.1 in plain double are off by 1e-10: neither the sum nor the clock may be.
+// 20000 additions of 0.1 in plain double are off by 1e-10: neither state nor time may be.
 BOOST_AUTO_TEST_CASE(sum_state_and_time_without_loss) {
   const auto field = [](double t, const State<2>&) { return State<2>(1, 2 * t); };
   GaussIRK steps(field, 0.0, State<2>(0, 0), 0.1);

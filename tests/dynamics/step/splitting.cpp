@@ -36,7 +36,7 @@ double angle(const Quaternion& a, const Quaternion& b) {
   return 2 * (a.conjugate() * b).vec().norm() / (a.norm() * b.norm());
 }
 
-/// A heavy symmetric top, tilted by 0.5 rad and spinning, let go at rest.
+/// A heavy symmetric top, tilted by 0.5 rad and spinning, released at rest.
 struct Top {
   double A = 3e-4;
   double C = 1e-4;
@@ -86,7 +86,7 @@ double order(const char* name, const Top& top, double step) {
   return std::log2(work<Scheme>(name, top, step).error / work<Scheme>(name, top, step / 2).error);
 }
 
-/// Three different moments, by way of the closed solution.
+/// Three different moments, by the closed solution.
 class AsymmetricFlow {
  public:
   struct State {
@@ -118,7 +118,7 @@ class AsymmetricFlow {
 
 BOOST_AUTO_TEST_SUITE(splitting_coefficients)
 
-/// sum of kicks times the `power` of the time at which each comes.
+/// sum of kicks times the `power` of the time of each.
 template <class Scheme>
 long double moment(int power) {
   long double sum = 0;
@@ -130,8 +130,8 @@ long double moment(int power) {
   return sum;
 }
 
-// What a torque does to the first order is the integral along the free motion: the kicks are a
-// quadrature, of order 8 for the last two.
+// The first-order effect of a torque is its integral along the free motion. The kicks are a
+// quadrature of it, of order 8 for the last two.
 BOOST_AUTO_TEST_CASE(integrate_powers_of_time) {
   for (int power = 0; power < 8; ++power) {
     const long double exact = 1.0L / (power + 1);
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time) {
   }
 }
 
-// What makes a symmetric composition of order 8, as far as it concerns single steps.
+// Conditions of order 8 for a symmetric composition, as far as they concern single steps.
 BOOST_AUTO_TEST_CASE(cancel_odd_powers_of_the_steps) {
   for (const int power : {3, 5, 7}) {
     long double sum = 0;
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(converge_with_their_order) {
   BOOST_TEST(std::abs(order<Strang>("Strang", slow, 1e-3) - 2) < 0.05);
   BOOST_TEST(std::abs(order<Blanes864>("Blanes864", slow, 8e-3) - 4) < 0.1);
   BOOST_TEST(std::abs(order<KahanLi8>("KahanLi8", slow, 0.016) - 8) < 0.3);
-  // For a fast top e is so small that e^2 h^6 is all one sees.
+  // For a fast top e is so small that only e^2 h^6 is visible.
   BOOST_TEST(std::abs(order<Blanes864>("Blanes864", {.spin = 3000}, 2e-3) - 6) < 0.2);
 }
 

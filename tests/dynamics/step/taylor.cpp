@@ -60,7 +60,7 @@ struct Switched {
   }
 };
 
-/// y'' = 1 - y from t = 0 on, and nothing before.
+/// y'' = 1 - y from t = 0 on, and at rest before.
 struct Late {
   static constexpr int most_order = 24;
 
@@ -79,7 +79,7 @@ struct Late {
 
 BOOST_AUTO_TEST_SUITE(taylor)
 
-// A hundred turns. What a step errs by adds up, at worst.
+// A hundred turns. In the worst case the errors of steps add up.
 BOOST_AUTO_TEST_CASE(keeps_the_accuracy) {
   for (const double accuracy : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
     TaylorSteps steps(Circle{}, 0, Vector(1, 0), {.relative = accuracy});
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(runs_back_to_the_start) {
   BOOST_TEST(near(y, Vector(1, 0.5), 1.0, 40));
 }
 
-// Output is the series itself: as good as the steps, and it does not disturb them.
+// Output is the series itself: as accurate as the steps, without effect on them.
 BOOST_AUTO_TEST_CASE(gives_output_within_steps) {
   TaylorSteps undisturbed(Circle{}, 0, Vector(1, 0));
   undisturbed.advance_to(10);
@@ -132,8 +132,8 @@ BOOST_AUTO_TEST_CASE(finds_events) {
   BOOST_TEST(near(steps.y(), Vector(std::cos(6), -std::sin(6)), 1.0, 40));
 }
 
-// Where the series ends steps get ever shorter: the way to there is right, and there they stop. What
-// errs in time by a last digit errs in y by y^2 times that.
+// Near the end of the series steps get ever shorter: the solution is accurate up to there, and the
+// steps stop. An error of a last digit in time causes y^2 times that in y.
 BOOST_AUTO_TEST_CASE(stops_just_before_a_pole) {
   TaylorSteps steps(Pole{}, 0, Vector(1, 0));
   const std::array<int, 2> blocks = {1, 1};
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(ends_steps_at_jumps_of_the_field) {
   BOOST_TEST(near(steps.advance_to(3)[0], 2.0, 1.0, 2));
 }
 
-// What rests needs one step, whatever the way; a way of no length needs none.
+// A state at rest needs one step for any time; an interval of length 0 needs none.
 BOOST_AUTO_TEST_CASE(takes_no_more_steps_than_needed) {
   TaylorSteps steps(Circle{}, 0, Vector(0, 0), {.absolute_scale = 0});
   BOOST_TEST(steps.advance_to(1e9).isZero(0));
@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(continues_from_a_checkpoint_exactly) {
   BOOST_TEST(resumed.effort().steps == whole.effort().steps);
 }
 
-// Its series is in units of the last step, powers of which may leave the range.
+// Its series is in units of the last step, powers of which may overflow or underflow.
 BOOST_AUTO_TEST_CASE(changes_its_unit_after_a_long_rest) {
   TaylorSteps steps(Late{}, -1e21, Vector(0, 0), {.relative = 1e-15});
   steps.stop_at({0});
@@ -204,7 +204,7 @@ BOOST_AUTO_TEST_CASE(changes_its_unit_after_a_long_rest) {
   BOOST_TEST(near(steps.y()[1], std::sin(10.0), 1.0, 40));
 }
 
-// 10 digits of the change in each step, up or down, are a random walk.
+// Perturbations of 10 units in the last digit of each step, up or down, are a random walk.
 BOOST_AUTO_TEST_CASE(deviates_by_its_perturbation) {
   const auto made = [](double digits) {
     return TaylorSteps(Circle{}, 0, Vector(1, 0), {.relative = 1e-12, .shaken = digits});

@@ -27,7 +27,7 @@ using test::number;
 
 namespace {
 
-/// Enough for boundaries: the multipliers still err by 1e-15 only.
+/// Accurate enough for boundaries: the multipliers still err by 1e-15 only.
 constexpr Accuracy quick{.relative = 1e-12};
 
 const Json& reference() {
@@ -47,7 +47,7 @@ UnsymmetricRotor<> rotor_of(const Json& c, double speed) {
   return {moments, {{parameter(c, "ca")}, {parameter(c, "cb")}}, speed};
 }
 
-/// (49) as printed: half of what dM/dt has on its diagonal is missing.
+/// (49) as printed: half of the diagonal of dM/dt is missing.
 struct Printed {
   UnsymmetricRotor<> corrected;
 
@@ -62,7 +62,7 @@ struct Printed {
 };
 
 /// The same in the rotor's axes, xi = R(-phi) x, w = R(-phi) x', without rings: the moments are
-/// constant, the springs turn. Takes moments that no body has, as some of the reference are.
+/// constant, the springs turn. It accepts impossible moments too, because the reference has some.
 ///
 ///   xi' = w - Omega J xi,   Theta w' = -Omega (J Theta - C J) w - R(-phi) K R(phi) xi
 PairedMultipliers in_rotor_axes(const Json& c, double speed) {
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
         printed ? paired_multipliers(Printed{rotor}) : paired_multipliers(rotor);
     const std::string name = c.at("name").get<std::string>() + (printed ? ", printed" : "");
     if (c.contains("a1")) {
-      // The reported errors are bounds, and not idle ones.
+      // The reported errors are bounds, and not excessive ones.
       BOOST_TEST(std::abs(m.a_1 - number(c.at("a1"))) <= m.a_1_error, name);
       BOOST_TEST(std::abs(m.a_2 - number(c.at("a2"))) <= m.a_2_error, name);
       BOOST_TEST(m.a_1_error + m.a_2_error < 1e-10, name);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(are_the_same_in_the_axes_of_the_rotor) {
   }
 }
 
-// The exact gyro about its steady rotation, by its variational equations in dual numbers: four of
+// The exact gyro about its steady rotation, by its variational equations in dual numbers. Four of
 // its six multipliers are the linear rotor's, the two of phi are 1.
 BOOST_AUTO_TEST_CASE(agree_with_the_exact_gyro) {
   for (const Json& c : reference().at("points")) {
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(have_a_closed_form_with_equal_springs) {
   }
 }
 
-// On the boundary the answer is that there is none.
+// On the boundary the verdict is undecided.
 BOOST_AUTO_TEST_CASE(are_undecided_on_the_boundary) {
   const Vector3<double> J(1.1, 0.9, 0.5);
   const double begin = EqualSpringsRange::of(J, 1).begin;
@@ -213,12 +213,12 @@ BOOST_AUTO_TEST_CASE(are_undecided_on_the_boundary) {
   BOOST_TEST((verdict(begin * (1 + 1e-9)) == Stability::unstable));
 }
 
-/// Those whose sums  z = l + 1/l  are given.
+/// The multipliers with the given sums z = l + 1/l.
 PairedMultipliers with_sums(double z_1, double z_2) {
   return {z_1 + z_2, z_1 * z_2 + 2, 1e-14, 1e-14};
 }
 
-// A pair lies on the circle where its sum is real and within (-2, 2).
+// A pair lies on the circle if its sum is real and within (-2, 2).
 BOOST_AUTO_TEST_CASE(are_stable_on_the_circle_only) {
   struct {
     double z_1, z_2;
@@ -232,7 +232,7 @@ BOOST_AUTO_TEST_CASE(are_stable_on_the_circle_only) {
     const PairedMultipliers m = with_sums(z_1, z_2);
     BOOST_TEST((m.verdict() == verdict), z_1 << ", " << z_2);
     const auto l = m.multipliers();
-    // Where both sums are one, they are what is left of the square root of rounding.
+    // If both sums are one, they are the remainder of the square root of rounding.
     const double off = std::min(std::abs(l[0] + l[1] - z_1) + std::abs(l[2] + l[3] - z_2),
                                 std::abs(l[0] + l[1] - z_2) + std::abs(l[2] + l[3] - z_1));
     BOOST_TEST(off <= (z_1 == z_2 ? 1e-7 : 1e-14));
@@ -259,7 +259,7 @@ BOOST_AUTO_TEST_CASE(have_the_boundaries_of_the_reference) {
   const Json& all = reference().at("boundaries");
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Json& c = all.at(i);
-    // Cases stand together; the range is looked through once for each.
+    // Cases with the same parameters follow each other; the range is searched once for each.
     if (i > 0 && all.at(i - 1).at("params") == c.at("params")) continue;
     const bool no_body = parameter(c, "A") - parameter(c, "B") > parameter(c, "C");
     const auto at = [&](double speed) {
@@ -301,13 +301,13 @@ BOOST_AUTO_TEST_CASE(agree_with_closed_forms_for_equal_springs) {
   BOOST_TEST(std::abs(ranges[0].begin.parameter - expected.begin) < 1e-12);
   BOOST_TEST(std::abs(ranges[0].end.parameter - expected.end) < 1e-12);
   BOOST_TEST(ranges[0].growth > 1.2);
-  // The intermediate axis: no upper end, so that of the range looked at counts.
+  // The intermediate axis: no upper end, so that the end of the searched range counts.
   BOOST_TEST(std::isinf(EqualSpringsRange::of({1.2, 0.8, 0.95}, 1).end));
   BOOST_TEST(std::abs(EqualSpringsRange::of({1.2, 0.8, 0.95}, 1).begin - 2) < 1e-15);
   BOOST_CHECK_THROW((void)unstable_intervals(at, 3, 0.5), InvalidInput);
 }
 
-// The tongues between unequal springs in this range, in order, and none besides.
+// The tongues between unequal springs in this range, in order, and no others.
 BOOST_AUTO_TEST_CASE(number_three_with_unequal_springs) {
   const auto at = [](double speed) {
     return paired_multipliers(UnsymmetricRotor<>({{1.05, 0.95, 0.5}}, {{1}, {1.5}}, speed), quick);
@@ -335,8 +335,9 @@ BOOST_AUTO_TEST_CASE(do_not_end_with_the_other_pair) {
   BOOST_CHECK_THROW((void)stability_boundaries(at, 0, 3, 1), InvalidInput);
 }
 
-// Higher orders lie at lower speeds, 1e-4 of the speed wide: found between samples that are two
-// thousand times as far apart, and confirmed on the rotor's axes. The reference's scan missed them.
+// Higher orders lie at lower speeds, with a width of 1e-4 of the speed. They are found between
+// samples two thousand times as far apart, and confirmed on the rotor's axes. The reference's scan
+// missed them.
 BOOST_AUTO_TEST_CASE(are_found_even_if_narrow) {
   const Json c{{"params", {{"A", 1.2}, {"B", 0.8}, {"C", 0.5}, {"ca", 1}, {"cb", 1.5}}}};
   const auto at = [&](double speed) { return paired_multipliers(rotor_of(c, speed), quick); };

@@ -17,7 +17,7 @@ namespace {
 const double speed = 1.3;  // of the drive
 const double period = 2 * std::numbers::pi / speed;
 
-/// A couple about x that swings as time goes.
+/// A couple about x that oscillates in time.
 struct Drive {
   template <class N>
   [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
@@ -49,7 +49,7 @@ BodySystem<RestingFrame<>> driven_oscillator() {
 
 BOOST_AUTO_TEST_SUITE(periodic_motions_of_bodies)
 
-// The response of an oscillator to a harmonic drive, in closed form; its neighbours decay.
+// The response of an oscillator to a harmonic drive, in closed form; neighbouring motions decay.
 BOOST_AUTO_TEST_CASE(are_found_from_a_nearby_start) {
   const auto system = driven_oscillator();
   const auto found = periodic_motion(system, 0, period, system.to_vector(system.rest()));
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(are_missed_with_too_few_steps) {
                     ComputationFailed);
 }
 
-// A free body in a ball joint: neither attitudes nor rates are gathered anywhere.
+// A free body in a spherical joint: the volume of neighbouring attitudes and rates is constant.
 BOOST_AUTO_TEST_CASE(keep_the_volume_of_their_neighbours) {
   const BodySystem system(RestingFrame<>{}, {wheel(JointKind::spherical)});
   auto s = system.rest();

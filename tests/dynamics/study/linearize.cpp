@@ -51,7 +51,7 @@ struct Top {
   }
 };
 
-/// Nothing is at rest here.
+/// A scene in which nothing is ever at rest.
 struct Never {
   using Vector = Eigen::Matrix<double, 1, 1>;
   template <class S>
@@ -63,7 +63,7 @@ struct Never {
   }
 };
 
-/// How far a root is from the nearest of the modes.
+/// Distance of a root from the nearest mode.
 double nearest(const std::vector<Mode>& modes, const std::complex<double>& root) {
   double least = std::numeric_limits<double>::infinity();
   for (const Mode& mode : modes) least = std::min(least, std::abs(mode.root - root));
@@ -74,7 +74,7 @@ double nearest(const std::vector<Mode>& modes, const std::complex<double>& root)
 
 BOOST_AUTO_TEST_SUITE(linear_equations)
 
-// Of the exact gyro: reference/cardan-gyro.json, foeppl_T4.
+// Exact gyro: reference/cardan-gyro.json, foeppl_T4.
 BOOST_AUTO_TEST_CASE(cardan_gyro_has_foeppls_frequencies) {
   const CardanGyro gyro(symmetric, springs, RestingFrame<>{});
   const auto linear = linearize<Guide, Guide>(gyro, 0, gyro.to_vector({.phi_rate = 50}));
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(top_on_resting_axes_has_its_roots_in_space) {
   }
 }
 
-// A motion that is not steady says so.
+// An unsteady motion is reported as such.
 BOOST_AUTO_TEST_CASE(unsteadiness_is_reported) {
   const Top top{0.3, 0.1, 2.5};
   Top::Vector y;
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(equilibria)
 
-// On a turntable, rings with mass and springs: the gyro leans, and stays so.
+// On a turntable, with massive rings and springs: the gyro tilts and stays tilted.
 BOOST_AUTO_TEST_CASE(regulated_gyro_on_a_turntable) {
   const CardanGyro gyro(symmetric, springs, RotatingFrame<>{{0.3, -0.2, 0.5}}, RegulatedRotor{});
   const auto found = find_equilibrium(gyro, 0, gyro.to_vector({.phi_rate = 50}), {{2, 5}, {2}});
@@ -191,7 +191,7 @@ BOOST_AUTO_TEST_CASE(regulated_gyro_on_a_turntable) {
   BOOST_TEST(std::abs(r.guide_on_outer_ring.x() + 2 * found.state[0]) < 1e-14);
 }
 
-// The hanging top, from far off: the nearest such attitude, one direction is free.
+// The hanging top from a distant guess: the nearest such attitude, with one free direction.
 BOOST_AUTO_TEST_CASE(hanging_top) {
   const Top top{0.3, 0.1, 2.5};
   Top::Vector guess;

@@ -1,5 +1,5 @@
-// Linear equations of systems of bodies and of single ones by dual numbers: against eigenvalues of
-// 32 digits, against closed roots, and each kind of scene against the others.
+// Linear equations of systems of bodies and of single ones by dual numbers. They are compared with
+// eigenvalues of 32 digits, with closed roots, and between different kinds of scenes.
 
 #include <boost/test/unit_test.hpp>
 
@@ -32,8 +32,8 @@ namespace {
 constexpr const char* frames[] = {"frame4", "housing5", "housing7", "frame9", "housing10"};
 constexpr const char* wheels[] = {"rotor6", "rotor8", "rotor11"};
 
-/// The platform of the reference, at rest on springs and dampers in the base, which are three
-/// joints without mass between them then, and in the frames.
+/// The platform of the reference, at rest on springs and dampers in its frames. Springs of the base
+/// are three joints without mass between them.
 BodySystem<RestingFrame<>> platform(bool held, const Json& c, Root root,
                                     std::optional<RotorMode> mode) {
   auto bodies = test::model_bodies("platform", root, Json::object(), mode);
@@ -63,7 +63,7 @@ BodySystem<RestingFrame<>> platform(bool held, const Json& c, Root root,
   return {RestingFrame<>{}, bodies};
 }
 
-/// At rest, its rotors' momenta L.
+/// At rest, with the rotors' momenta L.
 Eigen::VectorXd at_rest(const BodySystem<RestingFrame<>>& system, const Eigen::VectorXd& L) {
   auto s = system.rest();
   for (int i = 0; i < 3; ++i) {
@@ -74,7 +74,7 @@ Eigen::VectorXd at_rest(const BodySystem<RestingFrame<>>& system, const Eigen::V
   return system.to_vector(s);
 }
 
-/// The greatest distance of a root, 0 and its like left out, to the nearest that was found.
+/// The greatest distance of a root, except zero roots, from the nearest computed one.
 double worst(const Eigen::MatrixXd& A, const Json& roots) {
   const Eigen::VectorXcd found = detail::eigenvalues(A);
   double off = 0;
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_CASE(platform_has_the_roots_of_the_reference) {
   }
 }
 
-// A top asleep wakes where (C w)^2 < 4 A k: as a top, as a body that is held and as a system.
+// A sleeping top wakes if (C w)^2 < 4 A k: as a top, as a body with a fixed point and as a system.
 BOOST_AUTO_TEST_CASE(sleeping_top_has_its_stability_limit) {
   const double A = 0.3, C = 0.1, m = 0.5, g = 10, arm = 0.5;
   const double k = m * g * arm;
@@ -176,8 +176,8 @@ BOOST_AUTO_TEST_CASE(sleeping_top_has_its_stability_limit) {
   }
 }
 
-// Foucault's: the plane of a pendulum on the turning earth turns by u sin(latitude), a little less
-// for a body that is not a point: 1 - C/2A of it.
+// Foucault: the swing plane of a pendulum on the rotating earth turns by u sin(latitude). A body
+// that is no point turns a little less: 1 - C/2A of it.
 BOOST_AUTO_TEST_CASE(pendulum_on_the_earth_turns_its_plane) {
   const double u = 7.292115e-5, latitude = 0.84;
   const RotatingFrame<> earth{{u * std::cos(latitude), 0, u * std::sin(latitude)}};
@@ -208,8 +208,8 @@ BOOST_AUTO_TEST_CASE(pendulum_on_the_earth_turns_its_plane) {
 }
 
 // A free body on springs, a damper and a rubber mount, on a guide that turns and brakes, in any
-// state: as one body and as a system of one they have the same rate, and the linear equations of
-// the one are the differences of its field.
+// state. As one body and as a system of one it has the same rate. The linear equations agree with
+// differences of the field.
 BOOST_AUTO_TEST_CASE(loads_agree_with_differences) {
   const RotatingFrame<> guide{{0.3, -0.2, 0.5}, {0.1, 0.2, -0.3}};
   const ElasticMount<> mount{{0.1, 0, 0.2},
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(loads_agree_with_differences) {
              (2 * step);
     };
     Eigen::VectorXd found = (4 * slope(h) - slope(2 * h)) / 3;
-    // An attitude's rate on the axes of the attitude it has moved to: of those it has left.
+    // An attitude's rate, from the axes of the attitude after the move to those before it.
     if (j < 3) {
       const Vector3<double> w = linear.rate.head<3>();
       found.head<3>() += Vector3<double>::Unit(j).cross(w);
@@ -253,11 +253,10 @@ BOOST_AUTO_TEST_CASE(loads_agree_with_differences) {
   BOOST_TEST((linear.unsteadiness - expected).norm() < 1e-5 * expected.norm());
 }
 
-// A body that floats on springs, a damper and a rubber mount, its rotor brought to speed and slowed
-// down again, on a guide that swings: the linear equations are the differences of the field, and
-// the unsteadiness is with the field's own change in time, which both motions make.
-// A guide that is known from 0 to 2 s only, as a log or a series is: its rates at the ends come from
-// within.
+// A body that floats on springs, a damper and a rubber mount, on a guide that swings; its rotor is
+// accelerated and slowed down. The linear equations agree with the differences of the field. The
+// unsteadiness includes the field's own change in time, due to both motions. The guide is known
+// from 0 to 2 s only, like a log or a series: its rates at the ends come from inside.
 BOOST_AUTO_TEST_CASE(bodies_at_the_ends_of_a_guide) {
   const auto swing = [](double t) {
     FrameMotion<Guide, Inertial> motion;
@@ -381,7 +380,7 @@ BodySystem<RestingFrame<>> block_on(const Joint& joint, double stiffness = 0) {
   return {RestingFrame<>{}, {body}, UniformGravity<Guide>{{0, 0, -9.81}}};
 }
 
-// No coordinate makes it fall, so that Newton's step is none; it does not rest for that.
+// No coordinate causes the fall, so that Newton's step is 0; the body is not at rest.
 BOOST_AUTO_TEST_CASE(falling_bodies_have_no_equilibrium) {
   for (const JointKind kind : {JointKind::prismatic, JointKind::free}) {
     const auto falling = block_on({.kind = kind, .axis = {0, 0, 1}});
@@ -393,7 +392,7 @@ BOOST_AUTO_TEST_CASE(falling_bodies_have_no_equilibrium) {
     const auto rest = find_equilibrium(held, 0, held.to_vector(held.rest()));
     BOOST_TEST(rest.state[0] == -2 * 9.81 / stiffness, boost::test_tools::tolerance(1e-14));
     BOOST_TEST(rest.neutral == 0);
-    // Where it is held it does not rest.
+    // At the held position it is not at rest.
     BOOST_CHECK_THROW((void)find_equilibrium(held, 0, held.to_vector(held.rest()), {{0, 1}}),
                       ComputationFailed);
   }

@@ -1,5 +1,5 @@
-// Technical equations against exact ones: the reference's motion and orders, and whether the bound
-// is honest.
+// Precession equations against exact ones: the reference's motion and orders, and the reliability
+// of the bound.
 
 #include <boost/test/unit_test.hpp>
 
@@ -25,7 +25,7 @@ namespace {
 
 using Regulated = CardanGyro<RestingFrame<>, RegulatedRotor>;
 
-/// The two-gimbal gyro of T13: its springs are slack where its forces are 0.
+/// The two-gimbal gyro of T13: its springs are slack at zero force.
 constexpr double slack_a = 0.02 / 0.4, slack_b = -0.01 / 0.3;
 
 Regulated gyro_of_the_reference() {
@@ -36,7 +36,8 @@ Regulated gyro_of_the_reference() {
 
 const Regulated::State start{.2 - slack_a, -.1 - slack_b, 0, 0, 0, 1000};
 
-/// The greatest distance in place from the exact motion, at the samples of the technical one.
+/// The greatest distance in position from the exact motion, at the samples of the precession
+/// equations.
 template <class Exact, class Places>
 double true_error(Exact& exact, const Places& places, const TechnicalMotion& motion) {
   double worst = 0;
@@ -61,7 +62,7 @@ struct Comparison {
   double error;
 };
 
-/// From a start with the technical velocity or with none.
+/// From a start with the precession velocity or with none.
 Comparison compare(double spin, double end, bool with_velocity) {
   const Regulated gyro = gyro_of_the_reference();
   Regulated::State s = start;
@@ -103,7 +104,7 @@ BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   }
 }
 
-// As bodies it is the same: one step's accuracy apart.
+// The same as bodies, within one step's accuracy.
 BOOST_AUTO_TEST_CASE(agree_for_the_gyro_as_bodies) {
   const Json springs = {{"outer", {{"k", 0.4}, {"d", 0.002}, {"Q0", 0.02}}},
                         {"inner", {{"k", 0.3}, {"d", 0.001}, {"Q0", -0.01}}}};
@@ -135,7 +136,7 @@ BOOST_AUTO_TEST_CASE(agree_for_the_gyro_as_bodies) {
   }
 }
 
-// L^-2 with the nutation of a start at rest, L^-3 without; over times that grow with L both L^-2.
+// L^-2 with the nutation of a start at rest, L^-3 without; over times in proportion to L both L^-2.
 BOOST_AUTO_TEST_CASE(err_in_the_orders_of_the_reference) {
   const Json& orders = test::rotors_reference()["precession_order"]["orders"];
   for (const auto& [name, stretched, with_velocity] :
@@ -150,7 +151,7 @@ BOOST_AUTO_TEST_CASE(err_in_the_orders_of_the_reference) {
       const double ratio = error / motion.samples.back().bound;
       BOOST_TEST_MESSAGE(name << ", " << spin << " rad/s: " << error << ", order "
                               << std::log2(last / error) << ", of the bound " << ratio);
-      // Both are taken at some hundred times of their own.
+      // Both take the maximum over some hundred times of their own.
       BOOST_TEST(std::abs(error - number(row["max_err"])) < 0.2 * error);
       BOOST_TEST(ratio > 0.4);
       BOOST_TEST(ratio < 1);
@@ -159,8 +160,8 @@ BOOST_AUTO_TEST_CASE(err_in_the_orders_of_the_reference) {
   }
 }
 
-// 1000 gyros and platforms, of any size, spring and damper, started at rest, on the technical
-// velocity or with any, regulated and free.
+// 1000 gyros and platforms, of any size, spring and damper, regulated and free. They start at rest,
+// with the precession velocity or with any.
 BOOST_AUTO_TEST_CASE(have_a_reliable_bound) {
   constexpr double relative = 1e-10;
   std::vector<double> ratios;
@@ -250,7 +251,7 @@ BOOST_AUTO_TEST_CASE(have_a_reliable_bound) {
   BOOST_TEST(ratios.back() <= 1);
 }
 
-// Towards gimbal lock the nutations become slow: the motion is broken off and says so.
+// Near gimbal lock the nutations become slow: the motion stops with a report.
 BOOST_AUTO_TEST_CASE(stop_near_gimbal_lock) {
   const CardanGyro pushed(gyro_of_the_reference().moments(), {{0.05, 0, 1.5}, {0, 0, 0}},
                           RestingFrame<>{}, RegulatedRotor{});
@@ -272,7 +273,8 @@ BOOST_AUTO_TEST_CASE(are_refused_if_not_applicable) {
   BOOST_CHECK_THROW((TechnicalBodies(Bodies({}, test::model_bodies("platform", test::Root::none,
                                                                    Json::object(), std::nullopt)))),
                     InvalidInput);
-  // Five frames, three rotors: without accelerations on the kernel nothing rules the motion there.
+  // Five frames, three rotors: without accelerations on the kernel the motion there is
+  // undetermined.
   const Bodies system(
       {}, test::model_bodies("platform", test::Root::none, Json::object(), RotorMode::regulated));
   auto s = system.rest();
@@ -283,7 +285,7 @@ BOOST_AUTO_TEST_CASE(are_refused_if_not_applicable) {
       (void)technical_motion(model, 0, place, u, 0.1, {.kept = KeptAccelerations::none}),
       ComputationFailed);
   BOOST_TEST(technical_motion(model, 0, place, u, 0.1).kept == 1);
-  // A rotor that slows down, and one that is not round, has no momentum that stays.
+  // A decelerating rotor and an unsymmetric one have no constant momentum.
   const CardanMoments round{{1, 1, 1.5}}, flat{{1, 1.2, 1.5}};
   const CardanState turns{.phi_rate = 100};
   BOOST_CHECK_THROW(

@@ -1,4 +1,4 @@
-// When technical equations stand for the exact ones: the reference's examples, 10 digits.
+// Admissibility of precession equations: the reference's examples, 10 digits.
 
 #include <boost/test/unit_test.hpp>
 
@@ -37,7 +37,7 @@ Complex complex(const std::string& text) {
   return {real, std::stod(rest)};
 }
 
-/// The greatest distance of a reference's root to the nearest found.
+/// The greatest distance of a reference root from the nearest computed one.
 double off(const Json& roots, const std::vector<Complex>& found) {
   double worst = 0;
   for (const Json& root : roots) {
@@ -73,7 +73,7 @@ GyroForces forces(const MatrixXd& A, const MatrixXd& G, const MatrixXd& D) {
 
 BOOST_AUTO_TEST_SUITE(precession_equations_are_admissible)
 
-// det G != 0 and simple roots, and yet the nutations grow: circulatory torques.
+// det G != 0 and simple roots, but the nutations grow: circulatory torques.
 BOOST_AUTO_TEST_CASE(unless_a_nutation_grows) {
   const Matrix2d A = .002 * Matrix2d::Identity();
   const auto found = [&](double d) {
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(unless_a_nutation_grows) {
   BOOST_TEST(damped.rank == 2);
 }
 
-// Multiple roots are harmless by themselves: two gyros of one kind.
+// Multiple roots alone are harmless: two gyros of one kind.
 BOOST_AUTO_TEST_CASE(with_double_roots_that_have_two_shapes) {
   Matrix4d G = Matrix4d::Zero();
   G.topLeftCorner<2, 2>() = G.bottomRightCorner<2, 2>() = .5 * quarter;
@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(with_double_roots_that_have_two_shapes) {
   BOOST_TEST(found.greatest_shift < 0.003);
 }
 
-// One that lacks a shape is not: technical roots on the axis, exact ones beside it.
+// A root that lacks a shape is not: precession roots on the axis, exact ones beside it.
 BOOST_AUTO_TEST_CASE(unless_a_double_root_lacks_a_shape) {
   Matrix4d K = Matrix4d::Zero();  // of q1 p2 - q2 p1 + (q1^2 + q2^2)/4
   K(0, 0) = K(1, 1) = .5;
@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(unless_a_double_root_lacks_a_shape) {
   }
 }
 
-// What is neglected moves a root by  -s^2 y.A x / y.G x.
+// The neglected terms move a root by -s^2 y.A x / y.G x.
 BOOST_AUTO_TEST_CASE(with_corrected_roots) {
   const Json& truth = examples()["slow_correction"];
   const Matrix2d A = Eigen::Vector2d(2.1e-3, 3.3e-4).asDiagonal();
@@ -139,7 +139,8 @@ BOOST_AUTO_TEST_CASE(with_corrected_roots) {
   BOOST_TEST((slower.obstacle == Obstacle::not_slow));
 }
 
-// Five frames, rank 4: accelerations are kept on the kernel, for its damping does not rule it.
+// Five frames, rank 4: accelerations are kept on the kernel, because its damping does not dominate
+// there.
 BOOST_AUTO_TEST_CASE(for_the_platform_with_one_acceleration_kept) {
   const Json& all = test::rotors_reference()["eigenvalues"];
   for (const bool dampers : {false, true}) {
@@ -184,7 +185,7 @@ BOOST_AUTO_TEST_CASE(for_the_platform_with_one_acceleration_kept) {
       BOOST_TEST(least < 1e-10);
     }
   }
-  // Damped enough the kernel needs no acceleration, and undamped without it nothing rules it.
+  // With enough damping the kernel needs no acceleration; without damping it is undetermined.
   const Eigen::Matrix3d G = (Eigen::Matrix3d() << 0, 1, 0, -1, 0, 0, 0, 0, 0).finished();
   const Eigen::Matrix3d A = 1e-3 * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d D = Eigen::Vector3d(0, 0, .3).asDiagonal();

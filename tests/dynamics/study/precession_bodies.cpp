@@ -1,5 +1,6 @@
-// Technical equations of bodies whose gyroscopic matrix is singular, so that part of the
-// accelerations is kept: against the exact motion, with the bound and how the error falls.
+// Precession equations of bodies with a singular gyroscopic matrix, so that part of the
+// accelerations is kept. They are compared with the exact motion, its bound and the order of the
+// error.
 
 #include <boost/test/unit_test.hpp>
 
@@ -33,7 +34,7 @@ BodyDescription body(const char* name, const char* parent, JointKind kind, const
   return b;
 }
 
-/// On the first body a gyro in two gimbals that hang on springs; the outer one is off balance.
+/// The first body carries a gyro in two gimbals on springs; the outer one is unbalanced.
 Bodies with_gyro(BodyDescription base, const V& off_balance, RotorMode mode) {
   const std::string name = base.name;
   std::vector<BodyDescription> bodies{std::move(base)};
@@ -55,7 +56,7 @@ Bodies on_sled(RotorMode mode) {
   return with_gyro(std::move(sled), {0, 0, .02}, mode);
 }
 
-/// Which turns about the axis of the outer gimbal.
+/// The same on a table that turns about the axis of the outer gimbal.
 Bodies on_table(RotorMode mode) {
   auto table =
       body("table", "guide", JointKind::revolute, {0, 1, 0}, 1, {0, 0, 0}, {2e-3, 2e-3, 2e-3});
@@ -80,8 +81,8 @@ struct Comparison {
   [[nodiscard]] double of_the_bound() const { return error / motion.samples.back().bound; }
 };
 
-/// Over 0.5 s from a place off the middle, at rest or with the technical velocity; the distance is
-/// one of angles and lengths, as the drift is.
+/// Over 0.5 s from an eccentric position, at rest or with the precession velocity. The distance is
+/// one of angles and lengths, like the drift.
 Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   const BodyTree& tree = system.tree();
   const int gimbals = tree.place(1).q;
@@ -94,7 +95,7 @@ Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   if (with_velocity) {
     u = technical_motion(model, 0, place, u, 1e-6).samples.front().velocity;
     s.rates.head(u.size()) = u;
-    place = model.start(0, system.to_vector(s)).first;  // a free rotor's momentum is another
+    place = model.start(0, system.to_vector(s)).first;  // a free rotor's momentum changes too
   }
   TechnicalMotion motion = technical_motion(model, 0, place, u, .5);
 
@@ -117,8 +118,8 @@ Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   return {std::move(motion), error};
 }
 
-/// The bound holds and is no more than ten times the error, and at twice the spin the error has
-/// fallen by this order at least.
+/// The bound holds and is at most ten times the error. At twice the spin the error has fallen by
+/// this order at least.
 template <class System>
 void check(const char* name, const System& system, bool with_velocity, int kept, double order) {
   for (const RotorMode mode : {RotorMode::regulated, RotorMode::free}) {
@@ -143,8 +144,8 @@ void check(const char* name, const System& system, bool with_velocity, int kept,
 
 BOOST_AUTO_TEST_SUITE(precession_equations_with_kept_accelerations)
 
-// No gyroscopic moment reaches the sled, but the gimbal off balance feels how it is accelerated:
-// the orders are those without it, 2 and 3.
+// No gyroscopic moment acts on the sled, but its acceleration acts on the unbalanced gimbal: the
+// orders are those without it, 2 and 3.
 BOOST_AUTO_TEST_CASE(describe_a_gyro_on_a_sled) {
   check("sled", on_sled, false, 1, 1.8);
   check("sled", on_sled, true, 1, 2.7);
@@ -157,13 +158,13 @@ BOOST_AUTO_TEST_CASE(describe_a_gyro_on_a_table) {
   check("table", on_table, true, 1, 1.8);
 }
 
-// Six of eight accelerations stay; as the gimbals turn, the kernel leaves them: order 1.
+// Six of eight accelerations are kept; as the gimbals turn, the kernel leaves them: order 1.
 BOOST_AUTO_TEST_CASE(describe_a_free_craft_under_loads) {
   check(
       "craft", [](RotorMode mode) { return on_free_craft(mode, {}); }, false, 6, 0.7);
   const auto loaded = [](RotorMode mode) { return on_free_craft(mode, {drag, thrust}); };
   check("craft under loads", loaded, false, 6, 0.7);
-  // Far from slow enough to be good; the bound says so and holds.
+  // Far too fast for a good approximation; the bound shows that and holds.
   const Comparison c = compare(loaded(RotorMode::free), 500, false);
   BOOST_TEST_MESSAGE("craft under loads, 500 rad/s: of the bound " << c.of_the_bound());
   BOOST_TEST(c.of_the_bound() >= 0.1);
@@ -171,7 +172,7 @@ BOOST_AUTO_TEST_CASE(describe_a_free_craft_under_loads) {
   BOOST_TEST(c.motion.valid_until < 0.5);
 }
 
-// What grows with the square of the velocity is no damping: D is -dQ/du at rest.
+// A force that grows with the square of the velocity is no damping: D is -dQ/du at rest.
 BOOST_AUTO_TEST_CASE(use_the_damping_of_loads_at_rest) {
   const double k = 2;
   const auto quadratic = [k](const LoadContext<>& s) -> Force<Body> {
@@ -188,7 +189,7 @@ BOOST_AUTO_TEST_CASE(use_the_damping_of_loads_at_rest) {
   expected.head<6>() << .02, .02, .02, .5, .5, .5;
   BOOST_TEST((D - Eigen::MatrixXd(expected.asDiagonal())).norm() < 1e-11);
   const Eigen::MatrixXd both = damping(on_free_craft(RotorMode::free, {drag, quadratic}));
-  // Differences over 1e-3 m/s leave 1e-3 k to each of three directions.
+  // Differences over 1e-3 m/s add 1e-3 k to each of three directions.
   BOOST_TEST((both - D).norm() < 1.8e-3 * k);
 }
 

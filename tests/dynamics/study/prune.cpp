@@ -28,8 +28,8 @@
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
-// What prune() says that leaving terms out does at most is held against what it does, by steps of
-// 1e-15 of the whole scene and of the pruned one.
+// The bound of prune() against the true effect of dropped terms, by steps of 1e-15 of the whole
+// scene and of the pruned one.
 
 using namespace kreisel;
 
@@ -44,7 +44,7 @@ auto rates_of(const Scene& scene) {
          typename Scene::Vector { return scene.rates(t, y); };
 }
 
-/// Far more exactly than pruning tolerances.
+/// Much more accurate than the tolerances of pruning.
 template <class Scene>
 class Motion {
   using Vector = typename Scene::Vector;
@@ -59,7 +59,7 @@ class Motion {
   ExplicitRungeKutta<Vector, Rates<Vector>> steps_;
 };
 
-/// The greatest distance of a motion from one with something left out.
+/// The greatest distance of a motion from one without some terms.
 template <class Scene>
 double distance(const Scene& scene, const Rates<typename Scene::Vector>& reduced,
                 const typename Scene::State& start, double horizon) {
@@ -80,7 +80,7 @@ struct Tally {
   int terms = 0;
   int dropped = 0;
   int pruned = 0;
-  int close = 0;  ///< of all left out together: within a tenth of the bound
+  int close = 0;  ///< of all dropped terms together: within a tenth of the bound
   double worst = 0;
   double worst_alone = 0;
 
@@ -92,8 +92,8 @@ struct Tally {
   }
 };
 
-/// Prunes and compares: all that was left out together, and one quantity alone whether it was or
-/// not, if its effect is small enough to be called one.
+/// Prunes and compares: all dropped terms together, and one quantity alone, dropped or not, if its
+/// effect is small enough.
 template <class Quantity, class Scene>
 void compare(const Scene& scene, const typename Scene::State& start, const Pruning& options,
              Tally& tally) {
@@ -142,7 +142,7 @@ RotatingFrame<> slow_table(test::Sample& sample) {
           sample.direction()};
 }
 
-/// Nearly at rest, or turning, and shaken a little.
+/// Nearly at rest, or turning, with a small oscillation.
 HarmonicFrame<> swell(test::Sample& sample, double horizon) {
   const double size = sample.magnitude(-10, -1);
   const auto shaking = [&](const Vector3<double>& mean, double amplitude) {
@@ -330,7 +330,7 @@ BOOST_AUTO_TEST_CASE(is_the_scene_itself_if_nothing_is_dropped) {
   for (const PrunedTerm& term : pruned.terms) BOOST_TEST(term.kept);
 }
 
-// Rings without mass leave nothing that resists alpha about a rotor that is a needle along A.
+// Massless rings leave nothing that resists alpha about a rotor that is a needle along A.
 BOOST_AUTO_TEST_CASE(keeps_indispensable_terms) {
   const CardanGyro needle({{0, 8, 8}, {2, 3, 2.5}, {4, 4, 4.5}}, {}, RestingFrame<>{});
   const auto pruned = prune<RingInertia>(needle, CardanState{0.1, 0.2, 0, 0, 0, 1},

@@ -18,8 +18,8 @@
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
-// What a scene leaves out by its type changes no number: held against the same scene on a guide and
-// with loads of which nothing is known.
+// Parts that a scene omits by its type change no number. Compared with the same scene on a guide
+// and with loads of unknown type.
 
 using namespace kreisel;
 namespace data = boost::unit_test::data;
@@ -36,8 +36,8 @@ auto any_load(const L& load) {
   return [load](const LoadContext<>& s) { return load(s); };
 }
 
-/// The rates of angles and places, and those of velocities, each of their greatest; accelerations
-/// also of a term's size that may have cancelled, 10 m/s^2 of gravity.
+/// The rates of angles and positions, and those of velocities, each relative to their greatest.
+/// Accelerations are also relative to terms that may have cancelled, 10 m/s^2 of gravity.
 template <class Vector>
 double difference(const Vector& found, const Vector& expected) {
   const Eigen::Index velocities = expected.size() / 2;
@@ -77,7 +77,7 @@ InertiaTensor<Body> principal(double arm) {
       2, {0, 0, arm}, Matrix3<double>(Vector3<double>(0.25, 0.27, 0.06).asDiagonal()));
 }
 
-/// On a guide and on one that hides its kind, under loads of all kinds: held and free.
+/// On a guide and on one with hidden type, under loads of all kinds: fixed point and free.
 template <class M>
 void agrees_on(const M& guide, test::Sample& sample) {
   const double t = 3 * sample.direction().x();
@@ -180,7 +180,8 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_cardan_gyro, data::xrange(50u), seed
   const TranslatingFrame lift([](double t) { return Translation<>{{t, 0, 0}, {1, 0, 0}, {}}; });
   compare(lift, FrictionlessRotor{}, FreeRotor{});
   compare(lift, RegulatedRotor{}, RegulatedRotor{});
-  // Without springs and friction; a reference makes the general gyro look for them nevertheless.
+  // Without springs and friction; a reference angle makes the general gyro test for them
+  // nevertheless.
   const CardanGyro loose(moments, {}, table);
   const CardanGyro general(moments, {{}, {0, 0, 1e-300}}, any_guide(table));
   BOOST_TEST(difference(loose.rates(0.7, y), general.rates(0.7, y)) <= limit);
@@ -205,7 +206,7 @@ BOOST_DATA_TEST_CASE(changes_no_number_of_a_plane_pendulum, data::xrange(25u), s
   BOOST_TEST(difference(upright(0, y), general(0, y)) <= limit);
 }
 
-// What is said to vanish is held against the numbers.
+// Quantities that are declared absent are compared with the numbers.
 BOOST_AUTO_TEST_CASE(refuses_to_drop_terms_that_are_not_zero) {
   const RotatingFrame<> table{{0.1, 0.2, 0.3}};
   const UniformGravity<Guide> slanting{{1, 0, -9.81}};

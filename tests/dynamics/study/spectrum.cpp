@@ -48,8 +48,8 @@ Matrix3<double> matrix(const Json& json) {
 
 enum class Rotors { regulated, free };
 
-/// The platform with three gyros in its normal position, linearized: paper 000 (19) with the term
-/// that it lacks for quasi-velocities,  (G_R)_kj = sum of l_i e_i.(J_k x J_j).
+/// The platform with three gyros in its normal position, linearised. Paper 000 (19) with its
+/// missing term for quasi-velocities, (G_R)_kj = sum of l_i e_i.(J_k x J_j).
 Coefficients platform(const Json& c, Rotors rotors_are) {
   const Json& model = rotors().at("models").at("platform");
   const Json& bodies = model.at("bodies");
@@ -88,7 +88,7 @@ Coefficients platform(const Json& c, Rotors rotors_are) {
     } else {
       p.turning.col(joint++) = p.axis;
     }
-    // Centres of mass lie on the joints' axes: their velocities come from the base alone.
+    // Centres of mass are on the joints' axes: their velocities come from the base alone.
     const Eigen::MatrixXd moving = -skew(p.origin) * base;
     s.mass += p.turning.transpose() * I * p.turning;
     s.mass += number(body.at("m")) * moving.transpose() * moving;
@@ -107,7 +107,7 @@ Coefficients platform(const Json& c, Rotors rotors_are) {
   return s;
 }
 
-/// The roots of a reference, those with a negative imaginary part left out.
+/// The roots of a reference, without those with a negative imaginary part.
 std::vector<Complex> upper_half(const Json& roots) {
   std::vector<Complex> upper;
   for (const Json& r : roots) {
@@ -189,7 +189,7 @@ BOOST_AUTO_TEST_CASE(gyro_in_two_rings_has_its_nutation) {
     const double s = std::sin(std::stod(beta)), cosine = std::cos(std::stod(beta));
     const Json& c = all.at(std::string("cardan_nutation_beta0=") + beta + "_phidot=300");
     for (const bool free : {false, true}) {
-      // Outer axis y; the inner ring has turned about z by beta, the rotor's axis was x.
+      // Outer axis y; the inner ring has turned about z by beta, from rotor axis x.
       const double along = I(1, 0) + (free ? 0 : C);
       const double about_y = I(0, 1) + along * s * s + (I(1, 1) + I(2, 1)) * cosine * cosine;
       Coefficients g;
@@ -208,9 +208,9 @@ BOOST_AUTO_TEST_CASE(gyro_in_two_rings_has_its_nutation) {
   }
 }
 
-// Of three gyros whose frames hang on springs, one pair of frames with opposed momenta: the spring
+// Three gyros whose frames hang on springs, one pair of frames with opposed momenta. The spring
 // mode at 39.57 rad/s is no nutation although the spin makes it a little faster. The growth of each
-// mode against two spectra at momenta that differ.
+// mode is compared with two spectra at different momenta.
 BOOST_AUTO_TEST_CASE(gyros_on_a_base_separate_springs_and_spin) {
   const Json& all = rotors().at("eigenvalues");
   const Coefficients whole = platform(all.at("P_free_base_springs_only"), Rotors::regulated);
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(gyros_on_a_base_separate_springs_and_spin) {
   BOOST_TEST(std::abs(modes[2].root.imag() - 39.568) < 1e-3);
 }
 
-// A slow precession keeps its digits although the nutation is 1e8 times as fast.
+// A slow precession keeps its digits beside a nutation 1e8 times as fast.
 BOOST_AUTO_TEST_CASE(slow_precession_keeps_its_digits) {
   const CardanMoments moments{{.005, .005, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
   const CardanBearings springs{{2}, {1.5}};
@@ -286,7 +286,7 @@ BOOST_AUTO_TEST_CASE(gyroscopic_stabilisation_is_recognised) {
 }
 
 // Circulatory torques: the precession is damped, the nutation grows (rotors.json, section 4.6 of
-// paper 000's equations). And a double root without a second vector.
+// paper 000's equations). Also a double root without a second vector.
 BOOST_AUTO_TEST_CASE(damped_and_circulatory_systems) {
   Coefficients c;
   c.mass = 0.002 * Eigen::Matrix2d::Identity();
@@ -333,7 +333,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(campbell_diagrams)
 
-// Of a gyro between springs: nutation rises, precession falls, as the growth of each says.
+// A gyro between springs: nutation rises, precession falls, in agreement with the growth of each.
 BOOST_AUTO_TEST_CASE(follow_nutation_and_precession) {
   const CardanMoments moments{{.005, .005, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
   const CardanBearings springs{{2}, {1.5}};
@@ -353,7 +353,7 @@ BOOST_AUTO_TEST_CASE(follow_nutation_and_precession) {
                           cardan_frequencies(moments, springs, spins[i] - h).nutation) /
                          (2e-4 * f.nutation);
     BOOST_TEST(std::abs(diagram.modes[i][1].spin_growth - slope) < 1e-7);
-    // The product of both frequencies is the springs' alone: the one falls as the other rises.
+    // The product of both frequencies depends on the springs only: one falls as the other rises.
     BOOST_TEST(std::abs(diagram.modes[i][0].spin_growth + slope) < 1e-7);
     const bool fast = slope > 0.5;
     BOOST_TEST((diagram.modes[i][0].kind() == ModeKind::precession) == fast);
@@ -365,7 +365,7 @@ BOOST_AUTO_TEST_CASE(follow_nutation_and_precession) {
   BOOST_TEST(diagram.damping.norm() == 0);
 }
 
-// A spring that turns into its contrary makes two real roots of one oscillation.
+// A spring that changes its sign turns one oscillation into two real roots.
 BOOST_AUTO_TEST_CASE(end_if_a_mode_is_lost) {
   const auto at = [](double stiffness) {
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(1, 1);
@@ -376,7 +376,7 @@ BOOST_AUTO_TEST_CASE(end_if_a_mode_is_lost) {
   BOOST_CHECK_THROW((void)campbell(at, {1, -1}), InvalidInput);
 }
 
-// Two gyros that know nothing of each other: their curves cross and are not mistaken.
+// Two independent gyros: their curves cross and are not confused.
 BOOST_AUTO_TEST_CASE(allow_curves_to_cross) {
   const auto at = [](double spin) {
     Coefficients c;

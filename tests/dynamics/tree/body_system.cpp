@@ -57,7 +57,7 @@ Joint revolute(const Vector3<double>& axis, const Vector3<double>& position = {0
 
 InertiaTensor<Body> some_body() { return body(2, {0.1, -0.2, 0.3}, {0.3, 0.4, 0.5}); }
 
-/// A system that rests, made from a list.
+/// A system at rest, made from a list.
 BodySystem<RestingFrame<>> resting(std::vector<BodyDescription> bodies,
                                    const Gravity& gravity = {}) {
   return {RestingFrame<>{}, std::move(bodies), gravity};
@@ -74,7 +74,7 @@ double relative(const Eigen::VectorXd& found, const std::vector<Digits>& truth) 
   return static_cast<double>(Digits(worst / size));
 }
 
-/// The message of what an action throws, or nothing.
+/// The message of an action's exception, or nothing.
 template <class Thrown>
 std::string message_of(const std::function<void()>& action) {
   try {
@@ -95,7 +95,8 @@ BOOST_AUTO_TEST_SUITE(a_system_of_bodies)
 
 // Two compound pendulums, one on the other, in a vertical plane. Lagrange, with the angles p1, p2
 // of both from the vertical (p2 = q1 + q2), l the distance of the joints, s_i of the centres:
-//   L = (I1 + m1 s1^2 + m2 l^2) p1'^2/2 + (I2 + m2 s2^2) p2'^2/2 + m2 l s2 cos(p1 - p2) p1' p2'
+//
+//     L = (I1 + m1 s1^2 + m2 l^2) p1'^2/2 + (I2 + m2 s2^2) p2'^2/2 + m2 l s2 cos(p1 - p2) p1' p2'
 //       + (m1 s1 + m2 l) g cos p1 + m2 s2 g cos p2
 BOOST_AUTO_TEST_CASE(agrees_with_the_double_pendulum) {
   const double m1 = 1.5, m2 = 0.75, l = 0.875, s1 = 0.4375, s2 = 0.3125, i1 = 0.125, i2 = 0.0625;
@@ -134,7 +135,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_double_pendulum) {
     BOOST_TEST(error <= 1e-14);
     worst = test::worst_of(worst, error);
 
-    // The force in the lower joint moves the lower centre of mass.
+    // The force in the lower joint accelerates the lower centre of mass.
     const Digits ax =
         l * (dw1 * cos(p1) - w1 * w1 * sin(p1)) + s2 * (dw2 * cos(p2) - w2 * w2 * sin(p2));
     const Digits ay =
@@ -154,8 +155,8 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_double_pendulum) {
                                                        << worst_reaction);
 }
 
-// A bead on a rod that turns with the guide:  x'' = (u^2 - c/m) x,  and the rod pushes sideways
-// with  m (2 u x' + ou x).
+// A bead on a rod that turns with the guide: x'' = (u^2 - c/m) x. The rod pushes sideways with m (2
+// u x' + ou x).
 BOOST_AUTO_TEST_CASE(agrees_with_a_bead_on_a_turning_rod) {
   FrameMotion<Guide, Inertial> motion;
   motion.V.value.resultant = {0, 0, 1.5};
@@ -180,7 +181,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_a_bead_on_a_turning_rod) {
   BOOST_TEST(r.drive[0] == 0);
 }
 
-// A free body on the moving guide of the 25-digit cases: the force that its motion takes.
+// A free body on the moving guide of the 25-digit cases: the force for its motion.
 BOOST_AUTO_TEST_CASE(needs_the_force_of_the_reference_cases) {
   for (const test::ReferenceCase& c : test::reference_cases()) {
     const test::Truth truth = test::truth(c.guide, c.relative, c.t, c.masses);
@@ -210,7 +211,7 @@ BOOST_AUTO_TEST_CASE(needs_the_force_of_the_reference_cases) {
                               << ", torque " << (n - P.moment).norm() / P.moment.norm());
     BOOST_TEST((f - P.resultant).norm() <= 1e-13 * P.resultant.norm());
     BOOST_TEST((n - P.moment).norm() <= 1e-13 * (P.moment.norm() + P.resultant.norm()));
-    // And the other way: that force brings about that motion.
+    // And in reverse: that force causes that motion.
     Eigen::VectorXd back;
     system.accelerations(0, y, force, back, w);
     BOOST_TEST((back - dv).norm() <= 1e-13 * dv.norm());
@@ -252,7 +253,7 @@ BOOST_AUTO_TEST_CASE(reports_the_torque_of_a_constant_rate) {
   JointReactions r;
   system.reactions(0, y, r, w);
   BOOST_TEST(near(r.drive[1] - 0.5 * 50, r.on_body[1].value.moment.y(), 1000.0, 4));
-  // The same motion, with that torque given to a joint left to itself.
+  // The same motion, with that torque on a free joint.
   rotor.rule = JointRule::forces;
   const auto left = resting({frame, rotor}, UniformGravity<Guide>{{0, 0, -9}});
   Eigen::VectorXd dv;
@@ -278,7 +279,7 @@ BOOST_AUTO_TEST_CASE(holds_a_locked_joint_where_it_is) {
   BOOST_TEST(near(a[2], b[1], std::abs(b[1]), 8));
 }
 
-// Rings without mass: Euler's equations of the rotor, until the outer axis meets the rotor's.
+// Massless rings: Euler's equations of the rotor, until the outer axis meets the rotor's.
 BOOST_AUTO_TEST_CASE(accepts_massless_bodies) {
   const InertiaTensor<Body> none{};
   const auto rotor = body(1, {0, 0, 0}, {0.005, 0.005, 0.008});
@@ -343,7 +344,7 @@ BOOST_AUTO_TEST_CASE(reports_its_layout) {
   BOOST_CHECK_THROW((void)system.tree().index("mast"), InvalidInput);
 }
 
-// Kept where the first joint feels it, dropped where what it needs is not there.
+// Kept if the first joint is affected, dropped if the cause is absent.
 BOOST_AUTO_TEST_CASE(lists_its_terms) {
   const BodyDescription arm = described("arm", "guide", revolute(y_axis), some_body());
   BodyDescription wheel =
@@ -505,7 +506,7 @@ Eigen::VectorXd start(int size) {
   return y;
 }
 
-/// y at the time `end`, and the integrals of what `power` gives.
+/// y at the time `end`, and the integrals of `power`.
 template <class System, class Power>
 std::pair<Eigen::VectorXd, Eigen::VectorXd> run(const System& system, const Eigen::VectorXd& from,
                                                 double end, const Power& power) {
@@ -576,8 +577,9 @@ BOOST_AUTO_TEST_CASE(lose_energy_on_a_moving_guide_or_with_a_motor) {
 
 namespace {
 
-/// The absolute energy grows by what the guide gives, that is its reaction on body 0, which alone
-/// hangs on it, times its own velocity, by dampers and drive; the momentum by reaction and weight.
+/// The absolute energy grows by the guide's work and that of dampers and drive. The guide's power
+/// is its reaction on body 0, the only body on it, times its own velocity. The momentum grows by
+/// reaction and weight.
 template <class M>
 void check_balances(const M& guide, const std::vector<BodyDescription>& bodies,
                     const Vector3<double>& g, double end) {
@@ -664,7 +666,7 @@ BOOST_AUTO_TEST_CASE(close_their_balances_on_a_moving_guide) {
   check_balances(rolling(), row(), {0, 0, -9.81}, 5);
 }
 
-// Integrator knows neither the size nor the blocks of a system before it has one.
+// Integrator gets the size and the blocks of a system from the object.
 BOOST_AUTO_TEST_CASE(agree_with_states_of_fixed_size) {
   const BodySystem system(rolling(), row(), UniformGravity<Inertial>{{0, 0, -9.81}});
   using System = std::decay_t<decltype(system)>;
@@ -687,11 +689,11 @@ BOOST_AUTO_TEST_CASE(agree_with_states_of_fixed_size) {
   fixed.step_towards(0);
   const double within = (5 + fixed.t()) / 2;
   compare(run.on_the_way(within, 0), fixed.at(within));
-  // Sums over vectors of either kind round differently, which may cost a step or two.
+  // Sums over vectors of different types round differently, which may cost a step or two.
   BOOST_TEST(std::abs(run.effort().evaluations - fixed.effort().evaluations) <= 2 * 16);
 }
 
-// One system, read by two threads with a workspace each.
+// One system, used by two threads with a workspace each.
 BOOST_AUTO_TEST_CASE(may_be_used_by_several_threads) {
   const BodySystem<RotatingFrame<>> system({.angular_velocity = {0.3, -0.2, 0.5}}, mobile(0.1),
                                            UniformGravity<Guide>{{0, 0, -9.81}});

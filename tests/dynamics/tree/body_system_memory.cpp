@@ -12,7 +12,7 @@
 
 #include <support/heap.hpp>
 
-/// Once workspace and results are made, nothing that a system computes asks for memory, and the
+/// After workspace and results are made, a system's computations allocate no memory, and the
 /// workspace grows linearly.
 
 using namespace kreisel;
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(needs_memory_in_proportion_to_its_bodies) {
              0.01 * 1200 * one);
 }
 
-// A step asks for nothing; what is given back is a State of two vectors.
+// A step allocates nothing; the returned State has two vectors.
 BOOST_AUTO_TEST_CASE(is_integrated_without_allocations_in_steps) {
   const auto system = chain(6);
   Integrator run(system, 0, system.rest(), {.relative = 1e-10});

@@ -15,11 +15,11 @@
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
-/// Random trees against a second formulation that shares nothing with the library but the
-/// descriptions: every body's absolute acceleration, every component of every reaction and every
-/// joint acceleration are the unknowns of one dense linear system, Newton's and Euler's equations
-/// about the centres of mass on inertial axes. The kinematics come from poses differentiated twice
-/// as functions of time. In 64 bits of mantissa.
+/// Random trees against a second formulation that shares only the descriptions with the library.
+/// The unknowns of one dense linear system are every body's absolute acceleration, every component
+/// of every reaction and every joint acceleration. The equations are Newton's and Euler's about the
+/// centres of mass on inertial axes. The kinematics come from poses differentiated twice as
+/// functions of time. In 64 bits of mantissa.
 
 using namespace kreisel;
 
@@ -50,7 +50,7 @@ M3 hat(const V3& a) {
 }
 V3 unhat(const M3& m) { return V3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)) / 2; }
 
-/// The rotation of a quaternion whose norm does not change with time.
+/// The rotation of a quaternion with constant norm.
 JM turn(const J& x, const J& y, const J& z, const J& w) {
   const L norm2 = x.value * x.value + y.value * y.value + z.value * z.value + w.value * w.value;
   const J k(2 / norm2);
@@ -86,7 +86,7 @@ struct JetPose {
   JV x = still(V3(V3::Zero()));
 };
 
-/// The guide about this moment, to second order in time.
+/// The guide near this time, to second order in time.
 JetPose guide_pose(const FrameMotion<Guide, Inertial>& g) {
   const M3 R = test::cast<L>(g.X.value.rotation);
   const M3 u = hat(wide(g.V.value.resultant));
@@ -133,7 +133,7 @@ struct Kinematics {
   V3 x, w, v, dw, a;
 };
 
-/// Everything that the bodies do while the joint rates stay what they are.
+/// The motion of all bodies at constant joint rates.
 std::vector<Kinematics> kinematics(const std::vector<BodyDescription>& bodies, const Joints& joints,
                                    const JetPose& guide, const LongVector& q, const LongVector& v) {
   std::vector<JetPose> poses;
@@ -208,7 +208,7 @@ Truth newton_euler(const std::vector<BodyDescription>& bodies, const JetPose& gu
   const auto n = static_cast<int>(bodies.size());
   Truth truth;
   truth.now = kinematics(bodies, joints, guide, q, v);
-  // How each rate moves each body: its velocities when that rate alone is 1.
+  // Partial velocities: the velocities of each body if one rate alone is 1.
   JetPose resting = guide;
   for (J& x : resting.R.reshaped()) x = J(x.value);
   for (J& x : resting.x) x = J(x.value);
@@ -251,7 +251,7 @@ Truth newton_euler(const std::vector<BodyDescription>& bodies, const JetPose& gu
     b.segment<3>(f + 3) = load.n - c.cross(load.f) - m.w.cross(about_centre * m.w);
     const int parent = joints.parent[std::size_t(i)];
     if (parent >= 0) {
-      // What acts on the body acts back on its parent, at the same point.
+      // A reaction acts on the body and, reversed, on its parent at the same point.
       const Kinematics& p = truth.now[std::size_t(parent)];
       const Inertia<>& Tp = bodies[std::size_t(parent)].inertia.value;
       const V3 parent_centre =
@@ -296,7 +296,8 @@ struct PointLoad {
   Vector3<double> force, torque, point;
 };
 
-/// A load that looks at place and velocity: drag -k v' - d u', with a spring to the guide's origin.
+/// A load that depends on position and velocity: drag -k v' - d u', with a spring to the guide's
+/// origin.
 struct Drag {
   double k, d, c;
 
@@ -307,13 +308,13 @@ struct Drag {
   }
 };
 
-/// A guide that a test holds at one moment of its motion.
+/// A guide frozen at one time of its motion.
 struct FrozenGuide {
   FrameMotion<Guide, Inertial> motion;
   FrameMotion<Guide, Inertial> operator()(double) const { return motion; }
 };
 
-/// A system at one moment, made from a seed.
+/// A system at one time, made from a seed.
 struct RandomSystem {
   std::vector<BodyDescription> bodies;
   std::vector<PointLoad> loads;
@@ -407,7 +408,7 @@ struct RandomSystem {
 
   [[nodiscard]] BodySystem<FrozenGuide> system() const { return {guide, bodies, gravity}; }
 
-  /// The same with the extra joint forces among those of the description.
+  /// The same with the extra joint forces included in the description.
   [[nodiscard]] BodySystem<FrozenGuide> pushed() const {
     const Joints joints(bodies);
     std::vector<BodyDescription> pushed = bodies;
@@ -488,8 +489,8 @@ double distance(const Truth& truth, const Reaction& reaction_of) {
   return worst;
 }
 
-/// Of the mass matrix scaled to a diagonal of 1: how much rounding of forces may grow in the
-/// accelerations whatever the method.
+/// Condition of the mass matrix scaled to a diagonal of 1: the amplification of rounding in forces
+/// by any method.
 double condition(const Eigen::MatrixXd& mass) {
   if (mass.rows() == 0) return 1;
   const Eigen::VectorXd scale = mass.diagonal().cwiseSqrt().cwiseInverse();
@@ -505,7 +506,7 @@ constexpr std::uint64_t seeds = 1200;
 BOOST_AUTO_TEST_SUITE(a_random_tree)
 
 // Relative to the largest acceleration and to the largest force, times the condition of the mass
-// matrix where that is above 1e3.
+// matrix if that is above 1e3.
 BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler) {
   double worst_dv = 0;
   double worst_reaction = 0;
@@ -596,8 +597,8 @@ BOOST_AUTO_TEST_CASE(splits_its_reactions_by_cause) {
   BOOST_TEST_MESSAGE("parts of reactions: " << worst);
 }
 
-// Actio = reactio: what a body gets from its joints and loads is what its motion takes, (26), and
-// drives give what inverse dynamics asks for, where there are any.
+// Action equals reaction: the forces of joints and loads on a body equal those of its motion, (26).
+// Drives give the torque of inverse dynamics, if there are any.
 BOOST_AUTO_TEST_CASE(balances_every_body) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {
@@ -672,7 +673,7 @@ BOOST_AUTO_TEST_CASE(inverse_dynamics_returns_the_forces) {
   }
 }
 
-// Column by column from the inverse dynamics, and symmetric and positive.
+// Column by column from the inverse dynamics; symmetric and positive.
 BOOST_AUTO_TEST_CASE(has_the_mass_matrix_of_its_inverse_dynamics) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {

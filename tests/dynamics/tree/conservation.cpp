@@ -1,5 +1,5 @@
-// Invariants that scenes list, against their values along motions; and that loads list none that they
-// do not keep.
+// Listed invariants of scenes against their values along motions. Loads must not list invariants
+// that they do not keep.
 
 #include <boost/test/unit_test.hpp>
 
@@ -39,7 +39,7 @@ bool has(const Names& all, const std::string& name) {
   return std::find(all.begin(), all.end(), name) != all.end();
 }
 
-/// Steps held to 1e-12 drift by some 1e-10 of what is exchanged, here of the order of 1 to 100.
+/// Steps held to 1e-12 drift by some 1e-10 of the exchanged energy, here of the order of 1 to 100.
 template <class Scene>
 void check_kept(const Scene& scene, const typename Scene::State& start, const std::string& what) {
   Integrator run(scene, 0, start, {.relative = 1e-12});
@@ -72,7 +72,7 @@ BodyDescription described(const std::string& name, const Joint& joint,
 
 const Joint free_joint{.kind = JointKind::free};
 
-/// Whether a tree and a free body that bear a load list the energy as invariant.
+/// True if a tree and a free body with a load list the energy as invariant.
 template <class L>
 std::pair<bool, bool> list_energy(const L& load) {
   const BodySystem tree(RestingFrame<>{}, {described("m", free_joint, {load})});
@@ -80,7 +80,7 @@ std::pair<bool, bool> list_energy(const L& load) {
   return {has(names(tree, tree.rest()), "energy"), has(names(single, {}), "energy")};
 }
 
-/// A load of a user's with a potential that changes as time goes.
+/// A user's load with a time-dependent potential.
 struct Tide {
   static constexpr bool ignores_guide = true;
 
@@ -162,7 +162,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(invariants_of_trees)
 
-// All that random trees list stays, on guides at rest and in motion, with gravity and without.
+// All listed invariants of random trees are constant, on guides at rest and in motion, with gravity
+// and without.
 BOOST_AUTO_TEST_CASE(listed_ones_are_constant_along_motions) {
   const std::vector<Gravity> gravities{Gravity{}, UniformGravity<Guide>{{1, 2, -9}},
                                        UniformGravity<Inertial>{{0, 0, -9}}};
@@ -233,7 +234,7 @@ BOOST_AUTO_TEST_CASE(momenta_are_listed_if_nothing_acts) {
   const Joint cross{.kind = JointKind::universal, .axis = {0, 0, 1}, .second_axis = {1, 0, 0}};
   expect(listed({described("cross", cross)}, weight),
          {"angular momentum about the axis of 'cross'"});
-  // A spring in the joint of the root acts from outside, one further out does not.
+  // A spring in the root's joint acts from outside, one further out does not.
   auto sprung = described("door", turning({0, 0, 1}));
   sprung.forces = {{.stiffness = 3}};
   expect(listed({sprung}), {});
@@ -241,12 +242,12 @@ BOOST_AUTO_TEST_CASE(momenta_are_listed_if_nothing_acts) {
   leaf.name = "leaf";
   leaf.parent = "door";
   expect(listed({described("door", turning({0, 0, 1})), leaf}), {about});
-  // Two parts are told apart; a load on one of them leaves the other alone.
+  // Both parts are treated separately; a load on one does not affect the other.
   auto pulled = described("pulled", ball, {Spring<>{{0, 0, 5}, {0, 0, 0.1}, 10, 1}});
   expect(listed({described("ball", ball), pulled}),
          {"angular momentum x of 'ball'", "angular momentum y of 'ball'",
           "angular momentum z of 'ball'"});
-  // What stands on a fixed body stands still.
+  // A body on a fixed body does not move.
   auto stand = described("stand", {.kind = JointKind::fixed, .position = {0, 0, 1}});
   auto on_stand = described("ball", ball);
   on_stand.parent = "stand";

@@ -29,7 +29,7 @@ double off(const Eigen::MatrixXd& found, const Eigen::MatrixXd& truth) {
   return (found - truth).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / truth.cwiseAbs().maxCoeff();
 }
 
-/// The state of a snapshot, its attitude none, so that root and guide axes are the same.
+/// The state of a snapshot without its attitude, so that root and guide axes are equal.
 template <class System>
 Eigen::VectorXd state(const System& system, const Json& snapshot) {
   auto s = system.rest();
@@ -47,8 +47,8 @@ Eigen::VectorXd state(const System& system, const Json& snapshot) {
   return system.to_vector(s);
 }
 
-/// What the reference's rates of the root's velocity on root axes have less than those on guide
-/// axes: the rates that the velocity has by turning.
+/// Difference of the reference's rates of the root's velocity on root axes to those on guide axes:
+/// the rates of the velocity due to rotation.
 Eigen::VectorXd turning_along(const Eigen::VectorXd& u, bool free) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
   if (free)
@@ -129,8 +129,8 @@ BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   }
 }
 
-// On a table that turns, under weight: what the matrices say of the accelerations is what the bodies
-// do, which are computed without them.
+// On a turning table, under weight: the accelerations by the matrices agree with those of the
+// bodies, which are computed without them.
 BOOST_AUTO_TEST_CASE(move_the_bodies_on_a_turning_guide) {
   const RotatingFrame<> table{{0.3, -0.2, 0.5}};
   for (const RotorMode mode : {RotorMode::regulated, RotorMode::free}) {
@@ -148,8 +148,8 @@ BOOST_AUTO_TEST_CASE(move_the_bodies_on_a_turning_guide) {
   }
 }
 
-// A wheel pinned to a satellite: B does not change, and (14) says G_R = 0; in truth the wheel's
-// momentum resists every turn across it.
+// A wheel fixed to a satellite: B is constant, and (14) gives G_R = 0; in truth the wheel's
+// momentum resists every transverse rotation.
 BOOST_AUTO_TEST_CASE(contain_a_wheel_fixed_in_a_satellite) {
   BodyDescription satellite;
   satellite.name = "satellite";
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(contain_a_wheel_fixed_in_a_satellite) {
   BOOST_TEST((rank.kernel - rank.kernel(2, 0) * Vector3<double>::UnitZ()).norm() <= 1e-14);
 }
 
-// det G_R != 0 cannot be met by the paper's own example: three rotors, eight velocities.
+// det G_R != 0 is impossible in the paper's own example: three rotors, eight velocities.
 BOOST_AUTO_TEST_CASE(have_a_rank_of_twice_the_rotors_at_most) {
   const auto system =
       resting(test::model_bodies("platform", Root::ball, Json::object(), RotorMode::regulated));
@@ -207,8 +207,8 @@ BOOST_AUTO_TEST_CASE(have_a_rank_of_twice_the_rotors_at_most) {
   BOOST_TEST(gyroscopic_rank(rotor_matrices(fixed, 0, fixed.to_vector(frames), w2)).rank == 4);
 }
 
-// The paper's (11) for rows 1 to 3, as it stands for rates of coordinates, is the exact equation
-// with a torque W x (A* u + B^t L) that nobody exerts. The reference has the numbers.
+// The paper's (11) for rows 1 to 3 is valid for rates of coordinates. Here it is the exact equation
+// with a spurious torque W x (A* u + B^t L). The reference has the numbers.
 BOOST_AUTO_TEST_CASE(refute_rows_1_to_3_of_the_paper) {
   for (const auto& [name, source, model] :
        {std::array<const char*, 3>{"T8_platform_free_base_regulated",

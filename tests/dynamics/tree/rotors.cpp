@@ -17,7 +17,7 @@
 
 #include <support/worst.hpp>
 
-/// Trees with rotors against plain Newton-Euler, in which a rotor is a body like any other.
+/// Trees with rotors against plain Newton-Euler, in which a rotor is an ordinary body.
 
 using namespace kreisel;
 using test::Json;
@@ -60,7 +60,7 @@ Eigen::VectorXd state(Root root, const Json& row) {
   return y;
 }
 
-/// The rates' rates that a row tells, in the order of the state, without those of a free place.
+/// The accelerations of a row, in the order of the state, without those of a free position.
 Eigen::VectorXd accelerations(Root root, const Json& row) {
   Eigen::VectorXd joints = numbers(row["joint_acc"]);
   if (root == Root::none || root == Root::fixed) return joints;
@@ -82,8 +82,7 @@ struct Worst {
   double acceleration = 0, drive = 0, base = 0, momentum = 0, energy = 0, motion = 0, spin = 0;
 };
 
-/// Every row of a trajectory: what a system computes at the state of the row, and where it comes to
-/// from the first row on its own.
+/// Every row of a trajectory: the results at the row's state, and the motion from the first row on.
 template <class System>
 Worst compare(const System& system, Root root, const std::string& name) {
   Worst worst;
@@ -102,7 +101,7 @@ Worst compare(const System& system, Root root, const std::string& name) {
     system.reactions(t, y, r, w);
     for (const auto& [rotor, torque] : row["drive_torque"].items()) {
       const int v = system.tree().place(system.tree().index(rotor)).v;
-      // The carriers' accelerations are what it is made of.
+      // The carriers' accelerations are its terms.
       const double size = std::max(std::abs(number(torque)),
                                    1e-4 * std::abs(number(row["rotor_momentum_weight_l"][rotor])));
       worst.drive = test::worst_of(worst.drive, std::abs(r.drive[v] - number(torque)) / size);
@@ -126,7 +125,8 @@ Worst compare(const System& system, Root root, const std::string& name) {
       for (int i = 0; i < system.body_count(); ++i) {
         const JointPlace p = system.tree().place(i);
         const double turned = std::abs(y[p.q]);
-        // Together, for the small ones pass through 0; a rotor alone, for it turns far.
+        // All together, because the small ones pass through 0; a rotor alone, because its angle is
+        // large.
         if (system.tree().body(i).rotor) {
           const double far = std::max(1.0, turned);
           worst.spin = test::worst_of(worst.spin, std::abs(found[p.q] - y[p.q]) / far,
@@ -188,7 +188,7 @@ std::string message_of(const std::function<void()>& action) {
   return "";
 }
 
-/// A frame and a rotor in it that is one.
+/// A frame and a rotor in it.
 std::vector<BodyDescription> frame_and_rotor() {
   BodyDescription frame;
   frame.name = "frame";
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler) {
   }
 }
 
-// The base kept at rest, or moved as the guide is: what torque that takes.
+// The base at rest, or moving like the guide: the torque for that.
 BOOST_AUTO_TEST_CASE(needs_the_base_torque_of_the_reference) {
   for (const char* name : {"T1_cardan_regulated", "T2_cardan_free"}) {
     BOOST_TEST_CONTEXT(name) {
@@ -261,8 +261,8 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_reference_between_springs) {
   }
 }
 
-// Of the same momentum, with less and less moment of inertia, in long runs and in short ones, where
-// the first steps count. An ordinary body at 1e6 rad/s takes a thousand times the steps of one at
+// The same momentum with ever smaller moments of inertia, in long runs and in short ones, in which
+// the first steps matter. An ordinary body at 1e6 rad/s needs a thousand times the steps of one at
 // 1e3.
 BOOST_AUTO_TEST_CASE(costs_the_same_at_any_speed) {
   const auto evaluations = [](RotorMode mode, double rate, double end) {
@@ -292,8 +292,8 @@ BOOST_AUTO_TEST_CASE(costs_the_same_at_any_speed) {
   }
 }
 
-// All forces and accelerations are linear in the speed of a regulated rotor; nothing of the size of
-// C phi'^2 may come and go. With the rotor as an ordinary body it does.
+// All forces and accelerations are linear in the speed of a regulated rotor; no term of the size of
+// C phi'^2 may cancel. With the rotor as an ordinary body such terms cancel.
 BOOST_AUTO_TEST_CASE(loses_no_digits_at_1e6_rad_per_second) {
   const auto unevenness = [](bool rotor) {
     auto bodies = test::model_bodies("cardan", Root::none, Json::object(), RotorMode::regulated);
@@ -343,7 +343,7 @@ BOOST_AUTO_TEST_CASE(follows_the_given_speed) {
   BOOST_TEST(std::abs(end.rates[1] - (100 + 5 * std::sin(12.0))) <= 1e-10);
   BOOST_TEST(std::abs(end.coordinates[1] - (150 + 0.625 * (1 - std::cos(12.0)))) <= 1e-10);
   BOOST_TEST(system.conserved(0, state).empty());
-  // The same as an ordinary body that is given the torque which that takes.
+  // The same as an ordinary body with the torque of that motion.
   BodyWorkspace w = system.workspace();
   JointReactions r;
   const auto y = system.to_vector(end);
@@ -393,7 +393,7 @@ BOOST_AUTO_TEST_CASE(conserves_its_listed_invariants) {
                                             : Names{"energy"});
     BOOST_TEST(drift(system, start, 2) == expected, boost::test_tools::per_element());
   }
-  // The cyclic momentum stays whatever the guide does.
+  // The cyclic momentum is constant for any guide motion.
   const BodySystem<RotatingFrame<>> turning({.angular_velocity = {0.3, -0.2, 0.5}},
                                             frame_and_rotor(), UniformGravity<Guide>{{0, -9, 2}});
   auto start = turning.rest();

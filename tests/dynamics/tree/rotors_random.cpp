@@ -13,9 +13,9 @@
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
-/// Random trees with rotors against the same trees with ordinary bodies in their place, which know
-/// nothing of rotors: a free rotor is a revolute joint without force, a driven one has its torque
-/// as joint force, a regulated one is held at constant rate.
+/// Random trees with rotors against the same trees with ordinary bodies in their place. A free
+/// rotor is a revolute joint without force, a driven one has its torque as joint force, a regulated
+/// one has a constant rate.
 
 using namespace kreisel;
 
@@ -26,7 +26,7 @@ struct FrozenGuide {
   [[nodiscard]] FrameMotion<Guide, Inertial> operator()(double) const { return motion; }
 };
 
-/// Weight by another name, which a rotor may have.
+/// Weight as a user's load, which a rotor may have.
 struct Attraction {
   static constexpr bool ignores_spin = true;
   UniformGravity<Inertial> field;
@@ -225,7 +225,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_tree_of_ordinary_bodies) {
       const double energy = n.kinetic_energy + n.relative_kinetic_energy;
       balance.note(std::abs(m.kinetic_energy - n.kinetic_energy), energy);
       balance.note(std::abs(m.relative_kinetic_energy - n.relative_kinetic_energy), energy);
-      // What a regulated rotor's constant force does, its motor undoes.
+      // The motor of a regulated rotor compensates its constant force.
       double potential = n.potential_energy;
       for (int i = 0; i < a.body_count(); ++i) {
         const BodyDescription& body = a.tree().body(i);
@@ -261,7 +261,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_the_tree_of_ordinary_bodies) {
                             << ", terms " << terms.value);
 }
 
-// A_eff u' + c + G_R u = Q, where forces rule.
+// A_eff u' + c + G_R u = Q, for joints with given forces.
 BOOST_AUTO_TEST_CASE(obeys_its_matrices) {
   double worst = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
@@ -352,7 +352,7 @@ BOOST_AUTO_TEST_CASE(refuses_unsupported_dual_numbers) {
   BOOST_CHECK_THROW((void)loaded.rates(0, y), InvalidInput);
 }
 
-// How a rotor stands is nothing to anybody else, to the last bit.
+// The angle of a rotor affects nothing else, exactly.
 BOOST_AUTO_TEST_CASE(does_not_depend_on_the_rotor_angle) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     BOOST_TEST_CONTEXT("seed = " << seed) {

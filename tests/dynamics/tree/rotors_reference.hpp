@@ -10,8 +10,8 @@
 
 #include <support/json.hpp>
 
-/// The systems of tests/data/rotors.json: models with rotors in exact decimals, and what plain
-/// Newton-Euler says of them in 66 digits.
+/// The systems of tests/data/rotors.json: models with rotors in exact decimals, and the results of
+/// plain Newton-Euler in 66 digits.
 
 namespace kreisel::test {
 
@@ -32,14 +32,14 @@ namespace kreisel::test {
   return json;
 }
 
-/// How the root of a model is held: not there at all, or by a joint.
+/// The root's joint in a model; none if there is no root.
 enum class Root { none, fixed, ball, free };
 
 [[nodiscard]] inline InertiaTensor<Body> model_inertia(const Json& body) {
   return InertiaTensor<Body>::about_centre(number(body["m"]), numbers(body["c"]), rows(body["I"]));
 }
 
-/// A model, its rotors all in one mode, or ordinary bodies.
+/// A model, its rotors all in one mode, or as ordinary bodies.
 [[nodiscard]] inline std::vector<BodyDescription> model_bodies(const std::string& name, Root root,
                                                                const Json& springs,
                                                                std::optional<RotorMode> mode) {

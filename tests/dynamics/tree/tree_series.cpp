@@ -21,8 +21,8 @@ namespace data = boost::unit_test::data;
 
 namespace {
 
-/// Where a body hangs on another that is lighter the accelerations differ by more than rounding of
-/// each: 1e-13 is 450u.
+/// If a body hangs on a lighter one, the accelerations differ by more than rounding of each: 1e-13
+/// is 450u.
 template <class M>
 void hold_tree(const std::string& what, const BodySystem<M>& system, std::uint64_t seed) {
   BOOST_TEST_REQUIRE(system.knows_series());
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(agrees_for_floating_and_braked_bodies) {
   hold_tree("braked", BodySystem(RestingFrame<>{}, {body}, UniformGravity<Guide>{{0, 0, -9}}), 0);
 }
 
-/// Of a pendulum, which has a series of its own.
+/// The series of a pendulum, which also has one of its own.
 BOOST_AUTO_TEST_CASE(agrees_for_a_pendulum) {
   BodyDescription rod;
   rod.name = "rod";
