@@ -68,7 +68,7 @@ class Kreisel(ConanFile):
     def package(self):
         CMake(self).install()
         copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
-        for folder in ("share", "lib/cmake", "lib/pkgconfig"):  # Conan writes its own
+        for folder in ("share", "lib/cmake", "lib/pkgconfig"):  # Conan writes its own files
             rmdir(self, os.path.join(self.package_folder, folder))
 
     def package_info(self):

@@ -1,4 +1,4 @@
-# An overlay port that packs the sources it lies in:
+# An overlay port for the sources that contain it:
 #
 #   vcpkg install kreisel --overlay-ports=<kreisel>/packaging/vcpkg
 cmake_path(SET SOURCE_PATH NORMALIZE "${CURRENT_PORT_DIR}/../..")

@@ -1,4 +1,4 @@
-# README shows examples/parts_of_a_force.cpp and what it prints. Does it still?
+# Tests that README shows examples/parts_of_a_force.cpp and its output.
 #
 # cmake -D README=<file> -D SOURCE=<file> -D PROGRAM=<executable> -P readme.cmake
 
@@ -6,9 +6,9 @@ file(READ ${README} readme)
 file(READ ${SOURCE} source)
 execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
 
-string(FIND "${source}" "#include" start) # the comment above it is not shown
+string(FIND "${source}" "#include" start) # without the comment above it
 string(SUBSTRING "${source}" ${start} -1 source)
-string(REGEX REPLACE "\n\n(#include|using)" "\n\\1" source "${source}") # nor are the blank lines
+string(REGEX REPLACE "\n\n(#include|using)" "\n\\1" source "${source}") # without the blank lines
 string(REGEX REPLACE "([^\n]+)\n" "    \\1\n" output "${output}")
 
 foreach(part source output)

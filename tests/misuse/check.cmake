@@ -1,7 +1,7 @@
 # cmake -DCOMPILER= -DSOURCE= -DINCLUDES= -DMAX_LINES= -P check.cmake
 #
-# SOURCE must compile; with -DMISUSE it must be refused, in at most MAX_LINES lines that match every
-# regular expression after "// refused: " in SOURCE.
+# SOURCE must compile. With -DMISUSE it must be refused, in at most MAX_LINES lines. These must
+# match every regular expression after "// refused: " in SOURCE.
 
 set(ENV{LC_ALL} C)  # plain quotes in messages, on every machine
 list(TRANSFORM INCLUDES PREPEND -isystem)

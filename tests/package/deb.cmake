@@ -1,6 +1,7 @@
 # cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D LIBDIR=<folder> -D OUT=<folder> -P deb.cmake
 #
-# Makes the Debian packages of a build, checks what they depend on and hold, unpacks them into OUT/root.
+# Makes a .deb of the installation in TREE, checks its metadata and contents, unpacks it into
+# OUT/root.
 
 file(REMOVE_RECURSE ${OUT})
 file(MAKE_DIRECTORY ${OUT})

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Counts with callgrind what the forms of each piece of work take, and holds one of them against
-# another. Without valgrind it says so and returns 77.
+# Counts with callgrind the instructions of each form of a piece of work, and compares two forms.
+# Without valgrind it prints that and returns 77.
 #
 # Usage: instructions.sh <program> <function> <form> <other form> <limit> [--table <form>...]
 #
-# The program does the work of every "<case>: <form>" a thousand times in functions named so, and has
-# callgrind write a dump of that name after each. --table writes the counts of some forms as a
-# Markdown table and judges nothing.
+# The program runs every "<case>: <form>" a thousand times in functions of these names. Callgrind
+# writes a dump of that name after each. --table writes the counts of some forms as a Markdown table
+# without a verdict.
 set -euo pipefail
 
 if ! command -v valgrind >/dev/null; then
@@ -28,8 +28,8 @@ valgrind --tool=callgrind --collect-atstart=no --toggle-collect="*$function<*" \
   exit 1
 }
 
-# Every dump: its description ends with "<case>: <form>", its totals are those of 1000 calls. In the
-# order in which they were written.
+# Every dump: its description ends with "<case>: <form>", its totals are those of 1000 calls. Sorted
+# by the order in which they were written.
 find "$folder" -name 'dump.*' | sort -t. -k"$(awk -F. '{ print NF }' <<<"$folder/dump.1")" -n |
   xargs awk -v limit="$limit" -v form="$form" -v other="$other" -v table="$table" '
     /^desc: Trigger: Client Request: / {
