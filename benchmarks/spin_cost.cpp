@@ -142,10 +142,10 @@ Point exact(const System& system, const System::State& from, double span) {
   return at_equal_accuracy(system, from, span, truth(system, from, span));
 }
 
-/// The forces of the technical equations, with a counter of calls.
-class Counted final : public TechnicalModel {
+/// The technical equations' forces, counted.
+class Counted final : public PrecessionModel {
  public:
-  explicit Counted(const TechnicalModel& model) : model_(&model) {}
+  explicit Counted(const PrecessionModel& model) : model_(&model) {}
 
   [[nodiscard]] GyroForces forces(double t, const VectorXd& place) const override {
     ++count_;
@@ -171,7 +171,7 @@ class Counted final : public TechnicalModel {
   [[nodiscard]] double count() const { return count_; }
 
  private:
-  const TechnicalModel* model_;
+  const PrecessionModel* model_;
   mutable double count_ = 0;
 };
 
@@ -216,11 +216,11 @@ void add_momentum(std::vector<Measurement>& tasks, double momentum, bool exactly
   const double speed = momentum / C;
   const auto work = [=](std::vector<Point>& points) {
     const System system = gyro(RotorMode::regulated, momentum, speed);
-    const TechnicalBodies<RestingFrame<>> bodies(system);
+    const PrecessionBodies<RestingFrame<>> bodies(system);
     const auto [place, still] = bodies.start(0, System::to_vector(start(system, {0, 0}, speed)));
-    const TechnicalOptions options{.accuracy = {.relative = 1e-11}, .tolerated_error = wanted};
+    const PrecessionOptions options{.accuracy = {.relative = 1e-11}, .tolerated_error = wanted};
     const auto slow =
-        technical_motion(bodies, 0, place, still, 1e-6, options).samples.front().velocity;
+        precession_motion(bodies, 0, place, still, 1e-6, options).samples.front().velocity;
     std::optional<Eigen::Vector2d> end;
     if (exactly) {
       const auto excited = start(system, {0.5, 0}, speed), from = start(system, slow, speed);
@@ -233,9 +233,9 @@ void add_momentum(std::vector<Measurement>& tasks, double momentum, bool exactly
 
     const Counted model(bodies);
     const double begin = clock_seconds();
-    const TechnicalMotion motion = technical_motion(model, 0, place, slow, span, options);
+    const PrecessionMotion motion = precession_motion(model, 0, place, slow, span, options);
     if (!motion.slow) return;
-    const TechnicalSample& last = motion.samples.back();
+    const PrecessionSample& last = motion.samples.back();
     Point p;
     p.evaluations = model.count() / span;
     p.seconds = (clock_seconds() - begin) / span;

@@ -21,10 +21,10 @@ const Gyro gyro({{1e-4, 1e-4, 1.6e-4}, {2.1e-4, 2.3e-4, 2.4e-4}, {1.5e-3, 1e-3, 
 std::pair<IntegrationStatistics, IntegrationStatistics> compare(double speed, const auto& note) {
   const Gyro::State start{.alpha = 0.2, .beta = -0.1, .phi_rate = speed};
   const Eigen::Vector2d angles(start.alpha, start.beta), rest(0, 0);
-  const auto motion = technical_motion(TechnicalGimbals(gyro, 0, start), 0, angles, rest, 1);
+  const auto motion = precession_motion(PrecessionGimbals(gyro, 0, start), 0, angles, rest, 1);
   const auto field = [](double t, const Gyro::Vector& y) { return gyro.rates(t, y); };
   ExplicitRungeKutta exact(field, 0.0, gyro.to_vector(start), {.relative = 1e-12}, gyro.blocks);
-  for (double from = 0, error = 0; const TechnicalSample& s : motion.samples) {
+  for (double from = 0, error = 0; const PrecessionSample& s : motion.samples) {
     for (int i = 1; i <= 8; ++i) {  // the nutation is finer than the steps
       const double t = i < 8 ? from + (s.t - from) * i / 8 : s.t;
       while (!exact.covers(t)) exact.step_towards(1);

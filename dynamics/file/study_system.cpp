@@ -78,9 +78,9 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
     check.beyond = "there is no rotor among the bodies";
     return check;
   }
-  TechnicalOptions options;
+  PrecessionOptions options;
   try {
-    const TechnicalBodies<SceneGuide> model(*bodies_);
+    const PrecessionBodies<SceneGuide> model(*bodies_);
     const auto [place, u] = model.start(0, start);
     check.velocities = static_cast<int>(u.size());
     if (rest.size() == 0) {
@@ -92,13 +92,13 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
       check.rank = a.rank;
       check.test = {a.admissible(), reason(a.obstacle), a.greatest_shift, {}};
       for (const SlowRoot& root : a.slow) {
-        check.test.slow.push_back({root.technical, root.exact});
+        check.test.slow.push_back({root.precession, root.exact});
       }
       options.kept = a.kept;
     }
     try {
-      const auto motion = technical_motion(model, 0, place, u, t_end, options);
-      const TechnicalSample& last = motion.samples.back();
+      const auto motion = precession_motion(model, 0, place, u, t_end, options);
+      const PrecessionSample& last = motion.samples.back();
       check.kept = motion.kept;
       check.motion = {last.t, last.bound, 0, motion.valid_until, motion.slow};
       for (const auto& sample : motion.samples) {
@@ -117,11 +117,11 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
 
 std::vector<StudySystem::Vector> StudySystem::technical(const Vector& start,
                                                         const std::vector<double>& times) const {
-  const TechnicalBodies<SceneGuide> model(*bodies_);
+  const PrecessionBodies<SceneGuide> model(*bodies_);
   const auto [place, u] = model.start(0, start);
-  TechnicalOptions options;
+  PrecessionOptions options;
   options.output_times = times;
-  const auto motion = technical_motion(model, 0, place, u, times.back(), options);
+  const auto motion = precession_motion(model, 0, place, u, times.back(), options);
   std::vector<Vector> states;
   for (const auto& sample : motion.outputs) {
     states.push_back(model.state(sample.t, sample.place, sample.velocity));

@@ -25,7 +25,7 @@ namespace kreisel {
 namespace detail {
 
 template <class... Words>
-[[noreturn]] void refuse_technical(double t, const Words&... words) {
+[[noreturn]] void refuse_precession(double t, const Words&... words) {
   std::ostringstream text;
   text.precision(10);
   text << "precession equations at t = " << t << " s: ";
@@ -49,7 +49,7 @@ struct Nutations {
   Eigen::VectorXd offset;   ///< of their centre from the start
   Eigen::VectorXd kick;     ///< of v
 
-  Nutations(const Directions& d, const TechnicalPoint& p, const Eigen::VectorXd& mismatch)
+  Nutations(const Directions& d, const PrecessionPoint& p, const Eigen::VectorXd& mismatch)
       : offset(Eigen::VectorXd::Zero(p.u.size())), kick(Eigen::VectorXd::Zero(d.N.cols())) {
     if (d.P.cols() == 0) return;
     const Eigen::VectorXd w = d.P_t * mismatch;
@@ -74,17 +74,17 @@ struct Nutations {
   }
 
   /// The least |root| of the nutations at one point.
-  [[nodiscard]] static double slowest(const Directions& d, const TechnicalPoint& p) {
+  [[nodiscard]] static double slowest(const Directions& d, const PrecessionPoint& p) {
     if (d.P.cols() == 0) return std::numeric_limits<double>::infinity();
     return eigenvalues(state_matrix(d, p, across(d, p))).cwiseAbs().minCoeff();
   }
 
  private:
   /// A_f
-  [[nodiscard]] static Eigen::MatrixXd across(const Directions& d, const TechnicalPoint& p) {
+  [[nodiscard]] static Eigen::MatrixXd across(const Directions& d, const PrecessionPoint& p) {
     return product(product(d.P_t, p.f.A), p.way);
   }
-  [[nodiscard]] static Eigen::MatrixXd state_matrix(const Directions& d, const TechnicalPoint& p,
+  [[nodiscard]] static Eigen::MatrixXd state_matrix(const Directions& d, const PrecessionPoint& p,
                                                     const Eigen::MatrixXd& A) {
     return -A.ldlt().solve(product(product(p.way.transpose(), p.W), d.P));
   }
@@ -92,11 +92,11 @@ struct Nutations {
 
 }  // namespace detail
 
-TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
-                                 const Eigen::VectorXd& place, const Eigen::VectorXd& u,
-                                 double t_end, const TechnicalOptions& options) {
+PrecessionMotion precession_motion(const PrecessionModel& model, double t_begin,
+                                   const Eigen::VectorXd& place, const Eigen::VectorXd& u,
+                                   double t_end, const PrecessionOptions& options) {
   using Eigen::VectorXd;
-  using Point = detail::TechnicalPoint;
+  using Point = detail::PrecessionPoint;
   const auto clock = std::chrono::steady_clock::now();
   const GyroForces at_start = model.forces(t_begin, place);
   const auto directions = detail::Directions::of(at_start.G, options);
@@ -135,7 +135,7 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
   blocks.insert(blocks.end(), static_cast<std::size_t>(kept), 1);
   ExplicitRungeKutta steps(field, t_begin, z, options.accuracy, blocks);
 
-  TechnicalMotion motion;
+  PrecessionMotion motion;
   motion.kept = static_cast<int>(kept);
   motion.valid_until = t_begin;
   std::optional<detail::Nutations> nutations;
@@ -143,7 +143,7 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
   double worst = 0, fastest_drift = 0;
   bool good = true;
   const auto note = [&](double t, const VectorXd& at, const Point& p) {
-    TechnicalSample s{t, at.head(n), p.u, e, nutations->amplitude(t - t_begin), 0};
+    PrecessionSample s{t, at.head(n), p.u, e, nutations->amplitude(t - t_begin), 0};
     worst = std::max(worst, (e.cwiseAbs() + s.nutation).norm());
     s.bound = (1.2 + 4 * motion.smallness) * worst;
     good = good && s.bound <= options.tolerated_error;
@@ -152,7 +152,7 @@ TechnicalMotion technical_motion(const TechnicalModel& model, double t_begin,
   };
 
   if (!point(t_begin, z).determined) {
-    detail::refuse_technical(
+    detail::refuse_precession(
         t_begin, "G + D does not determine the velocities; keep the accelerations on its kernel");
   }
   while (steps.t() != t_end && motion.slow) {

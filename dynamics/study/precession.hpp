@@ -30,7 +30,7 @@ enum class KeptAccelerations {
   none        ///< the paper's (15); only damping then determines the velocity on the kernel of G
 };
 
-struct TechnicalOptions {
+struct PrecessionOptions {
   KeptAccelerations kept = KeptAccelerations::on_kernel;
   /// Singular values of G below this part of the greatest count as 0.
   double rank_tolerance = 1e-6;
@@ -44,7 +44,7 @@ struct TechnicalOptions {
 /// A sample of a motion by the precession equations, at the end of a step.
 ///
 /// Units  : those of the coordinates and their rates
-struct TechnicalSample {
+struct PrecessionSample {
   double t = 0;
   Eigen::VectorXd place;     ///< coordinates of the model
   Eigen::VectorXd velocity;  ///< u
@@ -53,11 +53,11 @@ struct TechnicalSample {
   double bound = 0;          ///< of the distance of both motions up to this time, as a norm
 };
 
-struct TechnicalMotion {
-  std::vector<TechnicalSample> samples;
+struct PrecessionMotion {
+  std::vector<PrecessionSample> samples;
   /// At the requested times, as far as the motion went. Drift and nutation are absent; the bound is
   /// that of the step's end.
-  std::vector<TechnicalSample> outputs;
+  std::vector<PrecessionSample> outputs;
   int kept = 0;            ///< number of kept accelerations
   double smallness = 0;    ///< greatest ratio of the slow motion's rates to the nutations'
   bool slow = true;        ///< false: stopped because the motion is no longer slow, smallness 1/2
@@ -70,9 +70,9 @@ struct TechnicalMotion {
 /// Displacements e and velocities u have one component for each equation.
 ///
 /// Units  : s, and those of the system's coordinates and rates
-class TechnicalModel {
+class PrecessionModel {
  public:
-  virtual ~TechnicalModel() = default;
+  virtual ~PrecessionModel() = default;
 
   [[nodiscard]] virtual GyroForces forces(double t, const Eigen::VectorXd& place) const = 0;
 
@@ -123,14 +123,14 @@ class TechnicalModel {
 /// Source : paper 000 (15); errors: G^-1 A(u(0) - u_p(0)) and the integral of G^-1 r, here signed
 /// Error  : the true error lies in [0.1, 1] of the bound in >= 95 % of random cases
 ///          (tests/dynamics/study/precession.cpp) and where G is singular (precession_bodies.cpp).
-///          From rest it falls with the momenta L as L^-2, from the technical velocity as L^-3; as
+///          From rest it falls with the momenta L as L^-2, from the precession velocity as L^-3; as
 ///          L^-1 and L^-2 where inertia couples the kernel of G to the rest; as L^-1 where the
 ///          kernel turns away from the directions kept, which are those at the start
 /// Throws : as ExplicitRungeKutta; ComputationFailed if G + D (across N) is singular at the start
-KREISEL_API [[nodiscard]] TechnicalMotion technical_motion(const TechnicalModel& model,
-                                                           double t_begin,
-                                                           const Eigen::VectorXd& place,
-                                                           const Eigen::VectorXd& u, double t_end,
-                                                           const TechnicalOptions& options = {});
+KREISEL_API [[nodiscard]] PrecessionMotion precession_motion(const PrecessionModel& model,
+                                                             double t_begin,
+                                                             const Eigen::VectorXd& place,
+                                                             const Eigen::VectorXd& u, double t_end,
+                                                             const PrecessionOptions& options = {});
 
 }  // namespace kreisel

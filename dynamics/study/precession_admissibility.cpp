@@ -35,8 +35,9 @@ namespace detail {
 }
 
 /// The state matrix of the precession equations on (displacement; v).
-[[nodiscard]] inline Eigen::MatrixXd technical_matrix(const Directions& d, const TechnicalPoint& p,
-                                                      const Eigen::MatrixXd& K) {
+[[nodiscard]] inline Eigen::MatrixXd precession_matrix(const Directions& d,
+                                                       const PrecessionPoint& p,
+                                                       const Eigen::MatrixXd& K) {
   const Eigen::Index n = K.rows(), kept = d.N.cols();
   Eigen::MatrixXd T(n + kept, n + kept);
   for (Eigen::Index j = 0; j < n + kept; ++j) {
@@ -60,7 +61,7 @@ Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
   using Complex = std::complex<double>;
   const Eigen::Index n = K.rows();
   Admissibility result;
-  const TechnicalOptions on_kernel{.rank_tolerance = options.rank_tolerance};
+  const PrecessionOptions on_kernel{.rank_tolerance = options.rank_tolerance};
   auto d = detail::Directions::of(f.G, on_kernel);
   result.singular_values = detail::singular_values(f.G).values;
   result.rank = static_cast<int>(d.P.cols());
@@ -75,8 +76,8 @@ Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
   if (result.kept == KeptAccelerations::none) {
     d = detail::Directions::of(f.G, {.kept = KeptAccelerations::none});
   }
-  const detail::TechnicalPoint p(d, {f.A, f.G, f.D, Eigen::VectorXd::Zero(n)},
-                                 Eigen::VectorXd::Zero(d.N.cols()));
+  const detail::PrecessionPoint p(d, {f.A, f.G, f.D, Eigen::VectorXd::Zero(n)},
+                                  Eigen::VectorXd::Zero(d.N.cols()));
   if (!p.determined) {
     result.obstacle = Obstacle::not_determined;
     return result;
@@ -86,18 +87,18 @@ Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
     Eigen::MatrixXd mass, damping, stiffness;
   } const whole{f.A, p.W, K};
   std::vector<Mode> exact = spectrum(state_matrix(whole));
-  const std::vector<Mode> technical = spectrum(detail::technical_matrix(d, p, K));
+  const std::vector<Mode> precession = spectrum(detail::precession_matrix(d, p, K));
   const Eigen::MatrixXd A_kept = detail::product(detail::product(f.A, d.N), d.N_t);
   double size = 0, slow_growth = 0;
-  for (const Mode& mode : technical) size = std::max(size, std::abs(mode.root));
+  for (const Mode& mode : precession) size = std::max(size, std::abs(mode.root));
   const auto simple = [&](std::size_t i) {
-    return std::none_of(technical.begin(), technical.end(), [&](const Mode& other) {
-      return &other != &technical[i] &&
-             std::abs(other.root - technical[i].root) < 1e-6 * std::abs(other.root);
+    return std::none_of(precession.begin(), precession.end(), [&](const Mode& other) {
+      return &other != &precession[i] &&
+             std::abs(other.root - precession[i].root) < 1e-6 * std::abs(other.root);
     });
   };
-  for (std::size_t i = 0; i < technical.size(); ++i) {
-    const Complex s = technical[i].root;
+  for (std::size_t i = 0; i < precession.size(); ++i) {
+    const Complex s = precession[i].root;
     const auto next = std::min_element(
         exact.begin(), exact.end(),
         [&s](const Mode& a, const Mode& b) { return std::abs(a.root - s) < std::abs(b.root - s); });
@@ -117,9 +118,9 @@ Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
     }
     result.slow.push_back(root);
     for (std::size_t j = 0; j < i; ++j) {
-      const bool one = std::abs(technical[j].root - s) <= 1e-6 * std::abs(s) &&
+      const bool one = std::abs(precession[j].root - s) <= 1e-6 * std::abs(s) &&
                        std::abs(s) > 1e-6 * size &&
-                       detail::parallel(technical[i].shape, technical[j].shape);
+                       detail::parallel(precession[i].shape, precession[j].shape);
       if (one) result.obstacle = Obstacle::defective;
     }
   }
@@ -138,7 +139,7 @@ Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
   return result;
 }
 
-Eigen::MatrixXd stiffness(const TechnicalModel& model, double t, const Eigen::VectorXd& place) {
+Eigen::MatrixXd stiffness(const PrecessionModel& model, double t, const Eigen::VectorXd& place) {
   const Eigen::Index n = model.forces(t, place).A.rows();
   const double h = 1e-3;
   Eigen::MatrixXd K(n, n);

@@ -14,7 +14,7 @@ namespace kreisel {
 ///
 /// Units  : rad/s
 struct SlowRoot {
-  std::complex<double> technical;
+  std::complex<double> precession;
   std::complex<double> exact;
   /// precession + ds, ds = -s^2 y.(A - A N N') x / y.(W + 2 s A N N') x; not a number if the root
   /// is multiple
@@ -69,7 +69,7 @@ KREISEL_API [[nodiscard]] Admissibility admissibility(const GyroForces& f, const
 /// K = -dQ/d(displacement) of a model at rest in a position, by differences.
 ///
 /// Error  : of fourth order in steps of 1e-3
-KREISEL_API [[nodiscard]] Eigen::MatrixXd stiffness(const TechnicalModel& model, double t,
+KREISEL_API [[nodiscard]] Eigen::MatrixXd stiffness(const PrecessionModel& model, double t,
                                                     const Eigen::VectorXd& place);
 
 }  // namespace kreisel

@@ -26,9 +26,9 @@ namespace kreisel {
 ///          friction, there is no rotor, or nothing but rotors can move
 /// Cost   : one rotor_matrices() for each evaluation; with loads 2n more, for their damping
 template <class M>
-class TechnicalBodies final : public TechnicalModel {
+class PrecessionBodies final : public PrecessionModel {
  public:
-  explicit TechnicalBodies(BodySystem<M> system)
+  explicit PrecessionBodies(BodySystem<M> system)
       : system_(std::move(system)), workspace_(system_.workspace()) {
     const BodyTree& tree = system_.tree();
     const auto refuse = [&tree](int body, const char* why) {

@@ -23,7 +23,7 @@ namespace kreisel {
 /// Source : paper 000 (14) with B = (sin beta, 0)
 /// Throws : InvalidInput for a rotor that is not symmetric or has friction
 template <class M, class Rotor>
-class TechnicalGimbals final : public TechnicalModel {
+class PrecessionGimbals final : public PrecessionModel {
   static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, RegulatedRotor>,
                 "a driven rotor has no constant momentum");
 
@@ -31,8 +31,8 @@ class TechnicalGimbals final : public TechnicalModel {
   using Gyro = CardanGyro<M, Rotor>;
 
   /// The rotor has the speed of this state.
-  TechnicalGimbals(CardanGyro<M, Rotor> gyro, double t,
-                   const typename CardanGyro<M, Rotor>::State& start)
+  PrecessionGimbals(CardanGyro<M, Rotor> gyro, double t,
+                    const typename CardanGyro<M, Rotor>::State& start)
       : gyro_(std::move(gyro)) {
     const auto& rotor = gyro_.moments().rotor;
     if (rotor.x() != rotor.y() || gyro_.rotor().friction != 0) {

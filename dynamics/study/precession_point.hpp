@@ -25,7 +25,7 @@ struct Directions {
   Eigen::MatrixXd N_t = N.transpose();
   Eigen::MatrixXd P_t = P.transpose();
 
-  [[nodiscard]] static Directions of(const Eigen::MatrixXd& G, const TechnicalOptions& options) {
+  [[nodiscard]] static Directions of(const Eigen::MatrixXd& G, const PrecessionOptions& options) {
     const Eigen::Index n = G.rows();
     if (options.kept == KeptAccelerations::none) {
       return {Eigen::MatrixXd(n, 0), Eigen::MatrixXd::Identity(n, n)};
@@ -37,7 +37,7 @@ struct Directions {
 };
 
 /// Values at one position: u from the precession equations, and its response to more force.
-struct TechnicalPoint {
+struct PrecessionPoint {
   GyroForces f;
   Eigen::MatrixXd W;  ///< G + D
   Eigen::VectorXd u;
@@ -47,7 +47,7 @@ struct TechnicalPoint {
   bool determined = true;                    ///< true if it is regular
   Eigen::LDLT<Eigen::MatrixXd> along;        ///< N' A N
 
-  TechnicalPoint(const Directions& d, GyroForces forces, const Eigen::VectorXd& v)
+  PrecessionPoint(const Directions& d, GyroForces forces, const Eigen::VectorXd& v)
       : f(std::move(forces)), W(f.G + f.D), way(d.P) {
     if (d.N.cols() > 0) {
       const Eigen::MatrixXd N_A = product(d.N_t, f.A);

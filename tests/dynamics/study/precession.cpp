@@ -39,9 +39,9 @@ const Regulated::State start{.2 - slack_a, -.1 - slack_b, 0, 0, 0, 1000};
 /// The greatest distance in position from the exact motion, at the samples of the precession
 /// equations.
 template <class Exact, class Places>
-double true_error(Exact& exact, const Places& places, const TechnicalMotion& motion) {
+double true_error(Exact& exact, const Places& places, const PrecessionMotion& motion) {
   double worst = 0;
-  for (const TechnicalSample& s : motion.samples) {
+  for (const PrecessionSample& s : motion.samples) {
     exact.advance_to(s.t);
     worst = test::worst_of(worst, (places(exact.y()) - places(s.place)).norm());
   }
@@ -50,7 +50,7 @@ double true_error(Exact& exact, const Places& places, const TechnicalMotion& mot
 
 template <class Gyro>
 double true_error(const Gyro& gyro, const typename Gyro::State& from, double relative,
-                  const TechnicalMotion& motion) {
+                  const PrecessionMotion& motion) {
   const auto field = [&gyro](double t, const typename Gyro::Vector& y) { return gyro.rates(t, y); };
   ExplicitRungeKutta exact(field, 0.0, gyro.to_vector(from), {.relative = relative}, gyro.blocks);
   return true_error(
@@ -58,7 +58,7 @@ double true_error(const Gyro& gyro, const typename Gyro::State& from, double rel
 }
 
 struct Comparison {
-  TechnicalMotion motion;
+  PrecessionMotion motion;
   double error;
 };
 
@@ -67,7 +67,7 @@ Comparison compare(double spin, double end, bool with_velocity) {
   const Regulated gyro = gyro_of_the_reference();
   Regulated::State s = start;
   s.phi_rate = spin;
-  const TechnicalGimbals model(gyro, 0, s);
+  const PrecessionGimbals model(gyro, 0, s);
   const Eigen::Vector2d place(s.alpha, s.beta);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(2);
   if (with_velocity) {
@@ -76,7 +76,7 @@ Comparison compare(double spin, double end, bool with_velocity) {
     s.alpha_rate = u[0];
     s.beta_rate = u[1];
   }
-  TechnicalMotion motion = technical_motion(model, 0, place, u, end);
+  PrecessionMotion motion = precession_motion(model, 0, place, u, end);
   const double error = true_error(gyro, s, 1e-13, motion);
   return {std::move(motion), error};
 }
@@ -88,11 +88,11 @@ BOOST_AUTO_TEST_SUITE(precession_equations)
 BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   const Json& truth =
       test::rotors_reference()["trajectories"]["T13_cardan_springs_exact_and_precession"];
-  const TechnicalGimbals model(gyro_of_the_reference(), 0, start);
+  const PrecessionGimbals model(gyro_of_the_reference(), 0, start);
   const Eigen::Vector2d place(start.alpha, start.beta);
   for (const Json& row : truth["precession"]) {
     const auto motion =
-        technical_motion(model, 0, place, Eigen::VectorXd::Zero(2), number(row["t"]));
+        precession_motion(model, 0, place, Eigen::VectorXd::Zero(2), number(row["t"]));
     const Eigen::Vector2d found = motion.samples.back().place + Eigen::Vector2d(slack_a, slack_b);
     const double off = (found - numbers(row["q"])).norm();
     BOOST_TEST_MESSAGE("t = " << number(row["t"]) << " s: off by " << off << " rad, "
@@ -111,24 +111,24 @@ BOOST_AUTO_TEST_CASE(agree_for_the_gyro_as_bodies) {
   for (const RotorMode mode : {RotorMode::regulated, RotorMode::free}) {
     const BodySystem<RestingFrame<>> system(
         {}, test::model_bodies("cardan", test::Root::none, springs, mode));
-    const TechnicalBodies model(system);
+    const PrecessionBodies model(system);
     auto s = system.rest();
     s.coordinates[0] = .2;
     s.coordinates[1] = -.1;
     s.rates << 0.1, 0.3, 1000;
     const auto [place, u] = model.start(0, system.to_vector(s));
-    const auto motion = technical_motion(model, 0, place, u, 1);
+    const auto motion = precession_motion(model, 0, place, u, 1);
 
     const auto same = [&](auto rotor) {
       const CardanGyro gyro(gyro_of_the_reference().moments(),
                             {{.4, .002, slack_a}, {.3, .001, slack_b}}, RestingFrame<>{}, rotor);
       const typename decltype(gyro)::State from{.2 - slack_a, -.1 - slack_b, 0, 0.1, 0.3, 1000};
-      const TechnicalGimbals gimbals(gyro, 0, from);
-      return technical_motion(gimbals, 0, Eigen::Vector2d(from.alpha, from.beta),
-                              Eigen::Vector2d(0.1, 0.3), 1);
+      const PrecessionGimbals gimbals(gyro, 0, from);
+      return precession_motion(gimbals, 0, Eigen::Vector2d(from.alpha, from.beta),
+                               Eigen::Vector2d(0.1, 0.3), 1);
     };
     const auto other = mode == RotorMode::free ? same(FreeRotor{}) : same(RegulatedRotor{});
-    const TechnicalSample &a = motion.samples.back(), &b = other.samples.back();
+    const PrecessionSample &a = motion.samples.back(), &b = other.samples.back();
     const Eigen::Vector2d slack(slack_a, slack_b);
     BOOST_TEST((a.place.head<2>() - slack - b.place).norm() < 1e-11);
     BOOST_TEST((a.velocity - b.velocity).norm() < 1e-10);
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(have_a_reliable_bound) {
                           RestingFrame<>{}, rotor);
     typename decltype(gyro)::State s{r.uniform(-.4, .4), r.uniform(-.4, .4), 0, 0, 0, spin};
     const Eigen::Vector2d place(s.alpha, s.beta);
-    const GyroForces f = TechnicalGimbals(gyro, 0, s).forces(0, place);
+    const GyroForces f = PrecessionGimbals(gyro, 0, s).forces(0, place);
     Eigen::Vector2d u = (f.G + f.D).lu().solve(f.Q);
     if (r.once_in(2))
       u = r.once_in(2) ? u : Eigen::Vector2d(u.norm() * r.uniform(-2, 2), 0);
@@ -191,8 +191,8 @@ BOOST_AUTO_TEST_CASE(have_a_reliable_bound) {
     const double slow = std::sqrt(outer.stiffness * inner.stiffness) / spin;
     const double nutation = spin / std::sqrt(f.A(0, 0) * f.A(1, 1));
     const double end = std::min(r.uniform(.3, 1.5) / slow, 60 / nutation);
-    const auto motion = technical_motion(TechnicalGimbals(gyro, 0, s), 0, place, u, end,
-                                         {.accuracy = {.relative = relative}});
+    const auto motion = precession_motion(PrecessionGimbals(gyro, 0, s), 0, place, u, end,
+                                          {.accuracy = {.relative = relative}});
     broken_off += motion.slow ? 0 : 1;
     ratios.push_back(true_error(gyro, s, relative, motion) / motion.samples.back().bound);
   };
@@ -215,10 +215,10 @@ BOOST_AUTO_TEST_CASE(have_a_reliable_bound) {
       s.coordinates[p.q] = r.uniform(-.3, .3);
       if (r.once_in(2)) s.rates[p.v] = r.uniform(-1, 1);
     }
-    const TechnicalBodies model(system);
+    const PrecessionBodies model(system);
     const auto [place, u] = model.start(0, system.to_vector(s));
     const auto motion =
-        technical_motion(model, 0, place, u, 0.05, {.accuracy = {.relative = relative}});
+        precession_motion(model, 0, place, u, 0.05, {.accuracy = {.relative = relative}});
     broken_off += motion.slow ? 0 : 1;
     BodyWorkspace w = system.workspace();
     const auto field = [&](double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
@@ -256,9 +256,10 @@ BOOST_AUTO_TEST_CASE(stop_near_gimbal_lock) {
   const CardanGyro pushed(gyro_of_the_reference().moments(), {{0.05, 0, 1.5}, {0, 0, 0}},
                           RestingFrame<>{}, RegulatedRotor{});
   const Regulated::State s{-1.5, 0, 0, 0, 0, 200};
-  const auto motion = technical_motion(TechnicalGimbals(pushed, 0, s), 0,
-                                       Eigen::Vector2d(s.alpha, s.beta), Eigen::Vector2d(0, 0), 10);
-  const TechnicalSample& last = motion.samples.back();
+  const auto motion =
+      precession_motion(PrecessionGimbals(pushed, 0, s), 0, Eigen::Vector2d(s.alpha, s.beta),
+                        Eigen::Vector2d(0, 0), 10);
+  const PrecessionSample& last = motion.samples.back();
   BOOST_TEST(!motion.slow);
   BOOST_TEST(last.t < 10);
   BOOST_TEST(std::abs(last.place[1]) > 0.5);
@@ -269,30 +270,32 @@ BOOST_AUTO_TEST_CASE(are_refused_if_not_applicable) {
   auto bodies = test::model_bodies("platform", test::Root::none, Json::object(), RotorMode::free);
   bodies[0].rule = JointRule::held;
   using Bodies = BodySystem<RestingFrame<>>;
-  BOOST_CHECK_THROW((TechnicalBodies(Bodies({}, bodies))), InvalidInput);
-  BOOST_CHECK_THROW((TechnicalBodies(Bodies({}, test::model_bodies("platform", test::Root::none,
-                                                                   Json::object(), std::nullopt)))),
-                    InvalidInput);
+  BOOST_CHECK_THROW((PrecessionBodies(Bodies({}, bodies))), InvalidInput);
+  BOOST_CHECK_THROW(
+      (PrecessionBodies(Bodies(
+          {}, test::model_bodies("platform", test::Root::none, Json::object(), std::nullopt)))),
+      InvalidInput);
   // Five frames, three rotors: without accelerations on the kernel the motion there is
   // undetermined.
   const Bodies system(
       {}, test::model_bodies("platform", test::Root::none, Json::object(), RotorMode::regulated));
   auto s = system.rest();
   for (const int rotor : {2, 4, 7}) s.rates[rotor] = 1000;
-  const TechnicalBodies model(system);
+  const PrecessionBodies model(system);
   const auto [place, u] = model.start(0, system.to_vector(s));
   BOOST_CHECK_THROW(
-      (void)technical_motion(model, 0, place, u, 0.1, {.kept = KeptAccelerations::none}),
+      (void)precession_motion(model, 0, place, u, 0.1, {.kept = KeptAccelerations::none}),
       ComputationFailed);
-  BOOST_TEST(technical_motion(model, 0, place, u, 0.1).kept == 1);
+  BOOST_TEST(precession_motion(model, 0, place, u, 0.1).kept == 1);
   // A decelerating rotor and an unsymmetric one have no constant momentum.
   const CardanMoments round{{1, 1, 1.5}}, flat{{1, 1.2, 1.5}};
   const CardanState turns{.phi_rate = 100};
   BOOST_CHECK_THROW(
-      TechnicalGimbals(CardanGyro(round, {}, RestingFrame<>{}, FreeRotor{0.1}), 0, turns),
+      PrecessionGimbals(CardanGyro(round, {}, RestingFrame<>{}, FreeRotor{0.1}), 0, turns),
       InvalidInput);
-  BOOST_CHECK_THROW(TechnicalGimbals(CardanGyro(flat, {}, RestingFrame<>{}, FreeRotor{}), 0, turns),
-                    InvalidInput);
+  BOOST_CHECK_THROW(
+      PrecessionGimbals(CardanGyro(flat, {}, RestingFrame<>{}, FreeRotor{}), 0, turns),
+      InvalidInput);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -50,16 +50,16 @@ double off(const Json& roots, const std::vector<Complex>& found) {
 }
 
 /// Both sets of roots of an example against the reference.
-void check_roots(const char* name, const Admissibility& found, double technical_tolerance) {
-  std::vector<Complex> technical, exact = found.fast;
+void check_roots(const char* name, const Admissibility& found, double precession_tolerance) {
+  std::vector<Complex> precession, exact = found.fast;
   for (const SlowRoot& root : found.slow) {
-    technical.push_back(root.technical);
+    precession.push_back(root.precession);
     exact.push_back(root.exact);
   }
-  const double a = off(examples()[name]["precession"], technical);
+  const double a = off(examples()[name]["precession"], precession);
   const double b = off(examples()[name]["full"], exact);
-  BOOST_TEST_MESSAGE(name << ": technical roots off by " << a << ", exact ones by " << b);
-  BOOST_TEST(a <= technical_tolerance);
+  BOOST_TEST_MESSAGE(name << ": precession roots off by " << a << ", exact ones by " << b);
+  BOOST_TEST(a <= precession_tolerance);
   double size = 0;
   for (const Complex& s : exact) size = std::max(size, std::abs(s));
   BOOST_TEST(b <= 5e-10 * size);  // ten digits are printed
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(with_corrected_roots) {
     return std::abs(complex(truth[key].get<std::string>()));
   };
   const SlowRoot& root = found.slow[0];
-  BOOST_TEST(std::abs(std::abs(root.technical) - size("precession")) < 1e-13);
+  BOOST_TEST(std::abs(std::abs(root.precession) - size("precession")) < 1e-13);
   BOOST_TEST(std::abs(std::abs(root.exact) - size("exact")) < 1e-12);
   BOOST_TEST(std::abs(std::abs(root.first_order) - size("first_order")) < 1e-13);
   BOOST_TEST(found.admissible());
@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_CASE(for_the_platform_with_one_acceleration_kept) {
     const BodySystem<RestingFrame<>> system({}, bodies);
     auto s = system.rest();
     for (const int rotor : {2, 4, 7}) s.rates[rotor] = 1000;
-    const TechnicalBodies model(system);
+    const PrecessionBodies model(system);
     const auto [place, u] = model.start(0, system.to_vector(s));
     const Eigen::MatrixXd K = stiffness(model, 0, place);
     const Eigen::VectorXd springs = numbers(c["frame_stiffness"]);
@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_CASE(for_the_platform_with_one_acceleration_kept) {
     if (dampers) continue;
     for (const double w : {2.2798, 2.9412, 39.5683}) {
       const auto near = [w](const SlowRoot& root) {
-        return std::abs(root.technical - Complex(0, w)) < 1e-4;
+        return std::abs(root.precession - Complex(0, w)) < 1e-4;
       };
       BOOST_TEST(std::count_if(found.slow.begin(), found.slow.end(), near) == 1, w);
     }

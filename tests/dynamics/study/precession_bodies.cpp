@@ -75,7 +75,7 @@ const ViscousDrag<> drag{.02, .5};
 const ConstantLoad<Guide> thrust{{.1, .05, .02}, {.02, .03, -.01}, {.1, 0, 0}};
 
 struct Comparison {
-  TechnicalMotion motion;
+  PrecessionMotion motion;
   double error;
 
   [[nodiscard]] double of_the_bound() const { return error / motion.samples.back().bound; }
@@ -90,14 +90,14 @@ Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   s.coordinates[gimbals] = .2;
   s.coordinates[gimbals + 1] = .3;
   s.rates[tree.place(3).v] = spin;
-  const TechnicalBodies model(system);
+  const PrecessionBodies model(system);
   auto [place, u] = model.start(0, system.to_vector(s));
   if (with_velocity) {
-    u = technical_motion(model, 0, place, u, 1e-6).samples.front().velocity;
+    u = precession_motion(model, 0, place, u, 1e-6).samples.front().velocity;
     s.rates.head(u.size()) = u;
     place = model.start(0, system.to_vector(s)).first;  // a free rotor's momentum changes too
   }
-  TechnicalMotion motion = technical_motion(model, 0, place, u, .5);
+  PrecessionMotion motion = precession_motion(model, 0, place, u, .5);
 
   BodyWorkspace w = system.workspace();
   const auto field = [&](double t, const VectorXd& y, VectorXd& rate) {
@@ -105,7 +105,7 @@ Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   };
   ExplicitRungeKutta exact(field, 0.0, system.to_vector(s), {.relative = 1e-12}, system.blocks());
   double error = 0;
-  for (const TechnicalSample& sample : motion.samples) {
+  for (const PrecessionSample& sample : motion.samples) {
     exact.advance_to(sample.t);
     VectorXd off = exact.y().head(gimbals + 2) - sample.place.head(gimbals + 2);
     if (tree.body(0).joint.kind == JointKind::free) {
@@ -127,7 +127,7 @@ void check(const char* name, const System& system, bool with_velocity, int kept,
     double last = 0;
     for (const double spin : {1000., 2000.}) {
       const Comparison c = compare(bodies, spin, with_velocity);
-      BOOST_TEST_MESSAGE(name << (with_velocity ? ", technical velocity, " : ", at rest, ") << spin
+      BOOST_TEST_MESSAGE(name << (with_velocity ? ", precession velocity, " : ", at rest, ") << spin
                               << " rad/s: " << c.error << ", order " << std::log2(last / c.error)
                               << ", of the bound " << c.of_the_bound());
       BOOST_TEST(c.motion.kept == kept);
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(use_the_damping_of_loads_at_rest) {
     return {{-k * v.norm() * v, V::Zero()}};
   };
   const auto damping = [](const Bodies& system) {
-    const TechnicalBodies model(system);
+    const PrecessionBodies model(system);
     const auto place = model.start(0, system.to_vector(system.rest())).first;
     return model.forces(0, place).D;
   };
