@@ -83,11 +83,11 @@ class GrownRoundingOfMembers {
  public:
   using Values = std::array<double, std::size_t(lanes_of<N>)>;
 
-  GrownRoundingOfMembers(const Scene& scene, double smallest, PackedAdvance<Scene, N> calm,
-                         PackedAdvance<Scene, N> shaken)
+  GrownRoundingOfMembers(const Scene& scene, double smallest, PackedAdvance<Scene, N> unperturbed,
+                         PackedAdvance<Scene, N> perturbed)
       : scene_(scene),
-        calm_(std::move(calm)),
-        shaken_(std::move(shaken)),
+        unperturbed_(std::move(unperturbed)),
+        perturbed_(std::move(perturbed)),
         distance_(std::size_t(lanes_of<N>), {scene, smallest}) {}
 
   /// The growth at t; times must be given in order. 0 if the coarse steps fail or a stop is
@@ -96,9 +96,9 @@ class GrownRoundingOfMembers {
     Values grown{};
     if (gave_up_) return grown;
     try {
-      if (!go_on(calm_, t, end, stop) || !go_on(shaken_, t, end, stop)) return grown;
-      const auto a = calm_.at(t);
-      const auto b = shaken_.at(t);
+      if (!go_on(unperturbed_, t, end, stop) || !go_on(perturbed_, t, end, stop)) return grown;
+      const auto a = unperturbed_.at(t);
+      const auto b = perturbed_.at(t);
       for (std::size_t k = 0; k < grown.size(); ++k) {
         const double off = distance_[k](scene_.to_vector(a[k]), scene_.to_vector(b[k]));
         gave_up_ = gave_up_ || !std::isfinite(off);
@@ -111,13 +111,13 @@ class GrownRoundingOfMembers {
   }
 
   [[nodiscard]] double evaluations() const {
-    return calm_.effort().evaluations + shaken_.effort().evaluations;
+    return unperturbed_.effort().evaluations + perturbed_.effort().evaluations;
   }
 
  private:
   const Scene& scene_;
-  PackedAdvance<Scene, N> calm_;
-  PackedAdvance<Scene, N> shaken_;
+  PackedAdvance<Scene, N> unperturbed_;
+  PackedAdvance<Scene, N> perturbed_;
   std::vector<ErrorMeasure<Scene>> distance_;
   bool gave_up_ = false;
 };
@@ -143,10 +143,10 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
   double spent = 0;
   while (true) {
     const bool last_try = !estimates_errors || runs.last(setting);
-    const auto run = [&](double relative, double digits, double shaken = 0) {
+    const auto run = [&](double relative, double digits, double perturbed = 0) {
       auto from = starts;
       for (auto& start : from) start = perturbed_by_ulps(scene, start, digits);
-      const Accuracy accuracy{relative, options.absolute_scale, options.max_evaluations, shaken};
+      const Accuracy accuracy{relative, options.absolute_scale, options.max_evaluations, perturbed};
       PackedAdvance<Scene, N> made(scene, options.begin, from, accuracy);
       made.stop_at(options.discontinuities);
       return made;

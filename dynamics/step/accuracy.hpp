@@ -30,7 +30,7 @@ struct Accuracy {
   /// Perturbation of the change in each step, in units of its last digit, up or down at random
   /// (ExplicitRungeKutta, TaylorSteps). The difference to an unperturbed run shows the growth of
   /// rounding.
-  double shaken = 0;
+  double perturbed = 0;
 };
 
 /// Cost of an integration so far.
@@ -57,8 +57,9 @@ inline void check(const Accuracy& accuracy, double least = 1e-16) {
   if (!(accuracy.max_evaluations > 0)) {
     refuse_steps("accuracy.max_evaluations = ", accuracy.max_evaluations, " must be above 0");
   }
-  if (!(accuracy.shaken >= 0 && std::isfinite(accuracy.shaken))) {
-    refuse_steps("accuracy.shaken = ", accuracy.shaken, " must be a finite number of 0 or above");
+  if (!(accuracy.perturbed >= 0 && std::isfinite(accuracy.perturbed))) {
+    refuse_steps("accuracy.perturbed = ", accuracy.perturbed,
+                 " must be a finite number of 0 or above");
   }
 }
 

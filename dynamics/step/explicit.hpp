@@ -449,7 +449,7 @@ class ExplicitRungeKutta {
   /// Accepts the state at the end of a step.
   void take(const Scalar& h, typename Memory::Passing change) {
     effort_.steps += 1;
-    detail::shake(change, accuracy_.shaken, effort_.steps, static_cast<double>(h));
+    detail::perturb(change, accuracy_.perturbed, effort_.steps, static_cast<double>(h));
     state_.set_sum(before_.state, change);
     before_.length = h;
     sizes_.note(y());

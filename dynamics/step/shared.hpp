@@ -159,7 +159,7 @@ void move_last_digits(Vector& y, double by) {
 /// Source : the random bits: G. Steele, D. Lea, C. Flood, Fast splittable pseudorandom number
 ///          generators, OOPSLA 2014 (SplitMix64)
 template <class Vector>
-void shake(Vector& change, double digits, double step, double length) {
+void perturb(Vector& change, double digits, double step, double length) {
   using Number = typename Vector::Scalar;
   using Scalar = ScalarOf<Number>;
   if (digits == 0) return;

@@ -258,7 +258,7 @@ class TaylorSteps {
 
   /// Accepts the state at the end of a step.
   void take(double h, Vector increment) {
-    detail::shake(increment, accuracy_.shaken, effort_.steps, h);
+    detail::perturb(increment, accuracy_.perturbed, effort_.steps, h);
     state_.add(increment);
     sizes_.note(y());
     effort_.steps += 1;

@@ -11,7 +11,7 @@
 #include <dynamics/step/explicit.hpp>
 
 #include <support/near.hpp>
-#include <support/shaken.hpp>
+#include <support/perturbed.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
@@ -350,13 +350,13 @@ BOOST_AUTO_TEST_CASE(deviate_by_their_perturbation) {
       return Eigen::Vector3d(y[1], -y[0], y[2]);
     };
     return ExplicitRungeKutta(field, 0.0, Eigen::Vector3d(1, 0, 0),
-                              {.relative = 1e-12, .shaken = digits});
+                              {.relative = 1e-12, .perturbed = digits});
   };
-  const double off = test::shaken_off(made);
+  const double off = test::perturbed_deviation(made);
   BOOST_TEST_MESSAGE("off by " << off << " of the walk's length");
   BOOST_TEST(off > 0.3);
   BOOST_TEST(off < 1.5);
-  BOOST_TEST(test::shaken_off(made) == off);
+  BOOST_TEST(test::perturbed_deviation(made) == off);
   BOOST_TEST(made(10).advance_to(500)[2] == 0);
 }
 

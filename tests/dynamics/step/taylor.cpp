@@ -10,7 +10,7 @@
 #include <dynamics/step/taylor.hpp>
 
 #include <support/near.hpp>
-#include <support/shaken.hpp>
+#include <support/perturbed.hpp>
 
 using namespace kreisel;
 using test::near;
@@ -207,19 +207,19 @@ BOOST_AUTO_TEST_CASE(changes_its_unit_after_a_long_rest) {
 // Perturbations of 10 units in the last digit of each step, up or down, are a random walk.
 BOOST_AUTO_TEST_CASE(deviates_by_its_perturbation) {
   const auto made = [](double digits) {
-    return TaylorSteps(Circle{}, 0, Vector(1, 0), {.relative = 1e-12, .shaken = digits});
+    return TaylorSteps(Circle{}, 0, Vector(1, 0), {.relative = 1e-12, .perturbed = digits});
   };
-  const double off = test::shaken_off(made);
+  const double off = test::perturbed_deviation(made);
   BOOST_TEST_MESSAGE("off by " << off << " of the walk's length");
   BOOST_TEST(off > 0.3);
   BOOST_TEST(off < 1.5);
-  BOOST_TEST(test::shaken_off(made) == off);
+  BOOST_TEST(test::perturbed_deviation(made) == off);
 }
 
 BOOST_AUTO_TEST_CASE(refuses_invalid_arguments) {
   const Vector y(1, 0);
-  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.shaken = -1}), InvalidInput);
-  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.shaken = not_a_number}), InvalidInput);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.perturbed = -1}), InvalidInput);
+  BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.perturbed = not_a_number}), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, not_a_number, y), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, Vector(1, not_a_number)), InvalidInput);
   BOOST_CHECK_THROW(TaylorSteps(Circle{}, 0, y, {.relative = 1e-21}), InvalidInput);
