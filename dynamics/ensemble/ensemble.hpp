@@ -79,12 +79,13 @@ template <class Run>
 
 /// The growth of rounding in each member, estimated as by RoundingGrowth of solve().
 template <class Scene, class N>
-class GrownRoundingOfMembers {
+class RoundingGrowthOfMembers {
  public:
   using Values = std::array<double, std::size_t(lanes_of<N>)>;
 
-  GrownRoundingOfMembers(const Scene& scene, double smallest, PackedAdvance<Scene, N> unperturbed,
-                         PackedAdvance<Scene, N> perturbed)
+  RoundingGrowthOfMembers(const Scene& scene, double smallest,
+                          PackedIntegrator<Scene, N> unperturbed,
+                          PackedIntegrator<Scene, N> perturbed)
       : scene_(scene),
         unperturbed_(std::move(unperturbed)),
         perturbed_(std::move(perturbed)),
@@ -116,8 +117,8 @@ class GrownRoundingOfMembers {
 
  private:
   const Scene& scene_;
-  PackedAdvance<Scene, N> unperturbed_;
-  PackedAdvance<Scene, N> perturbed_;
+  PackedIntegrator<Scene, N> unperturbed_;
+  PackedIntegrator<Scene, N> perturbed_;
   std::vector<ErrorMeasure<Scene>> distance_;
   bool gave_up_ = false;
 };
@@ -127,14 +128,14 @@ class GrownRoundingOfMembers {
 ///
 /// Throws : ComputationFailed if one of the members stops; earlier outputs are kept
 template <class N, class Scene>
-void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& starts,
+void follow(const Scene& scene, const typename PackedIntegrator<Scene, N>::States& starts,
             const SolveOptions& options, bool estimates_errors, const std::atomic<bool>& stop,
             const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
   const AdaptiveRuns runs(options);
   const double end = options.output_times.back();
   struct Beside {
     double end_of_a_step;  ///< so that a short run is not one and the same step in all runs
-    PackedAdvance<Scene, N> steps;
+    PackedIntegrator<Scene, N> steps;
   };
   double setting = runs.first();
   Missed<double> missed{setting};
@@ -147,7 +148,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       auto from = starts;
       for (auto& start : from) start = perturbed_by_ulps(scene, start, digits);
       const Accuracy accuracy{relative, options.absolute_scale, options.max_evaluations, perturbed};
-      PackedAdvance<Scene, N> made(scene, options.begin, from, accuracy);
+      PackedIntegrator<Scene, N> made(scene, options.begin, from, accuracy);
       made.stop_at(options.discontinuities);
       return made;
     };
@@ -162,7 +163,7 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(options));
       put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(options));
     }
-    std::optional<GrownRoundingOfMembers<Scene, N>> rounding;
+    std::optional<RoundingGrowthOfMembers<Scene, N>> rounding;
     if (estimates_errors && runs.can_look_for_rounding(setting, missed.error > 0)) {
       const double accuracy = cheap.beside(runs, setting);
       rounding.emplace(scene, options.absolute_scale, run(accuracy, 0),
@@ -208,11 +209,11 @@ void follow(const Scene& scene, const typename PackedAdvance<Scene, N>::States& 
       rounds_too_much = runs.may_round_too_much(grown_most);
       for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
         if (!members[k]) continue;
-        const double noise = max_or_nan(coarse.noise(), grown_to[k]);
+        const double grown_rounding = max_or_nan(coarse.rounding_level(), grown_to[k]);
         double& estimate = members[k]->report.error_estimate;
         estimate =
             max_or_nan(estimate, error_of_pair(off[k], runs.finer_by(setting), runs.rounding(),
-                                               coarse.effort().steps, noise));
+                                               coarse.effort().steps, grown_rounding));
         worst = max_or_nan(worst, estimate);
       }
       missed.note(output, worst);

@@ -35,17 +35,18 @@ requires(is_pack<N>&& int(Scene::Vector::RowsAtCompileTime) >
 /// Throws : as Integrator; also ComputationFailed if rounding in the field of one member prevents
 ///          the accuracy, which is tolerated in a single run
 template <class Scene, class N = Pack>
-class PackedAdvance {
+class PackedIntegrator {
   static constexpr int components = int(Scene::Vector::RowsAtCompileTime);
   using Vector = Eigen::Matrix<N, components, 1>;
 
  public:
   using States = std::array<typename Scene::State, std::size_t(N::lanes)>;
 
-  PackedAdvance(const Scene& scene, double t, const States& states, const Accuracy& accuracy = {})
+  PackedIntegrator(const Scene& scene, double t, const States& states,
+                   const Accuracy& accuracy = {})
       : scene_(&scene),
         steps_({&scene}, t, side_by_side(scene, states), accuracy, detail::blocks_of(scene)) {}
-  PackedAdvance(Scene&&, double, const States&, const Accuracy& = {}) = delete;
+  PackedIntegrator(Scene&&, double, const States&, const Accuracy& = {}) = delete;
 
   /// The states at the time `end`, before or after the present one.
   States to(double end) { return apart(steps_.advance_to(end)); }
@@ -60,7 +61,7 @@ class PackedAdvance {
 
   /// The effort of all members together, which share their steps.
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
-  [[nodiscard]] double noise() const { return steps_.noise(); }
+  [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
 
  private:
   [[nodiscard]] static Vector side_by_side(const Scene& scene, const States& states) {
@@ -87,13 +88,14 @@ class PackedAdvance {
 };
 
 template <class Scene>
-class PackedAdvance<Scene, double> {
+class PackedIntegrator<Scene, double> {
  public:
   using States = std::array<typename Scene::State, 1>;
 
-  PackedAdvance(const Scene& scene, double t, const States& states, const Accuracy& accuracy = {})
+  PackedIntegrator(const Scene& scene, double t, const States& states,
+                   const Accuracy& accuracy = {})
       : steps_(scene, t, states[0], accuracy) {}
-  PackedAdvance(Scene&&, double, const States&, const Accuracy& = {}) = delete;
+  PackedIntegrator(Scene&&, double, const States&, const Accuracy& = {}) = delete;
 
   States to(double end) { return {steps_.to(end)}; }
   void step_towards(double end) { steps_.step_towards(end); }
@@ -101,7 +103,7 @@ class PackedAdvance<Scene, double> {
   [[nodiscard]] States at(double time) { return {steps_.at(time)}; }
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
-  [[nodiscard]] double noise() const { return steps_.noise(); }
+  [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
 
  private:
   Integrator<Scene> steps_;

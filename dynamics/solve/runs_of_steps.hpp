@@ -66,9 +66,9 @@ class RunOfSteps final : public SteppedRun {
   [[nodiscard]] double length() const override { return std::abs(steps_.t() - from_); }
   [[nodiscard]] bool covers(double t) const override { return steps_.covers(t); }
   void read(double t, double* y) override { write(y, steps_.at(t)); }
-  void know_sizes(std::span<const double> sizes) override { steps_.know_sizes(sizes); }
+  void know_sizes(std::span<const double> sizes) override { steps_.set_sizes(sizes); }
   [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
-  [[nodiscard]] double noise() const override { return steps_.noise(); }
+  [[nodiscard]] double noise() const override { return steps_.rounding_level(); }
 
   void pass(Checkpoint& checkpoint) override {
     SteppedRun::pass(checkpoint);
@@ -95,7 +95,7 @@ class RunOfGaussIRK final : public Run {
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
   [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
-  [[nodiscard]] double noise() const override { return steps_.noise(); }
+  [[nodiscard]] double noise() const override { return steps_.rounding_level(); }
   void pass(Checkpoint& checkpoint) override { checkpoint(steps_); }
 
  private:

@@ -77,10 +77,10 @@ class RadauRun final : public SteppedRun {
     const Eigen::VectorXd there = steps_.at(*field_, t);
     std::copy_n(there.data(), there.size(), y);
   }
-  void know_sizes(std::span<const double> sizes) override { steps_.know_sizes(sizes); }
+  void know_sizes(std::span<const double> sizes) override { steps_.set_sizes(sizes); }
 
   [[nodiscard]] IntegrationStatistics effort() const override { return steps_.effort(); }
-  [[nodiscard]] double noise() const override { return steps_.noise(); }
+  [[nodiscard]] double noise() const override { return steps_.rounding_level(); }
 
   void pass(Checkpoint& checkpoint) override {
     SteppedRun::pass(checkpoint);

@@ -120,7 +120,7 @@ class BlockSizes {
   }
 
   /// Takes over the sizes of an earlier integration.
-  void know(std::span<const double> sizes) {
+  void set(std::span<const double> sizes) {
     for (std::size_t i = 0; i < std::min(sizes.size(), blocks_.size()); ++i) {
       blocks_[i].size = larger(blocks_[i].size, Number(Scalar(sizes[i])));
     }
@@ -143,16 +143,16 @@ class BlockSizes {
 
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
-    for (Block& block : blocks_) checkpoint(block.size, block.noise, block.wander);
+    for (Block& block : blocks_) checkpoint(block.size, block.rounding, block.wander);
   }
 
   /// Records the uncertainty of the rate due to rounding of the state. The error of a step is this
   /// uncertainty times the step's length. `squares` is the sum of squared step lengths since the
   /// last call.
-  void note_noise(const Vector& rate, const Scalar& squares) {
+  void note_rounding(const Vector& rate, const Scalar& squares) {
     for (Block& block : blocks_) {
-      block.wander += squares * block.noise * block.noise;
-      block.noise = norm(rate, block);
+      block.wander += squares * block.rounding * block.rounding;
+      block.rounding = norm(rate, block);
     }
   }
 
@@ -161,7 +161,7 @@ class BlockSizes {
     using std::sqrt;
     Number worst(0);
     for (const Block& block : blocks_) {
-      const Number way = sqrt(block.wander + squares * block.noise * block.noise);
+      const Number way = sqrt(block.wander + squares * block.rounding * block.rounding);
       const Number ratio = way / scale(block);
       worst = select(way > Number(0) && ratio > worst, ratio, worst);
     }
@@ -176,7 +176,7 @@ class BlockSizes {
                                 const Scalar& span = Scalar(0)) const {
     Number worst(0);
     for (const Block& block : blocks_) {
-      const Number off = norm(error, block) - span * block.noise;
+      const Number off = norm(error, block) - span * block.rounding;
       const auto none = off <= Number(0);
       if (all(none)) continue;
       const Number ratio = off / larger(scale(block), norm(change, block));
@@ -216,7 +216,7 @@ class BlockSizes {
     int begin;
     int components;
     Number size;
-    Number noise;
+    Number rounding;
     Number wander;  ///< squared
   };
 

@@ -77,7 +77,7 @@ class ExplicitRungeKutta {
   [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
   /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
-  void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
+  void set_sizes(std::span<const double> sizes) { sizes_.set(sizes); }
 
   /// Times at which the field is discontinuous (start of a thrust, jerk of a guide), in any order.
   /// Steps end there exactly and evaluate the field only on their own side.
@@ -181,7 +181,7 @@ class ExplicitRungeKutta {
   }
 
   /// Error of the state due to rounding of its rates, relative to size; sampled at intervals.
-  [[nodiscard]] Scalar noise() const { return Scalar(0.5) * sizes_.wander(squares_); }
+  [[nodiscard]] Scalar rounding_level() const { return Scalar(0.5) * sizes_.wander(squares_); }
 
   /// Saves or restores all members from which the steps continue, with outputs within the last
   /// step.
@@ -424,7 +424,7 @@ class ExplicitRungeKutta {
     steps_taken_ += 1;
     squares_ += h * h;
     if (steps_taken_ % 8 == 0) look_for_stiffness();
-    if (steps_taken_ % 64 == 16) note_noise();
+    if (steps_taken_ % 64 == 16) note_rounding();
     take(h, change);
     time_.add(h);
     return true;
@@ -490,7 +490,7 @@ class ExplicitRungeKutta {
 
   /// Records the change of the rate for a change of the state in its last digits. A stiff spring
   /// far from its zero amplifies these so much that steps would shrink in vain.
-  void note_noise() {
+  void note_rounding() {
     typename Memory::Passing moved = stage_.point();
     typename Memory::Passing rate = stage_.error();
     moved = before_.state.value;
@@ -498,7 +498,7 @@ class ExplicitRungeKutta {
     evaluate(before_.time.value, moved, rate);
     rate -= before_.rate;
     if (!detail::finite(rate)) return;
-    sizes_.note_noise(rate, squares_);
+    sizes_.note_rounding(rate, squares_);
     squares_ = 0;
   }
 

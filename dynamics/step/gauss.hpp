@@ -156,7 +156,7 @@ class GaussIRK {
   [[nodiscard]] std::vector<Scalar> sizes() const { return sizes_.sizes(); }
 
   /// Error of the state due to rounding of its rates, relative to size; sampled at intervals.
-  [[nodiscard]] Scalar noise() const {
+  [[nodiscard]] Scalar rounding_level() const {
     // Each stage rounds independently: sqrt(sum b^2) of half a last digit.
     return Scalar(0.2) * sizes_.wander(squares_);
   }
@@ -180,7 +180,7 @@ class GaussIRK {
       if (effort_.evaluations > most_evaluations_) {
         detail::stop_integration(t(), most_evaluations_, " evaluations are spent");
       }
-      if (steps_taken_ % 16 == 0) note_noise();
+      if (steps_taken_ % 16 == 0) note_rounding();
       solve_stages();
       state_.add(stage_.rowwise().sum());
       time_.add(h_);
@@ -262,12 +262,12 @@ class GaussIRK {
                              std::abs(h_), " s are too long for it");
   }
 
-  void note_noise() {
+  void note_rounding() {
     Vector moved = y();
     detail::move_last_digits(moved, 1);
     const Vector off = evaluate(t(), moved) - evaluate(t(), y());
     if (!detail::finite(off)) return;
-    sizes_.note_noise(off, squares_);
+    sizes_.note_rounding(off, squares_);
     squares_ = Scalar(0);
   }
 

@@ -92,7 +92,7 @@ class Integrator {
   [[nodiscard]] double t() const { return steps_.t(); }
   [[nodiscard]] State state() const { return scene_->from_vector(steps_.y()); }
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
-  [[nodiscard]] double noise() const { return steps_.noise(); }
+  [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
 
  private:
   const Scene* scene_;

@@ -134,7 +134,7 @@ RadauIntegrator::RadauIntegrator(const RadauCoefficients& coefficients, double t
       before_{time_, state_},
       rate_(Eigen::VectorXd::Zero(y.size())),
       stages_(coefficients, static_cast<int>(y.size())),
-      noise_(Eigen::VectorXd::Zero(y.size())),
+      rounding_level_(Eigen::VectorXd::Zero(y.size())),
       rates_(stages_.value),
       point_(y) {
   check(accuracy);
@@ -274,8 +274,9 @@ void RadauIntegrator::back_to(StiffField& field, double time) {
   h_before_ = 0;
 }
 
-double RadauIntegrator::noise() const {
-  return sizes_.relative(noise_.cwiseSqrt(), Eigen::VectorXd::Zero(noise_.size()));
+double RadauIntegrator::rounding_level() const {
+  return sizes_.relative(rounding_level_.cwiseSqrt(),
+                         Eigen::VectorXd::Zero(rounding_level_.size()));
 }
 
 void RadauIntegrator::evaluate(StiffField& field, double t, const Eigen::VectorXd& y,
@@ -430,7 +431,7 @@ bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool a
   set_next_step(h, std::max(worst, 1e-8), again);
   h_before_ = h;
   effort_.steps += 1;
-  note_noise();
+  note_rounding();
   state_.add(change_);
   time_.add(h);
   sizes_.note(y());
@@ -447,7 +448,7 @@ void RadauIntegrator::set_next_step(double h, double worst, bool again) {
   worst_before_ = std::max(worst, 1e-2);
 }
 
-void RadauIntegrator::note_noise() {
+void RadauIntegrator::note_rounding() {
   constexpr double half_digit = std::numeric_limits<double>::epsilon() / 2;
   const double eigenvalue = coefficients_->real.eigenvalue;
   const double part = half_digit * eigenvalue / std::sqrt(double(stages()));
@@ -461,9 +462,9 @@ void RadauIntegrator::note_noise() {
     point_[j] = 1;
     stages_.solve(point_);
     const double stays = point_[j] * eigenvalue / h_before_;
-    noise_[j] *= std::min(1.0, stays * stays);
+    rounding_level_[j] *= std::min(1.0, stays * stays);
   }
-  noise_ += added_;
+  rounding_level_ += added_;
 }
 
 }  // namespace kreisel::detail

@@ -117,7 +117,7 @@ class KREISEL_API RadauIntegrator {
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
-  void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
+  void set_sizes(std::span<const double> sizes) { sizes_.set(sizes); }
 
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
 
@@ -141,15 +141,15 @@ class KREISEL_API RadauIntegrator {
   [[nodiscard]] bool covers(double time) const;
   [[nodiscard]] Eigen::VectorXd at(StiffField& field, double time);
   void back_to(StiffField& field, double time);
-  [[nodiscard]] double noise() const;
+  [[nodiscard]] double rounding_level() const;
 
   template <class Checkpoint>
   void pass(Checkpoint& checkpoint) {
     checkpoint(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
                step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst,
-               rate_, stages_.value, tangent_, noise_, added_, effort_, rates_of_field_, fastest_,
-               growth_, steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
-               barrier_.patience);
+               rate_, stages_.value, tangent_, rounding_level_, added_, effort_, rates_of_field_,
+               fastest_, growth_, steps_to_spectrum_, looked_at_, quiet_, barrier_.length,
+               barrier_.steps, barrier_.patience);
   }
 
  private:
@@ -236,7 +236,7 @@ class KREISEL_API RadauIntegrator {
 
   /// Adds the rounding of this step to a random walk. Each stage is off by half a last digit, and
   /// the mean over the stages stays. Motions that are damped within a step carry no rounding on.
-  void note_noise();
+  void note_rounding();
 
   const RadauCoefficients* coefficients_;
   Accuracy accuracy_;
@@ -254,8 +254,8 @@ class KREISEL_API RadauIntegrator {
   Rejected rejected_;
   Eigen::VectorXd rate_;
   RadauStages stages_;
-  Eigen::VectorXd noise_;  ///< rounding level of the state, squared
-  Eigen::MatrixXd rates_;  ///< at the stages
+  Eigen::VectorXd rounding_level_;  ///< rounding level of the state, squared
+  Eigen::MatrixXd rates_;           ///< at the stages
   // A member, so that steps allocate no memory.
   Eigen::MatrixXd kept_;
   Eigen::VectorXd point_;
@@ -350,7 +350,7 @@ class RadauSteps {
   }
 
   /// Error of the state due to rounding of its rates, relative to size.
-  [[nodiscard]] double noise() const { return steps_.noise(); }
+  [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
 
   /// Saves or restores all members from which the steps continue, with outputs within the last
   /// step.

@@ -74,7 +74,7 @@ class TaylorSteps {
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
-  void know_sizes(std::span<const double> sizes) { sizes_.know(sizes); }
+  void set_sizes(std::span<const double> sizes) { sizes_.set(sizes); }
 
   /// Times at which the field is discontinuous, in any order. Steps end there exactly.
   void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
@@ -97,7 +97,7 @@ class TaylorSteps {
     double reach = scale_ * reach_;
     while (!attempt(reach, left, goal)) reach = std::min(reach, std::abs(left)) / 4;
     squares_ += length() * length();
-    if (std::fmod(effort_.steps, 4) == 1) note_noise();
+    if (std::fmod(effort_.steps, 4) == 1) note_rounding();
     next_scale_ = reach < std::numeric_limits<double>::max() ? reach : length();
   }
 
@@ -155,7 +155,7 @@ class TaylorSteps {
   }
 
   /// As ExplicitRungeKutta::rounding_level().
-  [[nodiscard]] double noise() const { return 0.5 * sizes_.wander(squares_); }
+  [[nodiscard]] double rounding_level() const { return 0.5 * sizes_.wander(squares_); }
 
   /// Saves or restores all members from which the steps continue, with outputs within the last
   /// step.
@@ -339,7 +339,7 @@ class TaylorSteps {
 
   /// Records the change of the rate at the step's begin for a change of the state in its last
   /// digits.
-  void note_noise() {
+  void note_rounding() {
     Vector start = before_.state.value;
     detail::move_last_digits(start, 1);
     probe_.col(0) = start;
@@ -347,7 +347,7 @@ class TaylorSteps {
     effort_.evaluations += 1;
     const Vector apart = (probe_.col(1) - coefficient_.col(1)) / scale_;
     if (!detail::finite(apart)) return;
-    sizes_.note_noise(apart, squares_);
+    sizes_.note_rounding(apart, squares_);
     squares_ = 0;
   }
 

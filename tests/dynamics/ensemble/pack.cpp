@@ -173,10 +173,10 @@ BOOST_AUTO_TEST_CASE(each_keep_the_relative_accuracy) {
 
 BOOST_AUTO_TEST_CASE(agree_with_single_runs) {
   const EulerTop top({0.002, 0.002, 0.003}, {0, 0, 0.05});
-  PackedAdvance<EulerTop>::States starts;
+  PackedIntegrator<EulerTop>::States starts;
   for (int k = 0; k < lanes; ++k) starts[std::size_t(k)].angular_velocity = {0.3 + k, 0.1, 100};
   const Accuracy accuracy{1e-13};
-  PackedAdvance run(top, 0.0, starts, accuracy);
+  PackedIntegrator run(top, 0.0, starts, accuracy);
   const auto half = [&] {
     while (!run.covers(0.5)) run.step_towards(1);
     return run.at(0.5);
@@ -195,19 +195,19 @@ BOOST_AUTO_TEST_CASE(agree_with_single_runs) {
 
 BOOST_AUTO_TEST_CASE(allocate_no_memory_in_steps) {
   const EulerTop top({0.002, 0.002, 0.003}, {0, 0, 0.05});
-  PackedAdvance<EulerTop>::States starts;
+  PackedIntegrator<EulerTop>::States starts;
   starts.fill({.angular_velocity = {1, 0, 100}});
-  PackedAdvance run(top, 0.0, starts);
+  PackedIntegrator run(top, 0.0, starts);
   BOOST_TEST(test::heap::requests_of([&] { run.to(1); }) == 0U);
 }
 
 // Gimbal lock of massless rings in one lane.
 BOOST_AUTO_TEST_CASE(stop_together) {
   const CardanGyro gyro({.rotor = {0.005, 0.005, 0.008}}, {}, RestingFrame<>{});
-  PackedAdvance<std::remove_const_t<decltype(gyro)>>::States starts;
+  PackedIntegrator<std::remove_const_t<decltype(gyro)>>::States starts;
   starts.fill({.phi_rate = 1});
   starts.back().beta = std::acos(0.0);
-  PackedAdvance run(gyro, 0.0, starts);
+  PackedIntegrator run(gyro, 0.0, starts);
   BOOST_CHECK_EXCEPTION(run.to(1), ComputationFailed, [](const ComputationFailed& error) {
     return std::string(error.what()).find("gimbal lock") != std::string::npos;
   });
