@@ -239,7 +239,7 @@ void add_momentum(std::vector<Measurement>& tasks, double momentum, bool exactly
     Point p;
     p.evaluations = model.count() / span;
     p.seconds = (clock_seconds() - begin) / span;
-    if (end) p.error = (last.place.head<2>() - *end).norm();
+    if (end) p.error = (last.position.head<2>() - *end).norm();
     p.bound = last.bound;
     points.push_back(named(p, "technical", "technical", speed, momentum));
   };

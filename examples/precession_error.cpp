@@ -29,7 +29,7 @@ std::pair<IntegrationStatistics, IntegrationStatistics> compare(double speed, co
       const double t = i < 8 ? from + (s.t - from) * i / 8 : s.t;
       while (!exact.covers(t)) exact.step_towards(1);
       const Eigen::Vector2d place = exact.at(t).head(2);
-      if (i == 8) error = std::max(error, (place - s.place).norm());
+      if (i == 8) error = std::max(error, (place - s.position).norm());
       note(s, place, error);
     }
     from = s.t;
@@ -42,7 +42,8 @@ void draw(const std::string& picture) {
   for (const int speed : {500, 1000, 4000}) {
     out.print("$speed{} << E\n", speed);
     compare(speed, [&out](const auto& s, const auto& x, double error) {
-      out.print("{} {} {} {} {} {} {}\n", s.t, x[0], x[1], s.place[0], s.place[1], error, s.bound);
+      out.print("{} {} {} {} {} {} {}\n", s.t, x[0], x[1], s.position[0], s.position[1], error,
+                s.bound);
     });
     out.print("E\n");
   }

@@ -47,7 +47,7 @@ class PartFiles {
     return {part * members, std::min(members, count_ - part * members)};
   }
 
-  [[nodiscard]] bool has(std::size_t part) const { return std::filesystem::exists(place(part)); }
+  [[nodiscard]] bool has(std::size_t part) const { return std::filesystem::exists(path(part)); }
 
   /// The parts that have no file yet.
   [[nodiscard]] std::vector<std::size_t> missing() const {
@@ -60,7 +60,7 @@ class PartFiles {
 
   /// Throws : ComputationFailed or InvalidInput if the file cannot be written
   void write(std::size_t part, const std::vector<std::string>& rows) const {
-    AtomicFile file(place(part));
+    AtomicFile file(path(part));
     file.stream() << heading() << '\n';
     for (const std::string& row : rows) file.stream() << row << '\n';
     file.commit();
@@ -68,22 +68,22 @@ class PartFiles {
 
   /// Throws : InvalidInput if the file cannot be read or belongs to another ensemble
   [[nodiscard]] std::vector<std::string> read(std::size_t part) const {
-    std::ifstream file(place(part));
+    std::ifstream file(path(part));
     std::string line;
-    if (!std::getline(file, line)) throw InvalidInput(place(part).string() + ": cannot be read");
+    if (!std::getline(file, line)) throw InvalidInput(path(part).string() + ": cannot be read");
     if (line != heading()) {
-      throw InvalidInput(place(part).string() + ": belongs to another ensemble: " + line);
+      throw InvalidInput(path(part).string() + ": belongs to another ensemble: " + line);
     }
     std::vector<std::string> rows;
     while (std::getline(file, line)) rows.push_back(line);
     if (file.bad() || rows.size() != range(part).count) {
-      throw InvalidInput(place(part).string() + ": must have one row for each member");
+      throw InvalidInput(path(part).string() + ": must have one row for each member");
     }
     return rows;
   }
 
  private:
-  [[nodiscard]] std::filesystem::path place(std::size_t part) const {
+  [[nodiscard]] std::filesystem::path path(std::size_t part) const {
     return folder_ / ("members-" + std::to_string(part * members) + ".csv");
   }
 

@@ -124,7 +124,7 @@ std::vector<StudySystem::Vector> StudySystem::technical(const Vector& start,
   const auto motion = precession_motion(model, 0, place, u, times.back(), options);
   std::vector<Vector> states;
   for (const auto& sample : motion.outputs) {
-    states.push_back(model.state(sample.t, sample.place, sample.velocity));
+    states.push_back(model.state(sample.t, sample.position, sample.velocity));
   }
   return states;
 }

@@ -26,13 +26,13 @@ struct EarthGravitation {
       const LoadContext<N>& s) const {
     const Vector3<N> centre = s.centre();
     const Vector3<N> g =
-        s.template on_body_axes<Inertial>(field(Vector3<N>(s.template place<Inertial>(centre))));
+        s.template on_body_axes<Inertial>(field(Vector3<N>(s.template position<Inertial>(centre))));
     const Vector3<N> weight = s.inertia.value.mass * g;
     return {{weight, centre.cross(weight)}};
   }
 
   [[nodiscard]] double potential(const LoadContext<>& s) const {
-    const Vector3<double> p = s.place<Inertial>(s.centre());
+    const Vector3<double> p = s.position<Inertial>(s.centre());
     Vector3<double> g;
     const auto& field = GeographicLib::NormalGravity::WGS84();
     return -s.inertia.value.mass * field.V0(p.x(), p.y(), p.z(), g.x(), g.y(), g.z());

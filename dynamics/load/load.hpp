@@ -34,7 +34,7 @@ struct LoadContext {
 
   /// The position of a point of the body in the frame A.
   template <class A>
-  [[nodiscard]] Vector3<S> place(const Vector3<S>& p_Body) const {
+  [[nodiscard]] Vector3<S> position(const Vector3<S>& p_Body) const {
     if constexpr (std::is_same_v<A, Body>) return p_Body;
     if constexpr (std::is_same_v<A, Guide>) return X.point(p_Body);
     if constexpr (std::is_same_v<A, Inertial>) return guide.X.point(X.point(p_Body));
@@ -104,7 +104,7 @@ struct UniformGravity {
 
   /// Zero where the centre of mass is at the origin of A.
   [[nodiscard]] S potential(const LoadContext<S>& s) const {
-    return -s.inertia.value.mass * g.dot(s.template place<A>(s.centre()));
+    return -s.inertia.value.mass * g.dot(s.template position<A>(s.centre()));
   }
 };
 
@@ -165,8 +165,8 @@ struct Spring {
   template <class N>
   [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> end = body_end.template cast<N>();
-    const Vector3<N> reach =
-        s.template on_body_axes<Guide>(s.template place<Guide>(end) - guide_end.template cast<N>());
+    const Vector3<N> reach = s.template on_body_axes<Guide>(s.template position<Guide>(end) -
+                                                            guide_end.template cast<N>());
     const N length = reach.norm();
     if (length == N(0) && rest_length == S(0)) return {};
     if (length == N(0))
@@ -180,7 +180,7 @@ struct Spring {
   [[nodiscard]] bool keeps_energy() const { return damping == S(0); }
 
   [[nodiscard]] S potential(const LoadContext<S>& s) const {
-    const S stretch = (s.template place<Guide>(body_end) - guide_end).norm() - rest_length;
+    const S stretch = (s.template position<Guide>(body_end) - guide_end).norm() - rest_length;
     return stiffness * stretch * stretch / S(2);
   }
 };
@@ -203,7 +203,7 @@ struct ElasticMount {
   template <class N>
   [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> end = body_end.template cast<N>();
-    const Vector3<N> deflection = s.template place<Guide>(end) - guide_end.template cast<N>();
+    const Vector3<N> deflection = s.template position<Guide>(end) - guide_end.template cast<N>();
     const Vector3<N> rate = s.X.value.rotation * s.velocity(end);
     const Vector3<N> pull = stiffness.template cast<N>() * deflection +
                             damping.template cast<N>() * rate - preload.template cast<N>();
@@ -230,7 +230,7 @@ struct ElasticMount {
   }
 
   [[nodiscard]] S potential(const LoadContext<S>& s) const {
-    const Vector3<S> deflection = s.template place<Guide>(body_end) - guide_end;
+    const Vector3<S> deflection = s.template position<Guide>(body_end) - guide_end;
     return deflection.dot(stiffness * deflection) / S(2) - preload.dot(deflection);
   }
 };

@@ -39,13 +39,13 @@ struct OblateGravitation {
   [[nodiscard]] Force<Body, S> operator()(const LoadContext<S>& s) const {
     const Vector3<S> centre = s.centre();
     const Vector3<S> g =
-        s.template on_body_axes<Inertial>((*this)(s.template place<Inertial>(centre)));
+        s.template on_body_axes<Inertial>((*this)(s.template position<Inertial>(centre)));
     const Vector3<S> weight = s.inertia.value.mass * g;
     return {{weight, centre.cross(weight)}};
   }
 
   [[nodiscard]] S potential(const LoadContext<S>& s) const {
-    const Vector3<S> p = s.template place<Inertial>(s.centre());
+    const Vector3<S> p = s.template position<Inertial>(s.centre());
     const S r = p.norm();
     const S sine = p.z() / r;
     const S flattened = j2 * radius * radius / (r * r) * (S(1.5) * sine * sine - S(0.5));

@@ -247,30 +247,30 @@ class ExplicitRungeKutta {
   static constexpr auto occupied = [] {
     constexpr auto count =
         std::size_t(std::count_if(row.begin(), row.end(), [](auto c) { return c != 0; }));
-    std::array<std::size_t, count> places{};
+    std::array<std::size_t, count> used{};
     std::size_t next = 0;
     for (std::size_t j = 0; j < row.size(); ++j) {
-      if (row[j] != 0) places[next++] = j;
+      if (row[j] != 0) used[next++] = j;
     }
-    return places;
+    return used;
   }();
 
   /// sum of c_j k_j over the stages, for part() of each stage, without zero terms. Optionally
   /// without the last term.
   template <const auto& row, std::size_t without_last = 0, class Part>
   [[nodiscard, gnu::always_inline]] auto combined(const Part& part) const {
-    constexpr auto& places = occupied<row>;
-    return added<row, 1>(static_cast<Scalar>(row[places[0]]) * part(stage_[places[0]]), part,
-                         std::make_index_sequence<places.size() - without_last - 1>());
+    constexpr auto& used = occupied<row>;
+    return added<row, 1>(static_cast<Scalar>(row[used[0]]) * part(stage_[used[0]]), part,
+                         std::make_index_sequence<used.size() - without_last - 1>());
   }
 
   /// As above, added to a sum, from the row's term number `first` on.
   template <const auto& row, std::size_t first, class Sum, class Part, std::size_t... k>
   [[nodiscard, gnu::always_inline]] auto added(const Sum& sum, const Part& part,
                                                std::index_sequence<k...> /*terms*/) const {
-    constexpr auto& places = occupied<row>;
+    constexpr auto& used = occupied<row>;
     return (sum + ... +
-            (static_cast<Scalar>(row[places[first + k]]) * part(stage_[places[first + k]])));
+            (static_cast<Scalar>(row[used[first + k]]) * part(stage_[used[first + k]])));
   }
 
   template <std::size_t i>
@@ -363,7 +363,7 @@ class ExplicitRungeKutta {
       const Scalar ahead = std::copysign(h, goal - t());
       point = y() + ahead * before_.rate;
       const Scalar there = h < most ? t() + ahead : detail::on_this_side(goal, t(), jumps_);
-      if (!failure_.is_spared(t(), [&] { evaluate(there, point, bend); })) return h;
+      if (!failure_.succeeds(t(), [&] { evaluate(there, point, bend); })) return h;
       bend -= before_.rate;
       if (!detail::finite(bend)) return h;
       const Scalar found = part * sizes_.bending_time(before_.rate, bend, h);
@@ -392,14 +392,14 @@ class ExplicitRungeKutta {
     using std::max;
     using std::pow;
     if (abs(h) <= Scalar(4) * std::numeric_limits<Scalar>::epsilon() * abs(t()) || h == Scalar(0)) {
-      failure_.tell(t());
+      failure_.rethrow(t());
       detail::stop_integration(t(), "the step has become too short to move time on");
     }
     if (effort_.evaluations > accuracy_.max_evaluations) {
       detail::stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
     }
     const auto fill = [&] { fill_stages(h, std::make_index_sequence<Tableau::stages - 1>()); };
-    if (!failure_.is_spared(t(), fill)) {
+    if (!failure_.succeeds(t(), fill)) {
       step_ = Scalar(0.125) * abs(h);
       effort_.rejected += 1;
       return false;

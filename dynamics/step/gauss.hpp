@@ -80,8 +80,8 @@ struct GaussCoefficients {
 
   /// In ascending order, by Newton's method from Tricomi's cosine.
   [[nodiscard]] static long double legendre_zero(std::size_t i) {
-    const auto place = static_cast<long double>(i) + 0.75L;
-    long double x = -std::cos(std::numbers::pi_v<long double> * place / (s + 0.5L));
+    const auto shifted = static_cast<long double>(i) + 0.75L;
+    long double x = -std::cos(std::numbers::pi_v<long double> * shifted / (s + 0.5L));
     for (int iteration = 0; iteration < 8; ++iteration) {
       const auto P = legendre(x);
       x -= P[s] * (1 - x * x) / (s * (P[s - 1] - x * P[s]));
@@ -162,7 +162,7 @@ class GaussIRK {
   }
 
   /// Limit of the evaluations, after which the integration gives up.
-  void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
+  void give_up_after(double evaluations) { max_evaluations_ = evaluations; }
 
   /// Upper limit of the step length from here on.
   void take_steps_of(double step) {
@@ -177,8 +177,8 @@ class GaussIRK {
     take_length(steps.length);
     double done = 0;
     while (done < steps.count) {
-      if (effort_.evaluations > most_evaluations_) {
-        detail::stop_integration(t(), most_evaluations_, " evaluations are spent");
+      if (effort_.evaluations > max_evaluations_) {
+        detail::stop_integration(t(), max_evaluations_, " evaluations are spent");
       }
       if (steps_taken_ % 16 == 0) note_rounding();
       solve_stages();
@@ -318,7 +318,7 @@ class GaussIRK {
   detail::BlockSizes<Vector> sizes_;
   Scalar squares_{0};         ///< of step lengths, since the last rounding sample
   unsigned steps_taken_ = 0;  ///< modulo its range
-  double most_evaluations_ = std::numeric_limits<double>::infinity();
+  double max_evaluations_ = std::numeric_limits<double>::infinity();
   IntegrationStatistics effort_;
 };
 

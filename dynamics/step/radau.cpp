@@ -286,7 +286,7 @@ void RadauIntegrator::evaluate(StiffField& field, double t, const Eigen::VectorX
 }
 
 bool RadauIntegrator::try_rate(StiffField& field, double at, double* result) {
-  return failure_.is_spared(t(), [&] { evaluate(field, at, point_, result); });
+  return failure_.succeeds(t(), [&] { evaluate(field, at, point_, result); });
 }
 
 void RadauIntegrator::note_jacobian(StiffField& field) {
@@ -384,7 +384,7 @@ void RadauIntegrator::reject(double h, double worst, double most, double fastest
 
 bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool again) {
   if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t()) || h == 0) {
-    failure_.tell(t());
+    failure_.rethrow(t());
     stop_integration(t(), "the step has become too short to move time on");
   }
   if (effort_.evaluations > accuracy_.max_evaluations) {

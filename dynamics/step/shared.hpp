@@ -42,10 +42,10 @@ template <class S>
 class TrialFailure {
  public:
   /// True if a step from t finds rates at all its points.
-  template <class Ask>
-  [[nodiscard]] bool is_spared(const S& t, const Ask& ask) {
+  template <class Trial>
+  [[nodiscard]] bool succeeds(const S& t, const Trial& trial) {
     try {
-      ask();
+      trial();
       return true;
     } catch (const ComputationFailed&) {
       last_ = std::current_exception();
@@ -55,7 +55,7 @@ class TrialFailure {
   }
 
   /// Rethrows the exception if it was thrown at t or later.
-  void tell(const S& t) const {
+  void rethrow(const S& t) const {
     if (last_ && t == t_) std::rethrow_exception(last_);
   }
 

@@ -127,7 +127,7 @@ class SplittingSteps {
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
   /// Limit of the evaluations, after which the integration gives up.
-  void give_up_after(double evaluations) { most_evaluations_ = evaluations; }
+  void give_up_after(double evaluations) { max_evaluations_ = evaluations; }
 
   /// Upper limit of the step length from here on.
   void take_steps_of(double step) {
@@ -143,9 +143,9 @@ class SplittingSteps {
     const long double outer = Scheme::drift[0] * h;
     double done = 0;
     while (done < steps.count) {
-      if (effort_.evaluations > most_evaluations_) {
+      if (effort_.evaluations > max_evaluations_) {
         if (done > 0) flow_.drift(state_, outer);
-        detail::stop_integration(t(), most_evaluations_, " evaluations are spent");
+        detail::stop_integration(t(), max_evaluations_, " evaluations are spent");
       }
       const auto before = state_;
       const bool first = done == 0;
@@ -183,7 +183,7 @@ class SplittingSteps {
   double step_;
   detail::Compensated<double> time_;
   typename Flow::State state_;
-  double most_evaluations_ = std::numeric_limits<double>::infinity();
+  double max_evaluations_ = std::numeric_limits<double>::infinity();
   IntegrationStatistics effort_;
 };
 

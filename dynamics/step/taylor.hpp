@@ -240,7 +240,7 @@ class TaylorSteps {
     const bool last = detail::is_last(reach, left);
     const double h = last ? left : std::copysign(reach, left);
     if (!last && std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t())) {
-      failure_.tell(t());
+      failure_.rethrow(t());
       require_finite_field();
       detail::stop_integration<SeriesFailed>(t(), "the step has become too short to move time on");
     }
@@ -271,7 +271,7 @@ class TaylorSteps {
   [[nodiscard]] bool solves_equation(double h, double end_of_step, const Vector& increment) {
     probe_.col(0) = before_.state.value + (increment + before_.state.rest);
     effort_.evaluations += 1;
-    if (!failure_.is_spared(t(), [&] { series_(end_of_step, scale_, 1, probe_); })) return false;
+    if (!failure_.succeeds(t(), [&] { series_(end_of_step, scale_, 1, probe_); })) return false;
     const double s = h / scale_;
     Vector rate = double(order_) * coefficient_.col(order_);
     for (int k = order_ - 1; k > 0; --k) rate = s * rate + double(k) * coefficient_.col(k);

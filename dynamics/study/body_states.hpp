@@ -9,11 +9,11 @@ namespace kreisel {
 
 /// The positions in a BodySystem's state at which a quaternion begins.
 [[nodiscard]] inline std::vector<int> quaternions(const BodyTree& tree) {
-  std::vector<int> places;
+  std::vector<int> positions;
   for (const detail::Link& link : tree.links()) {
-    if (detail::coordinate_count(link.kind) >= 4) places.push_back(link.q);
+    if (detail::coordinate_count(link.kind) >= 4) positions.push_back(link.q);
   }
-  return places;
+  return positions;
 }
 
 /// The names of the directions in which the state can move (study/tangent.hpp), from the bodies'
@@ -55,8 +55,8 @@ struct RuledDirections {
 
   [[nodiscard]] static RuledDirections of(const BodyTree& tree) {
     RuledDirections ruled;
-    const auto note = [rates = tree.rates()](std::vector<int>& places, int rate) {
-      places.insert(places.end(), {rate, rates + rate});
+    const auto note = [rates = tree.rates()](std::vector<int>& positions, int rate) {
+      positions.insert(positions.end(), {rate, rates + rate});
     };
     for (const detail::Link& link : tree.links()) {
       const int count = detail::rate_count(link.kind);

@@ -48,19 +48,19 @@ namespace detail {
     }
     kept[static_cast<std::size_t>(i)] = false;
   }
-  std::vector<int> places;
+  std::vector<int> positions;
   for (int i = 0; i < dimension; ++i) {
-    if (kept[static_cast<std::size_t>(i)]) places.push_back(i);
+    if (kept[static_cast<std::size_t>(i)]) positions.push_back(i);
   }
-  return places;
+  return positions;
 }
 
 /// x at the positions, 0 elsewhere. A loop: g++ 12 warns about freed memory in Eigen's indexed
 /// assignment.
-[[nodiscard]] inline Eigen::VectorXd scattered(int dimension, const std::vector<int>& places,
+[[nodiscard]] inline Eigen::VectorXd scattered(int dimension, const std::vector<int>& positions,
                                                const Eigen::VectorXd& x) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dimension);
-  for (Eigen::Index i = 0; i < x.size(); ++i) result[places[static_cast<std::size_t>(i)]] = x[i];
+  for (Eigen::Index i = 0; i < x.size(); ++i) result[positions[static_cast<std::size_t>(i)]] = x[i];
   return result;
 }
 

@@ -93,15 +93,15 @@ struct Nutations {
 }  // namespace detail
 
 PrecessionMotion precession_motion(const PrecessionModel& model, double t_begin,
-                                   const Eigen::VectorXd& place, const Eigen::VectorXd& u,
+                                   const Eigen::VectorXd& position, const Eigen::VectorXd& u,
                                    double t_end, const PrecessionOptions& options) {
   using Eigen::VectorXd;
   using Point = detail::PrecessionPoint;
   const auto clock = std::chrono::steady_clock::now();
-  const GyroForces at_start = model.forces(t_begin, place);
+  const GyroForces at_start = model.forces(t_begin, position);
   const auto directions = detail::Directions::of(at_start.G, options);
   const auto& N = directions.N;
-  const Eigen::Index n = place.size(), kept = N.cols();
+  const Eigen::Index n = position.size(), kept = N.cols();
 
   const auto point = [&](double t, const VectorXd& z) {
     return Point(directions, model.forces(t, z.head(n)), z.tail(kept));
@@ -130,7 +130,7 @@ PrecessionMotion precession_motion(const PrecessionModel& model, double t_begin,
   };
 
   VectorXd z(n + kept);
-  z << place, N.transpose() * u;
+  z << position, N.transpose() * u;
   std::vector<int> blocks = model.blocks();
   blocks.insert(blocks.end(), static_cast<std::size_t>(kept), 1);
   ExplicitRungeKutta steps(field, t_begin, z, options.accuracy, blocks);

@@ -46,7 +46,7 @@ struct PrecessionOptions {
 /// Units  : those of the coordinates and their rates
 struct PrecessionSample {
   double t = 0;
-  Eigen::VectorXd place;     ///< coordinates of the model
+  Eigen::VectorXd position;  ///< coordinates of the model
   Eigen::VectorXd velocity;  ///< u
   Eigen::VectorXd drift;     ///< exact minus precession motion without its nutations; an estimate
   Eigen::VectorXd nutation;  ///< amplitudes of the neglected nutations, component by component
@@ -74,26 +74,26 @@ class PrecessionModel {
  public:
   virtual ~PrecessionModel() = default;
 
-  [[nodiscard]] virtual GyroForces forces(double t, const Eigen::VectorXd& place) const = 0;
+  [[nodiscard]] virtual GyroForces forces(double t, const Eigen::VectorXd& position) const = 0;
 
   /// c(u)
-  [[nodiscard]] virtual Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] virtual Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& position,
                                                       const Eigen::VectorXd& u) const = 0;
 
   /// The rate of a position.
-  [[nodiscard]] virtual Eigen::VectorXd rate(double /*t*/, const Eigen::VectorXd& /*place*/,
+  [[nodiscard]] virtual Eigen::VectorXd rate(double /*t*/, const Eigen::VectorXd& /*position*/,
                                              const Eigen::VectorXd& u) const {
     return u;
   }
 
   /// A displaced position.
-  [[nodiscard]] virtual Eigen::VectorXd moved(const Eigen::VectorXd& place,
+  [[nodiscard]] virtual Eigen::VectorXd moved(const Eigen::VectorXd& position,
                                               const Eigen::VectorXd& e) const {
-    return place + e;
+    return position + e;
   }
 
   /// The part of e' besides the change of u, if u are not rates of coordinates.
-  [[nodiscard]] virtual Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
+  [[nodiscard]] virtual Eigen::VectorXd turning_along(const Eigen::VectorXd& /*position*/,
                                                       const Eigen::VectorXd& /*u*/,
                                                       const Eigen::VectorXd& e) const {
     return Eigen::VectorXd::Zero(e.size());
@@ -106,7 +106,7 @@ class PrecessionModel {
 
 /// Integrates the precession (technical) equations
 ///
-///   A N N' u' + (G + D) u = Q(place, t)
+///   A N N' u' + (G + D) u = Q(position, t)
 ///
 /// from u(0), of which only N' u(0) is kept, with a bound of their deviation from the exact
 /// equations.
@@ -129,7 +129,7 @@ class PrecessionModel {
 /// Throws : as ExplicitRungeKutta; ComputationFailed if G + D (across N) is singular at the start
 KREISEL_API [[nodiscard]] PrecessionMotion precession_motion(const PrecessionModel& model,
                                                              double t_begin,
-                                                             const Eigen::VectorXd& place,
+                                                             const Eigen::VectorXd& position,
                                                              const Eigen::VectorXd& u, double t_end,
                                                              const PrecessionOptions& options = {});
 

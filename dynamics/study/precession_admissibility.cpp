@@ -139,15 +139,15 @@ Admissibility admissibility(const GyroForces& f, const Eigen::MatrixXd& K,
   return result;
 }
 
-Eigen::MatrixXd stiffness(const PrecessionModel& model, double t, const Eigen::VectorXd& place) {
-  const Eigen::Index n = model.forces(t, place).A.rows();
+Eigen::MatrixXd stiffness(const PrecessionModel& model, double t, const Eigen::VectorXd& position) {
+  const Eigen::Index n = model.forces(t, position).A.rows();
   const double h = 1e-3;
   Eigen::MatrixXd K(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto off = [&](double step) -> Eigen::VectorXd {
       const Eigen::VectorXd e = step * Eigen::VectorXd::Unit(n, j);
-      return model.forces(t, model.moved(place, Eigen::VectorXd(-e))).Q -
-             model.forces(t, model.moved(place, e)).Q;
+      return model.forces(t, model.moved(position, Eigen::VectorXd(-e))).Q -
+             model.forces(t, model.moved(position, e)).Q;
     };
     K.col(j) = (8 * off(h) - off(2 * h)) / (12 * h);
   }

@@ -70,6 +70,6 @@ KREISEL_API [[nodiscard]] Admissibility admissibility(const GyroForces& f, const
 ///
 /// Error  : of fourth order in steps of 1e-3
 KREISEL_API [[nodiscard]] Eigen::MatrixXd stiffness(const PrecessionModel& model, double t,
-                                                    const Eigen::VectorXd& place);
+                                                    const Eigen::VectorXd& position);
 
 }  // namespace kreisel

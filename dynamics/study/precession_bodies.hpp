@@ -65,23 +65,23 @@ class PrecessionBodies final : public PrecessionModel {
                                                                   const Eigen::VectorXd& y) const {
     const BodyTree& tree = system_.tree();
     const RotorMatrices m = rotor_matrices(system_, t, y, workspace_);
-    Eigen::VectorXd place(tree.coordinates() + m.l.size());
-    place << y.head(tree.coordinates()), m.l;
-    return {place, y.tail(tree.rates())(rates_)};
+    Eigen::VectorXd position(tree.coordinates() + m.l.size());
+    position << y.head(tree.coordinates()), m.l;
+    return {position, y.tail(tree.rates())(rates_)};
   }
 
   /// The state at a position with these velocities.
-  [[nodiscard]] Eigen::VectorXd state(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] Eigen::VectorXd state(double t, const Eigen::VectorXd& position,
                                       const Eigen::VectorXd& u) const {
     Eigen::VectorXd y;
-    (void)matrices(t, place, u, y);
+    (void)matrices(t, position, u, y);
     return y;
   }
 
-  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const override {
+  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& position) const override {
     const auto n = static_cast<Eigen::Index>(rates_.size());
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
-    const RotorMatrices m = matrices(t, place, zero);
+    const RotorMatrices m = matrices(t, position, zero);
     GyroForces f{m.A_eff, m.G_R, Eigen::MatrixXd::Zero(n, n), m.Q - m.c};
     const BodyTree& tree = system_.tree();
     if (tree.loaded().empty()) {
@@ -95,24 +95,24 @@ class PrecessionBodies final : public PrecessionModel {
       // Small, because terms of higher order in the velocities are no damping.
       const double small = 1e-3;
       const Eigen::VectorXd u = small * Eigen::VectorXd::Unit(n, k);
-      f.D.col(k) = (matrices(t, place, -u).Q - matrices(t, place, u).Q) / (2 * small);
+      f.D.col(k) = (matrices(t, position, -u).Q - matrices(t, position, u).Q) / (2 * small);
     }
     return f;
   }
 
-  [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& position,
                                               const Eigen::VectorXd& u) const override {
-    const GyroForces f = forces(t, place);
-    const RotorMatrices m = matrices(t, place, u);
+    const GyroForces f = forces(t, position);
+    const RotorMatrices m = matrices(t, position, u);
     return f.Q - (m.Q - m.c) - f.D * u;
   }
 
-  [[nodiscard]] Eigen::VectorXd rate(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] Eigen::VectorXd rate(double t, const Eigen::VectorXd& position,
                                      const Eigen::VectorXd& u) const override {
     const BodyTree& tree = system_.tree();
-    Eigen::VectorXd result(place.size());
+    Eigen::VectorXd result(position.size());
     const Eigen::VectorXd v = scattered(u);
-    detail::set_coordinate_rates(tree, place.data(), v.data(), result.data());
+    detail::set_coordinate_rates(tree, position.data(), v.data(), result.data());
     for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
       const detail::RotorLink& rotor = tree.rotors()[k];
       const auto& asked = tree.body(rotor.link.body).rotor->acceleration;
@@ -124,14 +124,14 @@ class PrecessionBodies final : public PrecessionModel {
     return result;
   }
 
-  [[nodiscard]] Eigen::VectorXd moved(const Eigen::VectorXd& place,
+  [[nodiscard]] Eigen::VectorXd moved(const Eigen::VectorXd& position,
                                       const Eigen::VectorXd& e) const override {
-    Eigen::VectorXd result = place;
+    Eigen::VectorXd result = position;
     const Eigen::VectorXd v = scattered(e);
     for (const detail::Link& link : system_.tree().links()) {
       if (detail::rate_count(link.kind) == 1) result[link.q] += v[link.v];
       if (detail::rate_count(link.kind) < 3) continue;
-      const Eigen::Quaterniond q(Eigen::Vector4d(place.segment<4>(link.q)));
+      const Eigen::Quaterniond q(Eigen::Vector4d(position.segment<4>(link.q)));
       result.segment<4>(link.q) = rotated(q, Vector3<double>(v.segment<3>(link.v))).coeffs();
       if (link.kind == detail::LinkKind::free) {
         result.segment<3>(link.q + 4) += v.segment<3>(link.v + 3);
@@ -140,7 +140,7 @@ class PrecessionBodies final : public PrecessionModel {
     return result;
   }
 
-  [[nodiscard]] Eigen::VectorXd turning_along(const Eigen::VectorXd& /*place*/,
+  [[nodiscard]] Eigen::VectorXd turning_along(const Eigen::VectorXd& /*position*/,
                                               const Eigen::VectorXd& u,
                                               const Eigen::VectorXd& e) const override {
     const Eigen::VectorXd w = scattered(u), x = scattered(e);
@@ -173,19 +173,19 @@ class PrecessionBodies final : public PrecessionModel {
   }
 
   /// With the rotors at the rates that belong to their momenta.
-  [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& position,
                                        const Eigen::VectorXd& u) const {
     Eigen::VectorXd y;
-    return matrices(t, place, u, y);
+    return matrices(t, position, u, y);
   }
 
   /// As above; y becomes the state with these rates.
-  [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] RotorMatrices matrices(double t, const Eigen::VectorXd& position,
                                        const Eigen::VectorXd& u, Eigen::VectorXd& y) const {
     const BodyTree& tree = system_.tree();
-    const Eigen::VectorXd l = place.tail(static_cast<Eigen::Index>(tree.rotors().size()));
+    const Eigen::VectorXd l = position.tail(static_cast<Eigen::Index>(tree.rotors().size()));
     y.resize(tree.coordinates() + tree.rates());
-    y << place.head(tree.coordinates()), scattered(u);
+    y << position.head(tree.coordinates()), scattered(u);
     const auto set_rate = [&](std::size_t k, double momentum) {
       const detail::RotorLink& rotor = tree.rotors()[k];
       y[tree.coordinates() + rotor.link.v] += momentum / rotor.about;

@@ -45,11 +45,11 @@ class PrecessionGimbals final : public PrecessionModel {
 
   [[nodiscard]] const Gyro& gyro() const { return gyro_; }
 
-  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& place) const override {
+  [[nodiscard]] GyroForces forces(double t, const Eigen::VectorXd& position) const override {
     const auto& [rotor, inner, outer] = gyro_.moments();
     const auto& [about_a, about_b] = gyro_.bearings();
-    const double sb = std::sin(about_b.reference + place[1]);
-    const double cb = std::cos(about_b.reference + place[1]);
+    const double sb = std::sin(about_b.reference + position[1]);
+    const double cb = std::cos(about_b.reference + position[1]);
     const double along = inner.z() + (regulated ? rotor.z() : 0.0);
     GyroForces f;
     f.A = Eigen::Vector2d(outer.x() + (inner.x() + rotor.x()) * cb * cb + along * sb * sb,
@@ -58,14 +58,14 @@ class PrecessionGimbals final : public PrecessionModel {
     f.G.resize(2, 2);
     f.G << 0, momentum_ * cb, -momentum_ * cb, 0;
     f.D = Eigen::Vector2d(about_a.damping, about_b.damping).asDiagonal();
-    f.Q = f.A * acceleration(t, place, Eigen::VectorXd::Zero(2));
+    f.Q = f.A * acceleration(t, position, Eigen::VectorXd::Zero(2));
     return f;
   }
 
-  [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] Eigen::VectorXd motion_forces(double t, const Eigen::VectorXd& position,
                                               const Eigen::VectorXd& u) const override {
-    const GyroForces f = forces(t, place);
-    return f.Q - (f.G + f.D) * u - f.A * acceleration(t, place, u);
+    const GyroForces f = forces(t, position);
+    return f.Q - (f.G + f.D) * u - f.A * acceleration(t, position, u);
   }
 
   [[nodiscard]] std::vector<int> blocks() const override { return {1, 1}; }
@@ -73,9 +73,9 @@ class PrecessionGimbals final : public PrecessionModel {
  private:
   static constexpr bool regulated = std::is_same_v<Rotor, RegulatedRotor>;
 
-  [[nodiscard]] Eigen::Vector2d acceleration(double t, const Eigen::VectorXd& place,
+  [[nodiscard]] Eigen::Vector2d acceleration(double t, const Eigen::VectorXd& position,
                                              const Eigen::VectorXd& u) const {
-    typename Gyro::State s{place[0], place[1], 0, u[0], u[1], 0};
+    typename Gyro::State s{position[0], position[1], 0, u[0], u[1], 0};
     const double C = gyro_.moments().rotor.z();
     const double turning = regulated ? 0.0 : gyro_.balance(t, s).rotor_momentum;
     s.phi_rate = (momentum_ - turning) / C;

@@ -298,7 +298,7 @@ class Pruner {
 
   template <class Quantity>
   void consider() {
-    const std::size_t place = next_++;
+    const std::size_t index = next_++;
     if constexpr (is_droppable<Scene, Quantity>) {
       const auto is_there = [](const auto& kind) {
         return is_droppable<std::decay_t<decltype(kind)>, Quantity>;
@@ -309,7 +309,7 @@ class Pruner {
       } else {
         try {
           term.bound = bound(without<Scene, Quantity>(scene_, options_));
-          term.kept = !fits(place, term.bound);
+          term.kept = !fits(index, term.bound);
         } catch (const Error& error) {
           term.why = error.what();
         }
@@ -320,12 +320,12 @@ class Pruner {
 
   /// Drops a term if the tolerance allows it. Two bounds must fit: the sum of its own and those of
   /// the others, and the bound of all together. Effects add up only as far as they are linear.
-  [[nodiscard]] bool fits(std::size_t place, double alone) {
+  [[nodiscard]] bool fits(std::size_t index, double alone) {
     if (!(sum_ + alone <= options_.tolerance)) return false;
-    chosen_.at(place) = true;
+    chosen_.at(index) = true;
     const double together = sum_ > 0 ? bound_together() : alone;
-    chosen_.at(place) = together <= options_.tolerance;
-    if (!chosen_.at(place)) return false;
+    chosen_.at(index) = together <= options_.tolerance;
+    if (!chosen_.at(index)) return false;
     sum_ += alone;
     together_ = together;
     return true;
@@ -336,19 +336,19 @@ class Pruner {
                       reduced<0, Scene, Quantities...>(scene_));
   }
 
-  template <std::size_t place, class Kind>
+  template <std::size_t index, class Kind>
   [[nodiscard]] AnyKind reduced(const Kind& scene) const {
     return AnyKind(std::in_place_type<Kind>, scene);
   }
-  template <std::size_t place, class Kind, class Quantity, class... Rest>
+  template <std::size_t index, class Kind, class Quantity, class... Rest>
   [[nodiscard]] AnyKind reduced(const Kind& scene) const {
     if constexpr (is_droppable<Kind, Quantity>) {
-      if (chosen_[place]) {
+      if (chosen_[index]) {
         const auto less = without<Kind, Quantity>(scene, options_);
-        return reduced<place + 1, std::decay_t<decltype(less)>, Rest...>(less);
+        return reduced<index + 1, std::decay_t<decltype(less)>, Rest...>(less);
       }
     }
-    return reduced<place + 1, Kind, Rest...>(scene);
+    return reduced<index + 1, Kind, Rest...>(scene);
   }
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -145,11 +145,11 @@ template <class At>
     throw InvalidInput(text.str());
   }
   const auto count = static_cast<std::size_t>(samples) + 1;
-  std::vector<double> place(count);
+  std::vector<double> parameter(count);
   std::vector<PairedMultipliers> sample(count);
   for (std::size_t i = 0; i < count; ++i) {
-    place[i] = from + (to - from) * static_cast<double>(i) / samples;
-    sample[i] = at(place[i]);
+    parameter[i] = from + (to - from) * static_cast<double>(i) / samples;
+    sample[i] = at(parameter[i]);
   }
   std::vector<StabilityBoundary> found;
   for (const auto kind : {BoundaryKind::minus_one, BoundaryKind::plus_one, BoundaryKind::krein}) {
@@ -164,7 +164,7 @@ template <class At>
     const auto g = [&](std::size_t i) { return detail::discriminant(sample[i], kind).value; };
     for (std::size_t i = 0; i + 1 < count; ++i) {
       if ((g(i) > 0) != (g(i + 1) > 0)) {
-        add(place[i], g(i), place[i + 1], g(i + 1));
+        add(parameter[i], g(i), parameter[i + 1], g(i + 1));
         continue;
       }
       if (i == 0) continue;
@@ -173,12 +173,13 @@ template <class At>
                         (g(i - 1) > 0) == (g(i) > 0);
       if (!dips) continue;
       const auto towards = [&](double p) { return sign * value(p); };
-      const double low = detail::below_zero(towards, place[i - 1], sign * g(i - 1), place[i],
-                                            sign * g(i), place[i + 1], sign * g(i + 1));
-      if (low == place[i + 1]) continue;
+      const double low =
+          detail::below_zero(towards, parameter[i - 1], sign * g(i - 1), parameter[i], sign * g(i),
+                             parameter[i + 1], sign * g(i + 1));
+      if (low == parameter[i + 1]) continue;
       const double g_low = value(low);
-      add(place[i - 1], g(i - 1), low, g_low);
-      add(low, g_low, place[i + 1], g(i + 1));
+      add(parameter[i - 1], g(i - 1), low, g_low);
+      add(low, g_low, parameter[i + 1], g(i + 1));
     }
   }
   std::sort(found.begin(), found.end(),

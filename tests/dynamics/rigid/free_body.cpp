@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(moves_straight_for_any_guide_motion) {
   };
   const auto centre = [&](double t, const auto& state) {
     const auto s = body.situation(t, state);
-    return s.template place<Inertial>(s.centre());
+    return s.template position<Inertial>(s.centre());
   };
   const Motor<double> J = momentum(0, start);
   const Vector3<double> c = centre(0, start);
@@ -134,7 +134,7 @@ BOOST_DATA_TEST_CASE(loses_the_power_of_its_dampers, data::xrange(20u), seed) {
   const Vector3<double> end(0.1, 0.2, 0);
   const Vector3<double> from(0, 0.5, 3);
   const double stretching =
-      rate([&](const LoadContext<>& at) { return (at.place<Guide>(end) - from).norm(); });
+      rate([&](const LoadContext<>& at) { return (at.position<Guide>(end) - from).norm(); });
   BOOST_TEST(
       near(given(Spring<>{from, end, 40, 0.5, 3}), -3 * stretching * stretching, 200.0, tolerance));
 
@@ -142,12 +142,12 @@ BOOST_DATA_TEST_CASE(loses_the_power_of_its_dampers, data::xrange(20u), seed) {
   Matrix3<double> D;
   D << 3, 0.2, 0, 0.2, 2, 0.1, 0, 0.1, 2.5;
   const Vector3<double> velocity =
-      rate([&](const LoadContext<>& at) -> Vector3<double> { return at.place<Guide>(end); });
+      rate([&](const LoadContext<>& at) -> Vector3<double> { return at.position<Guide>(end); });
   BOOST_TEST(near(given(ElasticMount<>{from, end, K, D, {1, 2, 3}}), -velocity.dot(D * velocity),
                   200.0, tolerance));
 
   const Vector3<double> origin = rate([&](const LoadContext<>& at) -> Vector3<double> {
-    return at.place<Guide>({0, 0, 0});
+    return at.position<Guide>({0, 0, 0});
   });
   BOOST_TEST(near(power(ViscousDrag<>{2, 3}(s), s.V_rel),
                   -3 * origin.squaredNorm() - 2 * s.V_rel.value.resultant.squaredNorm(), 200.0,

@@ -43,7 +43,7 @@ double true_error(Exact& exact, const Places& places, const PrecessionMotion& mo
   double worst = 0;
   for (const PrecessionSample& s : motion.samples) {
     exact.advance_to(s.t);
-    worst = test::worst_of(worst, (places(exact.y()) - places(s.place)).norm());
+    worst = test::worst_of(worst, (places(exact.y()) - places(s.position)).norm());
   }
   return worst;
 }
@@ -93,7 +93,8 @@ BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   for (const Json& row : truth["precession"]) {
     const auto motion =
         precession_motion(model, 0, place, Eigen::VectorXd::Zero(2), number(row["t"]));
-    const Eigen::Vector2d found = motion.samples.back().place + Eigen::Vector2d(slack_a, slack_b);
+    const Eigen::Vector2d found =
+        motion.samples.back().position + Eigen::Vector2d(slack_a, slack_b);
     const double off = (found - numbers(row["q"])).norm();
     BOOST_TEST_MESSAGE("t = " << number(row["t"]) << " s: off by " << off << " rad, "
                               << motion.effort.steps << " steps, bound "
@@ -130,7 +131,7 @@ BOOST_AUTO_TEST_CASE(agree_for_the_gyro_as_bodies) {
     const auto other = mode == RotorMode::free ? same(FreeRotor{}) : same(RegulatedRotor{});
     const PrecessionSample &a = motion.samples.back(), &b = other.samples.back();
     const Eigen::Vector2d slack(slack_a, slack_b);
-    BOOST_TEST((a.place.head<2>() - slack - b.place).norm() < 1e-11);
+    BOOST_TEST((a.position.head<2>() - slack - b.position).norm() < 1e-11);
     BOOST_TEST((a.velocity - b.velocity).norm() < 1e-10);
     BOOST_TEST(std::abs(a.bound - b.bound) < 1e-3 * b.bound);
   }
@@ -262,7 +263,7 @@ BOOST_AUTO_TEST_CASE(stop_near_gimbal_lock) {
   const PrecessionSample& last = motion.samples.back();
   BOOST_TEST(!motion.slow);
   BOOST_TEST(last.t < 10);
-  BOOST_TEST(std::abs(last.place[1]) > 0.5);
+  BOOST_TEST(std::abs(last.position[1]) > 0.5);
   BOOST_TEST(motion.valid_until < last.t);
 }
 

@@ -107,10 +107,10 @@ Comparison compare(const Bodies& system, double spin, bool with_velocity) {
   double error = 0;
   for (const PrecessionSample& sample : motion.samples) {
     exact.advance_to(sample.t);
-    VectorXd off = exact.y().head(gimbals + 2) - sample.place.head(gimbals + 2);
+    VectorXd off = exact.y().head(gimbals + 2) - sample.position.head(gimbals + 2);
     if (tree.body(0).joint.kind == JointKind::free) {
       const Eigen::Quaterniond a(Eigen::Vector4d(exact.y().head<4>()));
-      const Eigen::Quaterniond b(Eigen::Vector4d(sample.place.head<4>()));
+      const Eigen::Quaterniond b(Eigen::Vector4d(sample.position.head<4>()));
       off.head<4>() << 2 * (b.conjugate() * a).vec(), 0;
     }
     error = test::worst_of(error, off.norm());

@@ -604,7 +604,7 @@ void check_balances(const M& guide, const std::vector<BodyDescription>& bodies,
     for (int i = 0; i < system.body_count(); ++i) {
       const LoadContext<> b = system.situation(t, state, i, w);
       const double m = b.inertia.value.mass;
-      const Vector3<double> centre = b.template place<Inertial>(b.centre());
+      const Vector3<double> centre = b.template position<Inertial>(b.centre());
       P += {m * g, centre.cross(m * g)};
     }
     result << sum, P.resultant, P.moment;

@@ -88,7 +88,7 @@ struct Tide {
     return {{s.on_body_axes<Guide>({0, 0, std::sin(s.t)}), {0, 0, 0}}};
   }
   [[nodiscard]] double potential(const LoadContext<>& s) const {
-    return -std::sin(s.t) * s.place<Guide>({0, 0, 0}).z();
+    return -std::sin(s.t) * s.position<Guide>({0, 0, 0}).z();
   }
 };
 
