@@ -22,7 +22,7 @@ namespace kreisel {
 /// Frame  : guide axes, reduced where the axes meet
 /// Units  : rad, rad/s
 /// Error  : of third order in the angles: 0.32 eps^3 (free) and 0.39 eps^3 (regulated) after 0.2 s
-///          for starts of the size eps, growing with the time; departure() measures it
+///          for starts of the size eps, growing with the time; greatest_deviation() measures it
 ///          (tests/dynamics/gimbal/unsymmetric_rotor.cpp)
 /// Throws : InvalidInput for parameters that CardanGyro refuses, an unsymmetric rotor, or
 ///          references of the bearings other than 0

@@ -45,11 +45,12 @@ enum class GuideMomentum {
 /// Units  : rad, rad/s
 /// Error  : for angles and u of the size eps, of the order eps^k, k = 3 with first_order, also if
 ///          u_z is not small; 2 with constant, 1 if u_z is not small; 1 with none, but 2 for a
-///          symmetric rotor and constant u. With first_order the error of the field is of the order
-///          eps^2 for angles of the size eps and any u
-///          (tests/dynamics/gimbal/gyro_small_oscillations.cpp). departure() measures it
-/// Throws : InvalidInput for parameters that CardanGyro refuses, references of the bearings other
-///          than 0, or a speed that is not finite
+///          symmetric rotor and constant u. With first_order the field errs by the order eps^2
+///          where the angles are of the size eps and u of any
+///          (tests/dynamics/gimbal/gyro_small_oscillations.cpp).
+///          greatest_deviation() measures it
+/// Throws : InvalidInput for what CardanGyro refuses, references of the bearings other than 0, or a
+///          speed that is not finite
 template <class M>
 class GyroSmallOscillations : public GimbalOscillation<CardanGyro<M, RegulatedRotor>> {
   static_assert(detail::is_guide<M>,

@@ -31,9 +31,8 @@ namespace kreisel {
 /// Frame  : guide axes, reduced where the axes meet
 /// Units  : rad, rad/s
 /// Error  : of third order in the angles (tests/dynamics/gimbal/unsymmetric_rotor.cpp), growing as
-///          exp(t ln|l|/period) in an unstable range; departure() measures it
-/// Throws : InvalidInput for parameters that CardanGyro refuses, and for a speed that is 0 or not
-///          finite
+///          exp(t ln|l|/period) in an unstable range; greatest_deviation() measures it
+/// Throws : InvalidInput for what CardanGyro refuses, and a speed that is 0 or not finite
 template <class Rotor = RegulatedRotor>
 class UnsymmetricRotor : public GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>> {
   using Base = GimbalOscillation<CardanGyro<RestingFrame<>, Rotor>>;

@@ -105,7 +105,7 @@ class PruningEffect {
     double off = 0;
     for (std::size_t i = 0; i < fine.states.size(); ++i) {
       const Vector& x = fine.states[i];
-      off = max_or_nan(off, distance(x + coarse.departures[i], x + fine.departures[i]));
+      off = max_or_nan(off, distance(x + coarse.deviations[i], x + fine.deviations[i]));
     }
     return caution * fine.worst + 2 * off + error_of_pair(0, times_finer, rounding, fine.steps);
   }
@@ -132,7 +132,7 @@ class PruningEffect {
       Pair rate = Pair::Zero();
       rate.template head<n>() = dx.cwiseQuotient(effect->scale_);
       if (rates != nullptr) {
-        const Vector dy = (*rates)(t, x + effect->departure(both));
+        const Vector dy = (*rates)(t, x + effect->deviation(both));
         rate.template tail<n>() = (dy - dx).cwiseQuotient(effect->scale_) / effect->resolution();
       }
       return rate;
@@ -142,7 +142,7 @@ class PruningEffect {
 
   struct Run {
     std::vector<Vector> states = {};
-    std::vector<Vector> departures = {};
+    std::vector<Vector> deviations = {};
     double worst = 0;
     double steps = 0;
   };
@@ -155,7 +155,7 @@ class PruningEffect {
   [[nodiscard]] Vector scene_part(const Pair& both) const {
     return both.template head<n>().cwiseProduct(scale_);
   }
-  [[nodiscard]] Vector departure(const Pair& both) const {
+  [[nodiscard]] Vector deviation(const Pair& both) const {
     return resolution() * both.template tail<n>().cwiseProduct(scale_);
   }
 
@@ -185,7 +185,7 @@ class PruningEffect {
     ErrorMeasure<Scene> distance(scene_, options_.absolute_scale);
     const auto note = [&](const Pair& both) {
       const Vector x = scene_part(both);
-      result.worst = max_or_nan(result.worst, distance(x + departure(both), x));
+      result.worst = max_or_nan(result.worst, distance(x + deviation(both), x));
     };
     Steps steps = started(&rates, accuracy);
     note(steps.y());
@@ -200,7 +200,7 @@ class PruningEffect {
         const Pair both = steps.at(sample());
         note(both);
         result.states.push_back(scene_part(both));
-        result.departures.push_back(departure(both));
+        result.deviations.push_back(deviation(both));
       }
       note(steps.y());
     }

@@ -9,7 +9,7 @@
 
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/gimbal/gyro_small_oscillations.hpp>
-#include <dynamics/study/departure.hpp>
+#include <dynamics/study/deviation.hpp>
 
 #include <support/worst.hpp>
 
@@ -79,7 +79,7 @@ BOOST_AUTO_TEST_CASE(err_in_the_stated_order) {
     for (const double eps : {0.16, 0.08, 0.04, 0.02, 0.01, 0.005}) {
       const GyroSmallOscillations gyro(law.rotor, springs, speed,
                                        Turning{eps, law.frequency, law.fast_z}, law.kept);
-      const auto off = departure(gyro, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2, 100);
+      const auto off = greatest_deviation(gyro, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2, 100);
       const double error = test::worst_of(off[0], off[1]);
       order = before != 0 ? std::log2(before / error) : 0;
       before = error;
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(need_the_torque_of_the_drive) {
   for (const double eps : {0.02, 0.01, 0.005}) {
     WithoutDrive gyro(symmetric, springs, speed, Turning{eps, 30, false});
     gyro.exact_guide = {eps, 30, false};
-    const auto off = departure(gyro, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2, 100);
+    const auto off = greatest_deviation(gyro, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2, 100);
     const double error = test::worst_of(off[0], off[1]);
     order = before != 0 ? std::log2(before / error) : 0;
     before = error;

@@ -10,7 +10,7 @@
 
 #include <dynamics/gimbal/foeppl.hpp>
 #include <dynamics/gimbal/unsymmetric_rotor.hpp>
-#include <dynamics/study/departure.hpp>
+#include <dynamics/study/deviation.hpp>
 
 #include <support/json.hpp>
 #include <support/worst.hpp>
@@ -41,7 +41,7 @@ void errs_as(const std::string& name, const Scene& scene, double k) {
   for (std::size_t i = 0; i < expected.at("eps").size(); ++i) {
     const double eps = expected.at("eps").at(i).get<double>();
     const double reference = expected.at("err").at(i).get<double>();
-    const auto off = departure(scene, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2);
+    const auto off = greatest_deviation(scene, {eps, -0.5 * eps, 5 * eps, 3 * eps}, 0, 0.2);
     const double error = test::worst_of(off[0], off[1]);
     // The reference uses other times.
     BOOST_TEST(std::abs(error / reference - 1) < 0.01, name << ": " << error << ' ' << reference);

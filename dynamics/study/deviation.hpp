@@ -15,10 +15,11 @@ namespace kreisel {
 /// Error  : that of the steps: their accuracy must be finer than the deviation
 /// Throws : as Integrator
 template <class Scene>
-[[nodiscard]] typename Scene::Vector departure(const Scene& scene,
-                                               const typename Scene::State& start, double t_begin,
-                                               double t_end, int samples = 200,
-                                               const Accuracy& accuracy = {}) {
+[[nodiscard]] typename Scene::Vector greatest_deviation(const Scene& scene,
+                                                        const typename Scene::State& start,
+                                                        double t_begin, double t_end,
+                                                        int samples = 200,
+                                                        const Accuracy& accuracy = {}) {
   const auto exact = scene.exact();
   Integrator approximate(scene, t_begin, start, accuracy);
   Integrator true_run(exact, t_begin, scene.exact_state(start), accuracy);
