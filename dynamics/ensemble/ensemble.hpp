@@ -439,7 +439,7 @@ template <class N, class Group, class Make>
 /// make   : callable (index, MemberRandom&) -> State, from several threads at once; its exception
 ///          makes the member fail
 /// Error  : of each member within options.tolerance, estimated as in solve()
-/// Throws : InvalidInput if the options or the sampling are invalid; what sampling.progress throws
+/// Throws : InvalidInput if the options or the sampling are invalid; exceptions of sampling.progress
 template <class N = Pack, class Scene, class Make>
 [[nodiscard]] Ensemble<typename Scene::State> ensemble(const Scene& scene, const Sampling& sampling,
                                                        const Make& make,

@@ -20,7 +20,7 @@ enum class Crossing { any, rising, falling };
 /// zero without crossing is no event. Two crossings within a sixteenth of a step are not found.
 ///
 /// Steps  : has step_towards, t, y, at and back_to, as ExplicitRungeKutta
-/// Error  : of the time 4 units in its last place beside that of the trajectory
+/// Error  : of the time 4 units in its last place, plus that of the trajectory
 ///          (tests/dynamics/step/events.cpp)
 /// Cost   : 16 evaluations of g a step, and 10 more of the field
 /// Throws : ComputationFailed naming the time where g is not finite, and as the steps do

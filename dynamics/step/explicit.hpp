@@ -73,7 +73,7 @@ class ExplicitRungeKutta {
   /// (every eighth). RadauSteps is then the better choice.
   ///
   /// Source : Hairer, Wanner, Solving Ordinary Differential Equations II, IV.2: the greatest rate
-  ///          of the field, from two stages at the same time, against what the method is stable for
+  ///          of the field, from two stages at the same time, against the method's stability limit
   [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
   /// Takes over the block sizes of an earlier integration, relative to which errors are measured.

@@ -66,7 +66,6 @@ class StiffFieldOf final : public StiffField {
 
 /// The stages Z of a Radau step and Newton's method for them. Plain loops, as in Factors: they
 /// compile in a tenth of the time of Eigen's products.
-/// Factors: they take the compiler a tenth of what Eigen's products do.
 class RadauStages {
  public:
   /// The coefficients must outlive this object.

@@ -13,7 +13,7 @@
 
 namespace kreisel::detail {
 
-/// Products of two matrices at a time: the compiler would instantiate each longer expression anew.
+/// Products of two matrices at a time: the compiler would instantiate each longer expression.
 [[nodiscard]] inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return A * B;
 }

@@ -106,9 +106,9 @@ std::string take(const std::string& text, Verdict& verdict) {
 
 Verdict examine(const Scene& scene, const Examination& how) {
   int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe is to be had");
+  if (pipe(ends) != 0) throw std::runtime_error("a pipe cannot be made");
   const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("no process is to be had");
+  if (child < 0) throw std::runtime_error("a process cannot be started");
   if (child == 0) {
     close(ends[0]);
     work(scene, how, ends[1]);

@@ -48,7 +48,7 @@ class Judge {
     for (const std::string& term : answers_.contradictions) {
       add("report: a term is both kept and dropped", term);
     }
-    if (answers_.misread) add("reader: title, method or report is not what is written", "");
+    if (answers_.misread) add("reader: title, method or report differs from the file", "");
     judge_reactions();
     for (const Answer& answer : answers_.by_method) {
       judge_failure(answer);
@@ -100,14 +100,14 @@ class Judge {
 
   void judge_report(const Answer& answer) {
     if (!finite(answer)) {
-      add(answer.asked + ": complete, and not finite", fmt::format("{}", answer.estimate));
+      add(answer.asked + ": complete but not finite", fmt::format("{}", answer.estimate));
     }
     if (answer.kept != (answer.estimate <= answer.tolerance)) {
       add("report: tolerance_kept contradicts the estimate",
           fmt::format("{} {}", answer.estimate, answer.tolerance));
     }
     if (answer.states.size() < scene_.times().size()) {
-      add("report: complete, and outputs are missing", fmt::format("{}", answer.states.size()));
+      add("report: complete but outputs are missing", fmt::format("{}", answer.states.size()));
     }
   }
 
@@ -162,18 +162,18 @@ class Judge {
       const double own = 5 * distance(reference_.states[i], truth) + 1e-13 + unknown();
       const double off = distance(*y, truth);
       if (off <= own || !(own <= 0.1)) continue;
-      if (tells(answer, off - own)) continue;
-      add(fmt::format("{} is wrong{}{}", name(answer), answer.kept ? " and told kept" : "",
+      if (is_covered(answer, off - own)) continue;
+      add(fmt::format("{} is wrong{}{}", name(answer), answer.kept ? " and reported as kept" : "",
                       finest(answer)),
           fmt::format("at t = {} off by {:.3g} from the independent motion (known to {:.1g}), "
-                      "told {:.3g}, asked {:.1g}",
+                      "reported {:.3g}, tolerance {:.1g}",
                       reference_.times[i], off, own, answer.estimate, answer.tolerance));
       return;
     }
   }
 
   /// True if an error is within the reported one.
-  [[nodiscard]] static bool tells(const Answer& answer, double off) {
+  [[nodiscard]] static bool is_covered(const Answer& answer, double off) {
     if (!answer.kept) return off <= 10 * answer.estimate;
     return off <= 2 * answer.tolerance || off <= 2 * answer.estimate;
   }
@@ -208,8 +208,8 @@ class Judge {
       const double times = a.kept && b.kept ? 3 : 10;
       if (off <= times * told + 1e-13) continue;
       add(fmt::format("{} and {} differ{}", name(a), name(b), finest(a)),
-          fmt::format("at t = {} by {:.3g}, told {:.3g} and {:.3g}, asked {:.1g}", a.times[i], off,
-                      a.estimate, b.estimate, a.tolerance));
+          fmt::format("at t = {} by {:.3g}, reported {:.3g} and {:.3g}, tolerance {:.1g}",
+                      a.times[i], off, a.estimate, b.estimate, a.tolerance));
       return;
     }
   }
@@ -262,7 +262,7 @@ class Judge {
     if (std::abs(off - model_error) <= 0.05 * std::max(off, model_error) + 10 * answer.tolerance) {
       return;
     }
-    add("model " + scene_.model + " tells another error",
+    add("model " + scene_.model + " reports another error",
         fmt::format("{:.3g}, and is off by {:.3g}", model_error, off));
   }
 
@@ -276,7 +276,7 @@ class Judge {
     for (std::size_t i = 0; i < std::min(many.sizes.size(), one.sizes.size()); ++i) {
       const auto [less, more] = std::minmax(one.sizes[i], many.sizes[i]);
       if (more <= most * less) continue;
-      add("report: sizes depend on the outputs asked for",
+      add("report: sizes depend on the outputs",
           fmt::format("part {}: {:.3g} for the end alone, {:.3g} for {} outputs", i, one.sizes[i],
                       many.sizes[i], many.states.size()));
       return;
@@ -286,7 +286,7 @@ class Judge {
     const double told = std::max(one.estimate, many.estimate);
     const double off = std::abs(one.end_error - many.end_error);
     if (off <= (1 - 1 / most) * told + noise_of_pairs(one.steps)) return;
-    add("report: errors depend on the outputs asked for",
+    add("report: errors depend on the outputs",
         fmt::format("of the end {:.3g} for itself alone, {:.3g} for {} outputs, {:.3g} at most",
                     one.end_error, many.end_error, many.states.size(), told));
   }

@@ -198,7 +198,7 @@ void watch(const Request& request, Shared& shared, std::size_t workers) {
   std::ifstream file(request.out / "faults.txt");
   for (std::string line; std::getline(file, line);) kinds[line.substr(0, line.find('\t'))] += 1;
   fmt::print(
-      "{} scenes, {} answered, {} of them held against the independent integrator; {} with "
+      "{} scenes, {} answered, {} of them compared with the independent integrator; {} with "
       "faults\n",
       shared.done.load(), shared.answered.load(), shared.referenced.load(), shared.faulty.load());
   for (const auto& [kind, count] : kinds) {
@@ -212,7 +212,7 @@ void watch(const Request& request, Shared& shared, std::size_t workers) {
     for (const auto& [kind, times] : kinds) count += kind.starts_with(known.begin) ? times : 0;
     const double most = known.most * std::max(1.0, static_cast<double>(shared.done) / 400);
     if (count <= most) continue;
-    fmt::print("too often: {} times, {} at most: {}\n", count, most, known.begin);
+    fmt::print("too often: {} times, limit {}: {}\n", count, most, known.begin);
     too_often = true;
   }
   return too_often;
@@ -255,18 +255,18 @@ int main(int argc, char** argv) {
   Request request;
   request.seeds = {1, today()};
   CLI::App app{"Random scene files by several methods and by an independent integrator"};
-  app.add_option("--count", request.count, "how many scenes")->capture_default_str();
+  app.add_option("--count", request.count, "number of scenes")->capture_default_str();
   app.add_option("--seed", request.seeds, "of the random scenes; 1 and the day's date by default");
-  app.add_option("--minutes", request.minutes, "after which no more are begun");
+  app.add_option("--minutes", request.minutes, "after which no further scene begins");
   app.add_option("--jobs", request.jobs, "processes side by side")->capture_default_str();
   app.add_option("--out", request.out, "folder for failing scenes")->capture_default_str();
   app.add_option("--shrink", request.shrink_seconds, "seconds to shrink a failing scene")
       ->capture_default_str();
-  app.add_option("--methods", request.how.methods, "that are held against each other");
+  app.add_option("--methods", request.how.methods, "to compare with each other");
   app.add_option("--evaluations", request.how.limits.evaluations, "of each run of steps");
   app.add_option("--seconds", request.how.limits.seconds, "of processor time for each method");
   app.add_option("--work", request.how.limits.work, "operations of the independent integrator");
-  app.add_option("--only", request.only, "the scene of this number alone");
+  app.add_option("--only", request.only, "only the scene of this number");
   app.add_option("--known", request.known_file, "file of kinds of faults that do not count")
       ->check(CLI::ExistingFile);
   app.add_flag("--print", request.print, "with --only: print it, do not run it");

@@ -9,7 +9,7 @@ namespace differential {
 /// The scene without all parts that the fault does not need, removed one after the other.
 ///
 /// fails   : whether a scene has the fault
-/// seconds : after so many it has to do with what it has
+/// seconds : limit, after which the present scene is returned
 [[nodiscard]] Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails,
                            double seconds);
 

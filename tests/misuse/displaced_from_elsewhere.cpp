@@ -1,4 +1,4 @@
-// A displacement from body to guide applied to what is written in the guide already.
+// A displacement from body to guide applied to a motor that is already written in the guide.
 // refused: not written in the frame that this displacement takes from
 // refused: Force<(kreisel::)?Guide
 // refused: (From = |Displacement<|operator\*<.*)(kreisel::)?(Body|Guide, (kreisel::)?Body)

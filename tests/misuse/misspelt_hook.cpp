@@ -1,4 +1,4 @@
-// A scene whose hook is misspelt: what it conserves would be watched by nobody.
+// A scene whose hook is misspelt: its invariants would not be monitored.
 // refused: HasConserved<Top>
 #include <array>
 #include <utility>

@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(has_matrices_21_to_24_and_26) {
   BOOST_TEST(largest(p.gyroscopic(zero) - rest.G_R) <= 1e-15);
   BOOST_TEST(largest(p.gyroscopic(zero, true) - rest.G_R) > 0.1);
 
-  // Odd in the angles, what is left over is of third order.
+  // The remainder is odd in the angles, so of third order.
   const double small = 1e-3;
   const RotorMatrices a = matrices(RotorMode::regulated, small * q, none);
   const RotorMatrices b = matrices(RotorMode::regulated, -small * q, none);

@@ -117,7 +117,7 @@ BOOST_AUTO_TEST_CASE(are_not_lost_where_the_circle_is_cut) {
   }
 }
 
-// (1 - cos(x - a)) (cos(a - b)/2 + cos(x - b)): a double root at a whatever b is.
+// (1 - cos(x - a)) (cos(a - b)/2 + cos(x - b)): a double root at a for any b.
 BOOST_DATA_TEST_CASE(a_merged_pair_is_reported_once_and_unstable, data::xrange(200u), seed) {
   Sample sample(seed);
   const double a = sample.uniform(-3.1, 3.1);
