@@ -83,13 +83,13 @@ class RoundingGrowthOfMembers {
  public:
   using Values = std::array<double, std::size_t(lanes_of<N>)>;
 
-  RoundingGrowthOfMembers(const Scene& scene, double smallest,
+  RoundingGrowthOfMembers(const Scene& scene, double absolute_scale,
                           PackedIntegrator<Scene, N> unperturbed,
                           PackedIntegrator<Scene, N> perturbed)
       : scene_(scene),
         unperturbed_(std::move(unperturbed)),
         perturbed_(std::move(perturbed)),
-        distance_(std::size_t(lanes_of<N>), {scene, smallest}) {}
+        distance_(std::size_t(lanes_of<N>), {scene, absolute_scale}) {}
 
   /// The growth at t; times must be given in order. 0 if the coarse steps fail or a stop is
   /// requested.

@@ -101,8 +101,8 @@ class BlockSizes {
   using Scalar = ScalarOf<Number>;
 
   /// Without blocks the whole of y is one block.
-  BlockSizes(std::span<const int> blocks, const Scalar& smallest, const Vector& y)
-      : smallest_(smallest) {
+  BlockSizes(std::span<const int> blocks, const Scalar& absolute_scale, const Vector& y)
+      : absolute_scale_(absolute_scale) {
     const int all = static_cast<int>(y.size());
     if (blocks.empty()) blocks = {&all, 1};
     require_blocks(blocks, all);
@@ -231,10 +231,10 @@ class BlockSizes {
   }
 
   [[nodiscard]] Number scale(const Block& block) const {
-    return larger(block.size, Number(smallest_));
+    return larger(block.size, Number(absolute_scale_));
   }
 
-  Scalar smallest_;
+  Scalar absolute_scale_;
   std::vector<Block> blocks_;
 };
 

@@ -106,8 +106,8 @@ struct GaussCoefficients {
 ///          76 (2017) 861
 /// Field  : as ExplicitRungeKutta takes it; smooth, not stiff
 /// Vector : as ExplicitRungeKutta; steps allocate memory if its size is dynamic
-/// Blocks : as ExplicitRungeKutta; their sizes, at least `smallest`, are the reference for rounding
-///          of the stages and for rounding_level()
+/// Blocks : as ExplicitRungeKutta; their sizes, at least `absolute_scale`, are the reference for
+///          rounding of the stages and for rounding_level()
 /// Error  : pendulum of 0.1 rad, 6 to 12 steps a period, RMS of 6: after 1e4 periods energy 2e-14
 ///          relative, phase 1.5e-12 rad; after 1e5, 7e-14 and 2e-11: as sqrt(t) and t
 /// Cost   : 10 to 14 iterations of `stages` evaluations a step
@@ -122,14 +122,14 @@ class GaussIRK {
   static constexpr int order = 2 * stages;
 
   GaussIRK(Field field, const Scalar& t, const Vector& y, double step,
-           std::span<const int> blocks = {}, double smallest = 0)
+           std::span<const int> blocks = {}, double absolute_scale = 0)
       : field_(std::move(field)),
         step_(step),
         time_{t, Scalar(0)},
         state_{y, Vector::Zero(y.size())},
         stage_(Stages::Zero(y.size(), stages)),
         block_sizes_(blocks.begin(), blocks.end()),
-        sizes_(blocks, Scalar(smallest), y) {
+        sizes_(blocks, Scalar(absolute_scale), y) {
     detail::require_step(step);
     if (!std::isfinite(static_cast<double>(t)))
       detail::refuse_steps("the start time is not finite");
