@@ -322,7 +322,7 @@ class ExplicitRungeKutta {
     const auto fill = [&]<std::size_t k>() {
       constexpr std::size_t last = occupied<row<k>>.back();
       const Scalar weight = h * static_cast<Scalar>(row<k>[last]);
-      alignas(detail::Four) alignas(Vector) typename Memory::Passing point = stage_.point();
+      alignas(detail::Vec4d) alignas(Vector) typename Memory::Passing point = stage_.point();
       // Only the last stage depends on its predecessors.
       Memory::put(
           point, [&](const auto& part) __attribute__((always_inline)) {

@@ -45,7 +45,7 @@ concept Differentiable = requires(const Scene& scene, const detail::Dual& t,
 ///
 /// Units  : those of the state, radian for the angles that stand for a quaternion
 template <class Observer, class In>
-struct Linearisation {
+struct Linearization {
   Eigen::VectorXd state;           ///< the state about which the equations are linear
   Eigen::MatrixXd A;               ///< state matrix
   Eigen::VectorXd rate;            ///< of the state, in the components of eta': 0 at an equilibrium

@@ -13,9 +13,9 @@ using detail::Vec4d;
 BOOST_AUTO_TEST_SUITE(packed_numbers)
 
 BOOST_AUTO_TEST_CASE(calculate_component_by_component) {
-  const Four a(1, -2, 3, 5);
-  const Four b(0.5, 4, -8, 2);
-  Four c = a;
+  const Vec4d a(1, -2, 3, 5);
+  const Vec4d b(0.5, 4, -8, 2);
+  Vec4d c = a;
   c += b;
   const Vec4d sum = a + b;
   const Vec4d difference = a - b;
@@ -33,9 +33,9 @@ BOOST_AUTO_TEST_CASE(calculate_component_by_component) {
 }
 
 BOOST_AUTO_TEST_CASE(rotate_cyclically) {
-  const Four a(1, 2, 3, 4);
-  const Four next = a.next();
-  const Four after = a.after();
+  const Vec4d a(1, 2, 3, 4);
+  const Vec4d next = a.next();
+  const Vec4d after = a.after();
   BOOST_TEST((next[0] == 2 && next[1] == 3 && next[2] == 1 && next[3] == 4));
   BOOST_TEST((after[0] == 3 && after[1] == 1 && after[2] == 2 && after[3] == 4));
 }
@@ -59,9 +59,9 @@ BOOST_AUTO_TEST_CASE(have_the_product_of_vectors) {
 }
 
 BOOST_AUTO_TEST_CASE(are_loaded_and_stored) {
-  alignas(Four) const double numbers[] = {1, -2, 3, -4};
-  alignas(Four) double copy[4];
-  Four::from(numbers).to(copy);
+  alignas(Vec4d) const double numbers[] = {1, -2, 3, -4};
+  alignas(Vec4d) double copy[4];
+  Vec4d::from(numbers).to(copy);
   for (int i = 0; i < 4; ++i) BOOST_TEST(copy[i] == numbers[i]);
 }
 

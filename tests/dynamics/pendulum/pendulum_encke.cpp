@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_digits_of_a_small_effect) {
 
 // Both parts together are the disturbed pendulum; a brake depends on its whole rate.
 BOOST_AUTO_TEST_CASE(adds_up_to_the_disturbed_pendulum) {
-  const PendulumDeparture pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
+  const EnckePendulum pendulum(k, []<class S>(const S& t, const S& angle, const S& rate) -> S {
     return S(t - S(0.3) * angle - S(0.2) * rate);
   });
   const double a = 0.7, da = -1.1, d = 0.2, dd = 0.4;
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(adds_up_to_the_disturbed_pendulum) {
 }
 
 BOOST_AUTO_TEST_CASE(is_zero_without_disturbance) {
-  const PendulumDeparture pendulum(
+  const EnckePendulum pendulum(
       k, []<class S>(const S& /*t*/, const S& /*angle*/, const S& /*rate*/) -> S { return S(0); });
   const auto run = solve(pendulum, {0.3}, {.output_times = {10}, .tolerance = 1e-10});
   BOOST_TEST(run.states[0].deviation == 0);

@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(have_the_same_gyroscopic_torque) {
 }
 
 BOOST_AUTO_TEST_CASE(recognise_a_body_of_revolution) {
-  const detail::TensorOfFour<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
+  const detail::PackedTensor<detail::PrincipalTensor<>> T(detail::PrincipalTensor<>({2, 2, 3}));
   BOOST_TEST(T.across() == 2);
   BOOST_TEST(T.along() == 3);
 }
@@ -81,8 +81,8 @@ BOOST_AUTO_TEST_CASE(solve_linear_equations) {
         detail::PrincipalTensor<>({T.xx, T.yy, T.zz}));
     BOOST_TEST(vector(principal.solve(vec4d(detail::components(M)))) ==
                M.cwiseQuotient(Vector3<double>(T.xx, T.yy, T.zz)));
-    const detail::TensorOfFour<detail::GeneralTensor> general{detail::GeneralTensor(T)};
-    const Four w = general.solve(four(detail::components(M)));
+    const detail::PackedTensor<detail::GeneralTensor> general{detail::GeneralTensor(T)};
+    const Vec4d w = general.solve(vec4d(detail::components(M)));
     // Moments of 0.2 to 1 amplify rounding at most 5 times.
     BOOST_TEST((T.matrix() * vector(w) - M).norm() <= 5 * 8 * u * M.norm());
     BOOST_TEST(w[3] == 0);

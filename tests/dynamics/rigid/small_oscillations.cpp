@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_SUITE(small_oscillations)
 // f - C q' - K q is the residual force of the exact equations at q'' = 0, to first order: its
 // difference quotients in each of the twelve variables. At other q'' the exact equations also
 // contain products of q and q'', the first-order part of the tensor.
-BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearised) {
+BOOST_AUTO_TEST_CASE(are_the_exact_equations_linearized) {
   const auto linear = engine(posed(aircraft), 2e5, {0, 0, 9.81}, {0.002, -0.001, 0.003});
   const auto exact = linear.exact();
   using Linear = std::remove_const_t<decltype(linear)>;

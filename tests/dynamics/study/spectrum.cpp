@@ -48,7 +48,7 @@ Matrix3<double> matrix(const Json& json) {
 
 enum class Rotors { regulated, free };
 
-/// The platform with three gyros in its normal position, linearised. Paper 000 (19) with its
+/// The platform with three gyros in its normal position, linearized. Paper 000 (19) with its
 /// missing term for quasi-velocities, (G_R)_kj = sum of l_i e_i.(J_k x J_j).
 Coefficients platform(const Json& c, Rotors rotors_are) {
   const Json& model = rotors().at("models").at("platform");
