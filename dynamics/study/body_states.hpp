@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/tree/joint/list.hpp>
 #include <dynamics/tree/tree.hpp>
 
 namespace kreisel {
@@ -14,6 +15,18 @@ namespace kreisel {
     if (detail::coordinate_count(link.kind) >= 4) positions.push_back(link.q);
   }
   return positions;
+}
+
+/// The name of coordinate k of a joint, after a blank; empty if the joint has only one. Coordinates of one
+/// quantity are numbered, others have the names of their columns.
+[[nodiscard]] inline std::string direction_name(const JointType& type, int k) {
+  if (type.coordinate_count() == 1) return "";
+  if (type.coordinates.size() == 1) return " " + std::to_string(k + 1);
+  for (const JointQuantity& quantity : type.coordinates) {
+    if (k < quantity.count()) return " " + quantity.columns[static_cast<std::size_t>(k)];
+    k -= quantity.count();
+  }
+  return "";
 }
 
 /// The names of the directions in which the state can move (study/tangent.hpp), from the bodies'
@@ -32,8 +45,8 @@ namespace kreisel {
   for (const detail::Link& link : tree.links()) {
     const int count = detail::rate_count(link.kind);
     if (count == 1) {
-      const bool universal = tree.body(link.body).joint.kind == JointKind::universal;
-      name(link, 0, !universal ? "" : link.is_cross ? " 1" : " 2");
+      const JointType& type = joint_type(tree.body(link.body).joint.kind);
+      name(link, 0, direction_name(type, link.v - tree.place(link.body).v));
     }
     for (int k = 0; k < 3 && count >= 3; ++k) {
       name(link, k, std::string(" about ") + axes[k]);

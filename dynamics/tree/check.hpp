@@ -7,6 +7,7 @@
 #include <string>
 
 #include <dynamics/tree/description.hpp>
+#include <dynamics/tree/joint/list.hpp>
 #include <motor/error.hpp>
 #include <motor/static_zero.hpp>
 
@@ -48,15 +49,22 @@ inline void check_axis(const BodyDescription& b, const Vector3<double>& axis, co
   if (!(length(axis) > 0)) refuse_body(b.name, std::string(which) + " is 0 and has no direction");
 }
 
+[[nodiscard]] inline bool has_second_axis(const kreisel::Joint& joint) {
+  const JointType::Axis need = joint_type(joint.kind).second_axis;
+  return need == JointType::Axis::required ||
+         (need == JointType::Axis::optional && joint.second_axis != Vector3<double>::Zero());
+}
+
 inline void check_joint(const BodyDescription& b) {
   const kreisel::Joint& joint = b.joint;
-  const bool has_axis = joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic ||
-                        joint.kind == JointKind::universal;
-  if (has_axis) check_axis(b, joint.axis, "the axis of its joint");
-  if (joint.kind == JointKind::universal) {
+  const JointType& type = joint_type(joint.kind);
+  if (type.axis == JointType::Axis::required) check_axis(b, joint.axis, "the axis of its joint");
+  if (has_second_axis(joint)) {
     check_axis(b, joint.second_axis, "the second axis of its joint");
     const double sine = length(cross(normalized(joint.axis), normalized(joint.second_axis)));
-    if (!(sine > 1e-12)) refuse_body(b.name, "both axes of its universal joint are parallel");
+    if (!(sine > 1e-12)) {
+      refuse_body(b.name, "both axes of its " + type.name + " joint are parallel");
+    }
   }
   if (!is_finite(joint.position)) {
     refuse_body(b.name, "the position of its joint is not finite");
@@ -69,12 +77,8 @@ inline void check_joint(const BodyDescription& b) {
 }
 
 inline void check_forces(const BodyDescription& b) {
-  const JointKind kind = b.joint.kind;
-  const std::size_t rates = kind == JointKind::fixed       ? 0
-                            : kind == JointKind::universal ? 2
-                            : kind == JointKind::spherical ? 3
-                            : kind == JointKind::free      ? 6
-                                                           : 1;
+  const JointType& type = joint_type(b.joint.kind);
+  const auto rates = static_cast<std::size_t>(type.rate_count());
   if (!b.forces.empty() && b.forces.size() != rates) {
     refuse_body(b.name, std::to_string(b.forces.size()) + " joint forces for a joint of " +
                             std::to_string(rates) + " degrees of freedom");
@@ -83,13 +87,13 @@ inline void check_forces(const BodyDescription& b) {
     for (const double x : {force.stiffness, force.rest, force.damping, force.constant}) {
       if (x - x != 0) refuse_body(b.name, "a number of its joint forces is not finite");
     }
-    if (rates > 2 && force.stiffness != 0) {
+    if (type.has_attitude() && force.stiffness != 0) {
       refuse_body(b.name,
                   "a spring needs a single coordinate, which a spherical or free joint has not; "
                   "take a load");
     }
   }
-  if (b.rule == JointRule::constant_rate && kind != JointKind::revolute) {
+  if (b.rule == JointRule::constant_rate && b.joint.kind != JointKind::revolute) {
     refuse_body(b.name, "only a revolute joint can be driven at a constant rate");
   }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/tree/balance.hpp>
+#include <dynamics/tree/joint/list.hpp>
 #include <dynamics/tree/loads.hpp>
 
 /// Energy and momentum of a tree, and which of them do not change.
@@ -111,8 +112,9 @@ enum class EnergyLaw {
 [[nodiscard]] inline bool keeps_energy(const BodyTree& tree) {
   return std::none_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
     if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
-    const auto takes = [&b](const JointForce& f) {
-      return f.damping != 0 || (b.forces.size() > 2 && f.constant != 0);
+    const bool has_attitude = joint_type(b.joint.kind).has_attitude();
+    const auto takes = [has_attitude](const JointForce& f) {
+      return f.damping != 0 || (has_attitude && f.constant != 0);
     };
     return b.rule == JointRule::constant_rate ||
            std::any_of(b.forces.begin(), b.forces.end(), takes) ||

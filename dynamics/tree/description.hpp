@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <unsupported/Eigen/AutoDiff>
 
 #include <concepts>
@@ -14,37 +14,9 @@
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/tree/joint/joint.hpp>
 
 namespace kreisel {
-
-enum class JointKind {
-  fixed,
-  revolute,   ///< turns about `axis`
-  prismatic,  ///< slides along `axis`
-  universal,  ///< turns about `axis` of the parent, then about `second_axis`, which turns along
-  spherical,  ///< turns about a point
-  free        ///< not joined at all
-};
-
-/// How a body may move against its parent.
-///
-/// At zero coordinates the body's axes are the parent's, turned by `orientation`, and its origin
-/// lies at `position`. Both, and the axes, are written on the PARENT's axes; lengths of axes and
-/// norm of the quaternion do not matter.
-///
-/// Coordinates: revolute and prismatic one, universal two (about `axis`, about `second_axis`);
-///              spherical a quaternion (x, y, z, w) of any norm; free such a quaternion, then the
-///              place of the body's origin, from `position`, on the parent's axes
-/// Rates      : the coordinates' own; for a quaternion the angular velocity against the parent, on
-///              the body's axes; for a place the velocity against the parent, on the parent's axes
-/// Units      : radian, metre, rad/s, m/s
-struct Joint {
-  JointKind kind = JointKind::fixed;
-  Vector3<double> axis = Vector3<double>::Zero();
-  Vector3<double> second_axis = Vector3<double>::Zero();  ///< universal: with the first at 0
-  Vector3<double> position = Vector3<double>::Zero();
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-};
 
 /// A joint force that follows one coordinate q or rate:  constant - stiffness (q - rest) - damping
 /// q'. A quaternion and a free place have no spring, for they have no single coordinate to pull at.

@@ -1,24 +1,20 @@
 #pragma once
 
 #include <dynamics/tree/description.hpp>
+#include <dynamics/tree/joint/type.hpp>
 #include <motor/static_zero.hpp>
 
 namespace kreisel {
 
 namespace detail {
 
-/// How a link moves against the one before it. A universal joint is two revolute links with nothing
-/// between, so that what is computed knows no such kind.
-enum class LinkKind { fixed, revolute, prismatic, spherical, free };
-
-/// A body as the passes over the tree see it. Link 0 is the guide.
+/// One motion of a body's joint: the last has the body, those before it nothing. Link 0 is the guide.
 struct Link {
   LinkKind kind = LinkKind::fixed;
   JointRule rule = JointRule::forces;
   int parent = 0;
-  int body = -1;          ///< to which it belongs; the guide belongs to none
-  bool is_cross = false;  ///< of a universal joint, without mass
-  int q = 0;              ///< where its coordinates and its rates begin
+  int body = -1;  ///< to which it belongs; the guide belongs to none
+  int q = 0;      ///< where its coordinates and its rates begin
   int v = 0;
   int factor = 0;  ///< of spherical and free links: which of the workspace's factors is its own
   Vector3<double> position = Vector3<double>::Zero();  ///< on the parent's axes, as the axis

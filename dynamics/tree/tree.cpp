@@ -13,11 +13,9 @@ namespace kreisel {
 
 namespace detail {
 
-/// Makes a link turn about an axis of its parent, on which it stands as `still` says, after
-/// Rodrigues:  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
-inline void turn_about(Link& link, const Vector3<double>& axis) {
-  link.kind = LinkKind::revolute;
-  link.axis = normalized(axis);
+/// Makes a link turn about its axis, on which it stands as `still` says, after Rodrigues:
+///  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
+inline void turn_about_axis(Link& link) {
   const Vector3<double>& a = link.axis;
   for (int k = 0; k < 3; ++k) {
     const Vector3<double> o(link.still(0, k), link.still(1, k), link.still(2, k));
@@ -30,6 +28,13 @@ inline void turn_about(Link& link, const Vector3<double>& axis) {
       link.sine(i, k) = turned[i];
     }
   }
+}
+
+/// Makes a link move as that part of a joint does.
+inline void set_motion(Link& link, const JointPart& part) {
+  link.kind = part.kind;
+  if (dot(part.axis, part.axis) > 0) link.axis = normalized(part.axis);
+  if (link.kind == LinkKind::revolute) turn_about_axis(link);
 }
 
 }  // namespace detail
@@ -66,9 +71,11 @@ JointPlace BodyTree::place(int body) const {
   const std::size_t slot = link(body);
   const detail::Link& last =
       slot < links_.size() ? links_[slot] : rotors_[slot - links_.size()].link;
-  const bool universal = this->body(body).joint.kind == JointKind::universal;
-  if (universal) return {last.q - 1, 2, last.v - 1, 2};
-  return {last.q, detail::coordinate_count(last.kind), last.v, detail::rate_count(last.kind)};
+  const JointType& type = joint_type(this->body(body).joint.kind);
+  const int q_count = type.coordinate_count();
+  const int v_count = type.rate_count();
+  return {last.q + detail::coordinate_count(last.kind) - q_count, q_count,
+          last.v + detail::rate_count(last.kind) - v_count, v_count};
 }
 
 std::vector<int> BodyTree::blocks() const {
@@ -105,33 +112,21 @@ void BodyTree::check_parent(int body) const {
 void BodyTree::append(int body) {
   using detail::LinkKind;
   const BodyDescription& b = this->body(body);
+  const detail::JointParts parts = joint_type(b.joint.kind).parts(b.joint);
   detail::Link link;
   link.body = body;
   link.rule = b.rule;
   link.position = b.joint.position;
   link.parent = b.parent == "guide" ? 0 : static_cast<int>(this->link(index_.at(b.parent)));
-  link.still = detail::Rotation<double>::from(b.joint.orientation).matrix();
-  switch (b.joint.kind) {
-    case JointKind::fixed: break;
-    case JointKind::revolute: detail::turn_about(link, b.joint.axis); break;
-    case JointKind::prismatic:
-      link.kind = LinkKind::prismatic;
-      link.axis = detail::normalized(b.joint.axis);
-      break;
-    case JointKind::universal: {
-      detail::Link cross = link;
-      cross.still = Matrix3<double>::Identity();
-      detail::turn_about(cross, b.joint.axis);
-      cross.is_cross = true;
-      push(cross);
-      link.position = Vector3<double>::Zero();
-      link.parent = static_cast<int>(links_.size()) - 1;
-      detail::turn_about(link, b.joint.second_axis);
-      break;
-    }
-    case JointKind::spherical: link.kind = LinkKind::spherical; break;
-    case JointKind::free: link.kind = LinkKind::free; break;
+  for (const detail::JointPart* part = parts.begin(); part != &parts.back(); ++part) {
+    detail::Link between = link;
+    detail::set_motion(between, *part);
+    push(between);
+    link.position = Vector3<double>::Zero();
+    link.parent = static_cast<int>(links_.size()) - 1;
   }
+  link.still = detail::Rotation<double>::from(b.joint.orientation).matrix();
+  detail::set_motion(link, parts.back());
   if (link.kind == LinkKind::spherical || link.kind == LinkKind::free) link.factor = balls_++;
   if (b.rotor) {
     weld(link);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include <dynamics/tree/joint/type.hpp>
+#include <motor/api.hpp>
+
+namespace kreisel {
+
+/// All kinds of joints, in the order of JointKind.
+KREISEL_API [[nodiscard]] const std::vector<JointType>& joint_types();
+
+/// The type of the joints of a kind.
+KREISEL_API [[nodiscard]] const JointType& joint_type(JointKind kind);
+
+}  // namespace kreisel

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <dynamics/tree/joint/type.hpp>
+
+namespace kreisel::detail {
+
+/// The joint that slides along `axis`.
+[[nodiscard]] inline JointType prismatic_joint() {
+  return {.kind = JointKind::prismatic,
+          .name = "prismatic",
+          .axis = JointType::Axis::required,
+          .coordinates = {{"displacement", "m", {"displacement"}, "displacement", {""}}},
+          .rates = {{"rate", "m/s", {"rate"}, "rate", {""}}},
+          .parts = [](const Joint& joint) {
+            return JointParts{{LinkKind::prismatic, joint.axis}};
+          }};
+}
+
+}  // namespace kreisel::detail
