@@ -1,49 +1,34 @@
-#include <array>
+#include <string>
+#include <vector>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 namespace kreisel {
 
 namespace {
 
-/// Names of coordinates and rates of a joint.
-std::vector<const char*> quantities(JointKind kind) {
-  switch (kind) {
-    case JointKind::fixed: return {};
-    case JointKind::revolute: return {"angle", "rate"};
-    case JointKind::prismatic: return {"displacement", "rate"};
-    case JointKind::universal: return {"angle 1", "angle 2", "rate 1", "rate 2"};
-    case JointKind::spherical: return {"qw", "qx", "qy", "qz", "wx", "wy", "wz"};
-    case JointKind::free:
-      return {"qw", "qx", "qy", "qz", "x", "y", "z", "wx", "wy", "wz", "vx", "vy", "vz"};
-  }
-  return {};
-}
-
-std::vector<const char*> units(JointKind kind) {
-  switch (kind) {
-    case JointKind::fixed: return {};
-    case JointKind::revolute: return {"rad", "rad/s"};
-    case JointKind::prismatic: return {"m", "m/s"};
-    case JointKind::universal: return {"rad", "rad", "rad/s", "rad/s"};
-    case JointKind::spherical: return {"1", "1", "1", "1", "rad/s", "rad/s", "rad/s"};
-    case JointKind::free:
-      return {"1", "1", "1", "1", "m", "m", "m", "rad/s", "rad/s", "rad/s", "m/s", "m/s", "m/s"};
-  }
-  return {};
+/// The quantities of a joint in the order of the columns: coordinates, then rates.
+std::vector<JointQuantity> quantities(const BodyDescription& body) {
+  const JointType& type = joint_type(body.joint.kind);
+  std::vector<JointQuantity> all = type.coordinates;
+  all.insert(all.end(), type.rates.begin(), type.rates.end());
+  return all;
 }
 
 int count(const BodyTree& tree) { return static_cast<int>(tree.bodies().size()); }
 
-bool turns_freely(const BodyTree& tree, int body) { return tree.place(body).q_count >= 4; }
+bool has_attitude(const BodyTree& tree, int body) {
+  return joint_type(tree.body(body).joint.kind).has_attitude();
+}
 
 }  // namespace
 
 std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
   std::vector<std::string> names{"t"};
   for (const auto& body : tree.bodies()) {
-    for (const char* const quantity : quantities(body.joint.kind)) {
-      names.push_back(body.name + "." + quantity);
+    for (const JointQuantity& quantity : quantities(body)) {
+      for (const std::string& column : quantity.columns) names.push_back(body.name + "." + column);
     }
   }
   if (!reactions) return names;
@@ -65,7 +50,7 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
   };
   for (int i = 0; i < count(tree); ++i) {
     const auto [q, q_count, v, v_count] = tree.place(i);
-    if (turns_freely(tree, i)) {
+    if (has_attitude(tree, i)) {
       const Eigen::Quaterniond a = attitude(tree, i, state);
       append(Eigen::Vector4d(a.w(), a.x(), a.y(), a.z()));
       if (q_count == 7) append(place(tree, i, state));
@@ -88,15 +73,16 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
 std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
                               const SceneScale& scale) {
   std::size_t at = 1;
-  const auto show = [&](const auto& list) {
-    for (const char* const unit : list) {
-      values[at] = shown(values[at], scale.of(unit));
-      ++at;
-    }
+  const auto show = [&](const std::string& unit, int count) {
+    const double size = scale.of(unit);
+    for (int k = 0; k < count; ++k, ++at) values[at] = shown(values[at], size);
   };
-  for (const auto& body : tree.bodies()) show(units(body.joint.kind));
+  for (const auto& body : tree.bodies()) {
+    for (const JointQuantity& quantity : quantities(body)) show(quantity.unit, quantity.count());
+  }
   while (at < values.size()) {
-    show(std::array<const char*, 7>{"N", "N", "N", "N m", "N m", "N m", "N m"});
+    show("N", 3);
+    show("N m", 4);
   }
   return values;
 }
@@ -106,7 +92,7 @@ JointState state_of(const BodyTree& tree, const std::vector<double>& row) {
   const double* next = row.data() + 1;
   for (int i = 0; i < count(tree); ++i) {
     const auto [q, q_count, v, v_count] = tree.place(i);
-    if (turns_freely(tree, i)) {
+    if (has_attitude(tree, i)) {
       const Joint& joint = tree.body(i).joint;
       const Eigen::Quaterniond a(next[0], next[1], next[2], next[3]);
       state.coordinates.segment<4>(q) = (joint.orientation.conjugate() * a).coeffs();

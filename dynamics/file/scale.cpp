@@ -4,6 +4,7 @@
 #include <variant>
 
 #include <dynamics/file/scale.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 namespace kreisel {
 
@@ -41,15 +42,23 @@ struct Motion {
 };
 
 Motion motion_of(const BodyTree& tree, int body, const std::vector<JointState>& states) {
-  const auto [q, q_count, v, v_count] = tree.place(body);
-  const bool slides = tree.body(body).joint.kind == JointKind::prismatic;
-  const Eigen::Index turns = slides ? 0 : std::min<Eigen::Index>(v_count, 3);
+  const JointPlace place = tree.place(body);
+  const JointType& type = joint_type(tree.body(body).joint.kind);
   Motion most;
   for (const JointState& state : states) {
-    most.turning = std::max(most.turning, state.rates.segment(v, turns).norm());
-    most.speed = std::max(most.speed, state.rates.segment(v + turns, v_count - turns).norm());
-    if (slides) most.way = std::max(most.way, std::abs(state.coordinates[q]));
-    if (q_count == 7) most.way = std::max(most.way, state.coordinates.segment<3>(q + 4).norm());
+    int at = place.q;
+    for (const JointQuantity& quantity : type.coordinates) {
+      const double size = state.coordinates.segment(at, quantity.count()).norm();
+      if (quantity.unit == "m") most.way = std::max(most.way, size);
+      at += quantity.count();
+    }
+    at = place.v;
+    for (const JointQuantity& quantity : type.rates) {
+      const double size = state.rates.segment(at, quantity.count()).norm();
+      double& greatest = quantity.unit == "m/s" ? most.speed : most.turning;
+      greatest = std::max(greatest, size);
+      at += quantity.count();
+    }
   }
   return most;
 }

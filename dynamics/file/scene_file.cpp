@@ -12,6 +12,7 @@
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/tree/joint/list.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -496,22 +497,6 @@ class SceneReader {
     }
   }
 
-  /// What a joint needs besides its kind.
-  struct JointShape {
-    std::size_t coordinates;
-    std::size_t rates;
-  };
-
-  static JointShape shape(JointKind kind) {
-    switch (kind) {
-      case JointKind::fixed: return {0, 0};
-      case JointKind::universal: return {2, 2};
-      case JointKind::spherical: return {4, 3};
-      case JointKind::free: return {7, 6};
-      default: return {1, 1};
-    }
-  }
-
   void read_body(Section& section, std::size_t i, const std::vector<std::string>& names) {
     BodyDescription body;
     body.name = section.required_text("name");
@@ -585,30 +570,36 @@ class SceneReader {
     }
   }
 
+  static std::vector<std::string> joint_names() {
+    std::vector<std::string> names;
+    for (const JointType& type : joint_types()) names.push_back(type.name);
+    return names;
+  }
+
+  static void read_axes(Section& section, const JointType& type, Joint& joint) {
+    joint.kind = type.kind;
+    const auto axis = [&section](std::string_view key, JointType::Axis need, Vector3<double>& a) {
+      const bool optional = need == JointType::Axis::optional && section.has(key);
+      if (need != JointType::Axis::required && !optional) return false;
+      a = section.required_vector(key);
+      if (!(a.norm() > 0)) section.refuse(key, "is 0 and has no direction");
+      return true;
+    };
+    axis("axis", type.axis, joint.axis);
+    if (!axis("second_axis", type.second_axis, joint.second_axis)) return;
+    if (!(joint.axis.normalized().cross(joint.second_axis.normalized()).norm() > 1e-12)) {
+      section.refuse("second_axis", "is parallel to 'axis'");
+    }
+  }
+
   /// Nothing where the kind of joint is missing or unknown.
   static std::optional<Joint> read_joint(Section& body) {
     Joint joint;
     auto section = body.required_section("joint");
     if (!section) return {};
-    const std::string kind = section->required_choice(
-        "kind", {"fixed", "revolute", "prismatic", "universal", "spherical", "free"});
-    const auto axis = [&section](std::string_view key) {
-      const Vector3<double> a = section->required_vector(key);
-      if (!(a.norm() > 0)) section->refuse(key, "is 0 and has no direction");
-      return a;
-    };
-    if (kind == "revolute") joint.kind = JointKind::revolute;
-    if (kind == "prismatic") joint.kind = JointKind::prismatic;
-    if (kind == "universal") joint.kind = JointKind::universal;
-    if (kind == "spherical") joint.kind = JointKind::spherical;
-    if (kind == "free") joint.kind = JointKind::free;
-    const bool has_axis = kind == "revolute" || kind == "prismatic" || kind == "universal";
-    if (has_axis) joint.axis = axis("axis");
-    if (kind == "universal") {
-      joint.second_axis = axis("second_axis");
-      if (!(joint.axis.normalized().cross(joint.second_axis.normalized()).norm() > 1e-12)) {
-        section->refuse("second_axis", "is parallel to 'axis'");
-      }
+    const std::string kind = section->required_choice("kind", joint_names());
+    for (const JointType& type : joint_types()) {
+      if (type.name == kind) read_axes(*section, type, joint);
     }
     joint.position = section->vector("position").value_or(Vector3<double>::Zero());
     joint.orientation =
@@ -641,35 +632,37 @@ class SceneReader {
   }
 
   static void read_forces(Section& section, BodyDescription& body) {
-    const std::size_t n = shape(body.joint.kind).rates;
     const bool asked = section.has("spring") || section.has("damping") || section.has("force");
     if (!asked) return;
+    const JointType& type = joint_type(body.joint.kind);
+    const auto n = static_cast<std::size_t>(type.rate_count());
     std::vector<JointForce> forces(n);
     const auto set = [&](double JointForce::*part, const std::optional<std::vector<double>>& from) {
       for (std::size_t k = 0; from && k < n; ++k) {
         forces[k].*part = (*from)[from->size() == 1 ? 0 : k];
       }
     };
-    const auto values = [n](Section& from, const std::string& key) {
-      return from.number_or_list(key, n == 3 ? 1 : n);
+    const auto values = [n, &type](Section& from, const std::string& key) {
+      return from.number_or_list(key, type.has_attitude() ? 1 : n);
     };
-    if (n == 0 || n == 6) {
+    if (type.rates.empty() || (type.has_attitude() && type.rates.size() > 1)) {
       for (const char* const key : {"spring", "damping", "force"}) {
         if (section.has(key)) section.refuse(key, "has no single coordinate in this kind of joint");
       }
       return;
     }
-    if (n == 3) {
+    if (type.has_attitude()) {
       for (const char* const key : {"spring", "force"}) {
         if (section.has(key)) {
-          section.refuse(key, "needs a single coordinate, which a spherical joint has not");
+          section.refuse(key, "needs a single coordinate, which a " + type.name + " joint has not");
         }
       }
     } else {
       if (auto spring = section.section("spring")) {
         set(&JointForce::stiffness, values(*spring, "stiffness"));
         if (!spring->has("stiffness")) spring->refuse_missing("stiffness");
-        const bool slides = body.joint.kind == JointKind::prismatic;
+        const bool slides = std::any_of(type.coordinates.begin(), type.coordinates.end(),
+                                        [](const auto& quantity) { return quantity.unit == "m"; });
         set(&JointForce::rest, slides ? values(*spring, "rest") : spring->angle_or_list("rest", n));
         spring->finish();
       }
@@ -684,42 +677,46 @@ class SceneReader {
   }
 
   static JointStart read_start(Section& body_section, const BodyDescription& body) {
-    const Joint& joint = body.joint;
-    const JointShape counts = shape(joint.kind);
-    JointStart start{std::vector<double>(counts.coordinates), std::vector<double>(counts.rates)};
-    if (counts.coordinates >= 4) start.coordinates[3] = 1;
+    const JointType& type = joint_type(body.joint.kind);
+    JointStart start{std::vector<double>(static_cast<std::size_t>(type.coordinate_count())),
+                     std::vector<double>(static_cast<std::size_t>(type.rate_count()))};
+    if (type.has_attitude()) start.coordinates[3] = 1;
     auto initial = body_section.section("initial");
     if (!initial) return start;
-    const auto set = [](std::vector<double>& to, const std::optional<std::vector<double>>& from) {
-      if (from) to = *from;
-    };
-    if (joint.kind == JointKind::revolute || joint.kind == JointKind::universal) {
-      set(start.coordinates, initial->angles("angle", counts.coordinates));
-      set(start.rates, initial->angles("rate", counts.rates));
+    auto at = start.coordinates.begin();
+    for (const JointQuantity& quantity : type.coordinates) {
+      read_quantity(*initial, quantity, body.joint, at);
+      at += quantity.count();
     }
-    if (joint.kind == JointKind::prismatic) {
-      set(start.coordinates, initial->single("displacement"));
-      set(start.rates, initial->single("rate"));
-    }
-    if (counts.coordinates >= 4) {
-      if (const auto q = quaternion(*initial, "attitude")) {
-        // The file's attitude is against the parent, the coordinate against the joint's.
-        const Eigen::Quaterniond own = joint.orientation.conjugate() * *q;
-        std::copy_n(own.coeffs().data(), 4, start.coordinates.begin());
-      }
-      const auto rate = initial->angles("angular_velocity", 3);
-      if (rate) std::copy(rate->begin(), rate->end(), start.rates.begin());
-    }
-    if (joint.kind == JointKind::free) {
-      if (const auto place = initial->numbers("position", 3)) {
-        const Vector3<double> own = three(*place) - joint.position;
-        std::copy_n(own.data(), 3, start.coordinates.begin() + 4);
-      }
-      const auto velocity = initial->numbers("velocity", 3);
-      if (velocity) std::copy(velocity->begin(), velocity->end(), start.rates.begin() + 3);
+    at = start.rates.begin();
+    for (const JointQuantity& quantity : type.rates) {
+      read_quantity(*initial, quantity, body.joint, at);
+      at += quantity.count();
     }
     initial->finish();
     return start;
+  }
+
+  static void read_quantity(Section& initial, const JointQuantity& quantity, const Joint& joint,
+                            std::vector<double>::iterator at) {
+    const auto count = static_cast<std::size_t>(quantity.count());
+    if (quantity.meaning == JointQuantity::Meaning::attitude) {
+      if (const auto q = quaternion(initial, quantity.key)) {
+        // The file's attitude is against the parent, the coordinate against the joint's.
+        const Eigen::Quaterniond own = joint.orientation.conjugate() * *q;
+        std::copy_n(own.coeffs().data(), 4, at);
+      }
+      return;
+    }
+    const bool turns = quantity.unit == "rad" || quantity.unit == "rad/s";
+    auto numbers = turns        ? initial.angles(quantity.key, count)
+                   : count == 1 ? initial.single(quantity.key)
+                                : initial.numbers(quantity.key, count);
+    if (!numbers) return;
+    if (quantity.meaning == JointQuantity::Meaning::place) {
+      for (std::size_t k = 0; k < 3; ++k) (*numbers)[k] -= joint.position[Eigen::Index(k)];
+    }
+    std::copy(numbers->begin(), numbers->end(), at);
   }
 
   static void read_rotor(Section& section, BodyDescription& body, JointStart& start) {

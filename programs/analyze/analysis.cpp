@@ -13,6 +13,7 @@
 #include <dynamics/file/joints.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 using namespace kreisel;
 
@@ -94,12 +95,12 @@ bool is_steady(const kreisel::SceneFile& scene) {
 /// Whether no force on the bodies at rest gives energy without end: all of it is gravity on guide
 /// axes or that of the earth the guide is on, springs, constant joint forces, loads with a
 /// potential, and dampers.
-bool has_potential(const kreisel::StudySystem& system, const kreisel::SceneFile& scene) {
+bool has_potential(const kreisel::SceneFile& scene) {
   const bool stands_still =
       std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity);
   if (!is_steady(scene) || (stands_still && !scene.rests())) return false;
-  return std::all_of(scene.bodies.begin(), scene.bodies.end(), [&system](const auto& body) {
-    const bool is_pushed = body.forces.size() > 2 &&
+  return std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& body) {
+    const bool is_pushed = kreisel::joint_type(body.joint.kind).has_attitude() &&
                            std::any_of(body.forces.begin(), body.forces.end(),
                                        [](const auto& force) { return force.constant != 0; });
     const bool turns = body.rule == kreisel::JointRule::constant_rate;
@@ -133,7 +134,7 @@ bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibriu
 
 std::vector<Rest> rests(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
                         const Equilibria& equilibria, const VectorXd& start) {
-  const bool conserves = has_potential(system, scene);
+  const bool conserves = has_potential(scene);
   std::vector<Rest> result;
   for (const Equilibrium& equilibrium : equilibria.list) {
     Rest rest{equilibrium, linear_about(system, equilibrium.state)};

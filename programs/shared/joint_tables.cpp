@@ -4,15 +4,48 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <dynamics/file/printable.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 using namespace kreisel;
 
-using kreisel::JointKind;
 using nlohmann::ordered_json;
 
 namespace joint_tables {
+
+namespace {
+
+/// The numbers of these quantities from a place of the state on, one after the other.
+ordered_json listed(const std::vector<JointQuantity>& quantities, const Eigen::VectorXd& state,
+                    int at, const SceneScale& scale) {
+  ordered_json list = ordered_json::array();
+  for (const JointQuantity& quantity : quantities) {
+    const double size = scale.of(quantity.unit);
+    for (int k = 0; k < quantity.count(); ++k, ++at) list.push_back(shown(state[at], size));
+  }
+  return list;
+}
+
+/// A joint with an attitude.
+ordered_json ball(const BodyTree& tree, int body, const JointState& state,
+                  const SceneScale& scale) {
+  const auto [q, q_count, v, v_count] = tree.place(body);
+  const Eigen::Quaterniond a = attitude(tree, body, state);
+  ordered_json values{
+      {"attitude",
+       {shown(a.w(), scale.angle), shown(a.x(), scale.angle), shown(a.y(), scale.angle),
+        shown(a.z(), scale.angle)}},
+      {"angular_velocity", json(shown(Eigen::Vector3d(state.rates.segment<3>(v)), scale.turning))}};
+  if (q_count == 7) {
+    values["position"] = json(shown(place(tree, body, state), scale.length));
+    values["velocity"] = json(shown(Eigen::Vector3d(state.rates.segment<3>(v + 3)), scale.speed));
+  }
+  return values;
+}
+
+}  // namespace
 
 std::string text(const ordered_json& numbers) {
   if (numbers.is_number()) return fmt::format("{:.15g}", numbers.get<double>());
@@ -34,35 +67,16 @@ ordered_json json(const kreisel::Motor<>& force, const kreisel::SceneScale& scal
 
 ordered_json joint(const kreisel::BodyTree& tree, int body, const kreisel::JointState& state,
                    const kreisel::JointReactions& reactions, const kreisel::SceneScale& scale) {
-  const auto [q, q_count, v, v_count] = tree.place(body);
-  const auto pair = [](const Eigen::VectorXd& x, int begin, double size) {
-    return ordered_json{shown(x[begin], size), shown(x[begin + 1], size)};
-  };
-  const JointKind kind = tree.body(body).joint.kind;
-  const bool slides = kind == JointKind::prismatic;
-  switch (kind) {
-    case JointKind::fixed: return ordered_json::object();
-    case JointKind::universal:
-      return {{"coordinate", pair(state.coordinates, q, scale.angle)},
-              {"rate", pair(state.rates, v, scale.turning)}};
-    case JointKind::spherical:
-    case JointKind::free: break;
-    default:
-      return {{"coordinate", shown(state.coordinates[q], slides ? scale.length : scale.angle)},
-              {"rate", shown(state.rates[v], slides ? scale.speed : scale.turning)},
-              {"drive_torque", shown(drive_torque(tree, body, reactions), scale.torque)}};
-  }
-  const Eigen::Quaterniond a = attitude(tree, body, state);
-  ordered_json values{
-      {"attitude",
-       {shown(a.w(), scale.angle), shown(a.x(), scale.angle), shown(a.y(), scale.angle),
-        shown(a.z(), scale.angle)}},
-      {"angular_velocity", json(shown(Eigen::Vector3d(state.rates.segment<3>(v)), scale.turning))}};
-  if (q_count == 7) {
-    values["position"] = json(shown(place(tree, body, state), scale.length));
-    values["velocity"] = json(shown(Eigen::Vector3d(state.rates.segment<3>(v + 3)), scale.speed));
-  }
-  return values;
+  const JointPlace place = tree.place(body);
+  const JointType& type = joint_type(tree.body(body).joint.kind);
+  if (type.coordinates.empty()) return ordered_json::object();
+  if (type.has_attitude()) return ball(tree, body, state, scale);
+  const ordered_json coordinates = listed(type.coordinates, state.coordinates, place.q, scale);
+  const ordered_json rates = listed(type.rates, state.rates, place.v, scale);
+  if (coordinates.size() > 1) return {{"coordinate", coordinates}, {"rate", rates}};
+  return {{"coordinate", coordinates[0]},
+          {"rate", rates[0]},
+          {"drive_torque", shown(drive_torque(tree, body, reactions), scale.torque)}};
 }
 
 void print(const char* title, const ordered_json& table) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 #include "../shared/gnuplot.hpp"
 #include "output.hpp"
@@ -17,7 +18,6 @@
 using namespace kreisel;
 
 using gnuplot::quoted;
-using kreisel::JointKind;
 
 namespace {
 
@@ -64,38 +64,20 @@ struct Panels {
 Panels panels(const Result& result, const std::vector<std::vector<double>>& rows) {
   Panels all;
   std::size_t at = 1;
-  const auto take = [&rows, &at](std::vector<Panel>& to, const std::string& title, const char* unit,
-                                 const std::vector<std::string>& names) {
+  const auto take = [&rows, &at](std::vector<Panel>& to, const std::string& title,
+                                 const std::string& unit, const std::vector<std::string>& names) {
     to.push_back({title, unit, curves(rows, at, names)});
     at += names.size();
   };
   for (const auto& body : result.scene.bodies) {
-    const std::string& name = body.name;
-    switch (body.joint.kind) {
-      case JointKind::fixed: break;
-      case JointKind::revolute:
-        take(all.coordinates, name + ", angle", "rad", {""});
-        take(all.rates, name + ", rate", "rad/s", {""});
-        break;
-      case JointKind::prismatic:
-        take(all.coordinates, name + ", displacement", "m", {""});
-        take(all.rates, name + ", rate", "m/s", {""});
-        break;
-      case JointKind::universal:
-        take(all.coordinates, name + ", angles", "rad", {"first", "second"});
-        take(all.rates, name + ", rates", "rad/s", {"first", "second"});
-        break;
-      case JointKind::spherical:
-        take(all.coordinates, name + ", attitude (quaternion)", "1", {"w", "x", "y", "z"});
-        take(all.rates, name + ", angular velocity on body axes", "rad/s", xyz);
-        break;
-      case JointKind::free:
-        take(all.coordinates, name + ", attitude (quaternion)", "1", {"w", "x", "y", "z"});
-        take(all.coordinates, name + ", position", "m", xyz);
-        take(all.rates, name + ", angular velocity on body axes", "rad/s", xyz);
-        take(all.rates, name + ", velocity", "m/s", xyz);
-        break;
-    }
+    const kreisel::JointType& type = kreisel::joint_type(body.joint.kind);
+    const auto take_all = [&](std::vector<Panel>& to, const auto& quantities) {
+      for (const kreisel::JointQuantity& quantity : quantities) {
+        take(to, body.name + ", " + quantity.title, quantity.unit, quantity.curves);
+      }
+    };
+    take_all(all.coordinates, type.coordinates);
+    take_all(all.rates, type.rates);
   }
   if (!result.reactions) return all;
   for (const auto& body : result.scene.bodies) {
@@ -215,8 +197,7 @@ std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, 
                        [&way](const auto& n) { return (n - way.front()).norm() > 1e-9; });
   };
   const Eigen::Vector3d centre = body.inertia.value.first_moment;
-  const bool has_one_axis =
-      body.joint.kind == JointKind::revolute || body.joint.kind == JointKind::prismatic;
+  const bool has_one_axis = kreisel::joint_type(body.joint.kind).rate_count() == 1;
   what = "axis of " + body.name;
   auto way = directions(last_axis(body));
   if (centre.norm() == 0 || (has_one_axis && moves(way))) {

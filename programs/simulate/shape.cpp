@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <dynamics/tree/joint/list.hpp>
+
 using namespace kreisel;
 
 using Eigen::Matrix3d;
@@ -20,8 +22,16 @@ constexpr double at_centre = 0.05;
 
 std::size_t slot(int i) { return static_cast<std::size_t>(i); }
 
+kreisel::detail::JointParts parts(const kreisel::Joint& joint) {
+  return kreisel::joint_type(joint.kind).parts(joint);
+}
+
+/// Whether a body turns about axes alone.
 bool turns(const BodyDescription& body) {
-  return body.joint.kind == JointKind::revolute || body.joint.kind == JointKind::universal;
+  const auto all = parts(body.joint);
+  return std::all_of(all.begin(), all.end(), [](const auto& part) {
+    return part.kind == kreisel::detail::LinkKind::revolute;
+  });
 }
 
 Vector3d centre(const BodyDescription& body) {
@@ -106,7 +116,7 @@ bool holds_a_joint(const Shape& shape, const std::vector<Vector3d>& joints) {
 
 Vector3d last_axis(const BodyDescription& body) {
   const auto& joint = body.joint;
-  const Vector3d& axis = joint.kind == JointKind::universal ? joint.second_axis : joint.axis;
+  const Vector3d axis = parts(joint).back().axis;
   if (axis.isZero()) return Vector3d::UnitZ();
   return joint.orientation.normalized().conjugate() * axis.normalized();
 }

@@ -11,13 +11,13 @@
 
 #include <dynamics/file/atomic_file.hpp>
 #include <dynamics/file/columns.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 #include "samples.hpp"
 #include "shape.hpp"
 
 using namespace kreisel;
 
-using kreisel::JointKind;
 using nlohmann::ordered_json;
 
 namespace {
@@ -47,16 +47,29 @@ ordered_json numbers(const Eigen::Matrix3d& m) {
   return rounded(m.transpose().reshaped(), row_digits);
 }
 
-const char* word(JointKind kind) {
-  switch (kind) {
-    case JointKind::fixed: return "fixed";
-    case JointKind::revolute: return "revolute";
-    case JointKind::prismatic: return "prismatic";
-    case JointKind::universal: return "universal";
-    case JointKind::spherical: return "spherical";
-    case JointKind::free: return "free";
+/// The motions of a joint that have single coordinates: by one of it about the axis by `turns`,
+/// along it by `slides`.
+ordered_json parts(const kreisel::Joint& joint) {
+  using kreisel::detail::LinkKind;
+  ordered_json list = ordered_json::array();
+  for (const auto& part : kreisel::joint_type(joint.kind).parts(joint)) {
+    if (kreisel::detail::rate_count(part.kind) != 1) continue;
+    list.push_back({{"axis", numbers(part.axis.normalized())},
+                    {"turns", part.kind == LinkKind::prismatic ? 0 : 1},
+                    {"slides", part.kind == LinkKind::prismatic ? 1 : 0}});
   }
-  return "";
+  return list;
+}
+
+/// Name and unit of each number.
+ordered_json named(const std::vector<kreisel::JointQuantity>& quantities) {
+  ordered_json list = ordered_json::array();
+  for (const auto& quantity : quantities) {
+    for (const std::string& column : quantity.columns) {
+      list.push_back(ordered_json::array({column, quantity.unit}));
+    }
+  }
+  return list;
 }
 
 /// Against gravity, where the scene has a direction of it.
@@ -90,11 +103,13 @@ ordered_json bodies(const kreisel::BodyTree& tree) {
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const kreisel::BodyDescription& body = tree.bodies()[i];
     const kreisel::Joint& joint = body.joint;
+    const kreisel::JointType& type = kreisel::joint_type(joint.kind);
     list.push_back({{"name", body.name},
                     {"parent", body.parent == "guide" ? -1 : tree.index(body.parent)},
-                    {"kind", word(joint.kind)},
                     {"axis", numbers(joint.axis.normalized())},
-                    {"second_axis", numbers(joint.second_axis.normalized())},
+                    {"parts", parts(joint)},
+                    {"coordinates", named(type.coordinates)},
+                    {"rates", named(type.rates)},
                     {"position", numbers(joint.position)},
                     {"orientation", numbers(joint.orientation.normalized().toRotationMatrix())},
                     {"shape", drawn_as(drawn[i])}});
