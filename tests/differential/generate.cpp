@@ -280,15 +280,17 @@ void add_initial(Random& r, Body& body) {
   if (r.chance(0.15)) return;
   const int n = single_coordinates(body.kind);
   const bool moves = r.chance(0.5);
-  const bool in_degrees = body.kind != JointKind::prismatic && r.chance(0.15);
-  for (int i = 0; i < n; ++i) {
-    if (body.kind == JointKind::prismatic) {
-      body.displacement = r.chance(0.5) ? 0 : angle(r).radian();
-    } else {
-      body.angle.push_back(angle(r));
-      body.angle.back().degrees = body.angle.front().degrees;
+  const bool in_degrees = !slides(body.kind) && r.chance(0.15);
+  for (const auto& quantity : kreisel::joint_type(body.kind).coordinates) {
+    for (int i = 0; i < quantity.count() && n > 0; ++i) {
+      if (quantity.unit == "m") {
+        body.displacement.push_back(r.chance(0.5) ? 0 : angle(r).radian());
+      } else {
+        body.angle.push_back(angle(r));
+        body.angle.back().degrees = body.angle.front().degrees;
+      }
+      if (moves) body.rate.push_back(rate(r, in_degrees));
     }
-    if (moves) body.rate.push_back(rate(r, in_degrees));
   }
   if (n > 0 || body.kind == JointKind::fixed) return;
   if (r.chance(0.5)) body.attitude = attitude(r);
@@ -299,9 +301,11 @@ void add_initial(Random& r, Body& body) {
   if (moves) body.velocity = speed(r) * direction(r);
 }
 
-/// A number for each coordinate.
-std::vector<double> for_each_coordinate(int n, double first, double second) {
-  return n == 1 ? std::vector<double>{first} : std::vector<double>{first, second};
+/// A number for each coordinate: the first, and all others.
+std::vector<double> for_each_coordinate(int n, double first, double others) {
+  std::vector<double> numbers(static_cast<std::size_t>(n), others);
+  numbers.front() = first;
+  return numbers;
 }
 
 /// A damper by its ratio to the critical one of a joint of that inertia.
@@ -309,7 +313,7 @@ void add_damping(Random& r, Body& body, int n) {
   const double ratio =
       r.chance(0.6) ? r.pick({1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0}) : r.spread(1e-4, 10);
   const double stiffness = body.stiffness.empty() ? 1 : std::abs(body.stiffness.front());
-  const double inertia = body.kind == JointKind::prismatic ? body.mass : body.inertia.front();
+  const double inertia = slides(body.kind) ? body.mass : body.inertia.front();
   const double damping = rounded(2 * ratio * std::sqrt(stiffness * inertia), 3);
   body.damping = for_each_coordinate(std::max(n, 1), damping, r.chance(0.5) ? damping : 0);
 }
@@ -321,9 +325,9 @@ void add_joint_forces(Random& r, Body& body) {
         r.chance(0.7) ? plain(r, 0.1, 100) : r.pick({1e3, 1e4, 1e6, 1e8, 1e10});
     body.stiffness = for_each_coordinate(n, stiffness, r.chance(0.5) ? stiffness : 1);
     if (r.chance(0.3)) {
-      const bool degrees = body.kind != JointKind::prismatic && r.chance(0.3);
-      body.rest = {{rounded(r.between(-1, 1), 1) * (degrees ? 50 : 1), degrees}};
-      if (n == 2) body.rest.push_back({0, degrees});
+      const bool degrees = !slides(body.kind) && r.chance(0.3);
+      body.rest.assign(static_cast<std::size_t>(n), {0, degrees});
+      body.rest.front().value = rounded(r.between(-1, 1), 1) * (degrees ? 50 : 1);
     }
   }
   const double damped = body.stiffness.empty() ? 0.2 : 0.6;
@@ -470,8 +474,7 @@ void add_resting_bodies(Random& r, Scene& scene) {
     if (r.chance(0.6)) body.centre = 0.5 * down;
     if (i > 0) body.position = down;
     const int n = single_coordinates(body.kind);
-    const bool slides = body.kind == JointKind::prismatic;
-    for (int k = 0; k < n && !slides; ++k) {
+    for (int k = 0; k < n && !slides(body.kind); ++k) {
       const bool off = r.chance(0.2);
       body.angle.push_back(
           {off ? sign(r) * r.pick({1e-20, 1e-14, 1e-9, 1e-6}) : 90.0 * r.below(4), !off});

@@ -96,7 +96,7 @@ Scene moved(Scene scene) {
   for (Body& body : scene.bodies) {
     for (Angle& angle : body.angle) move(angle.value);
     for (Angle& rate : body.rate) move(rate.value);
-    move(body.displacement);
+    for (double& x : body.displacement) move(x);
     for (Vector* const v : {&body.angular_velocity, &body.velocity}) {
       for (double& x : *v) move(x);
     }
@@ -169,13 +169,13 @@ void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion&
 std::vector<int> blocks(const Scene& scene) {
   std::vector<int> result;
   for (const Body& body : scene.bodies) {
-    switch (body.kind) {
-      case JointKind::fixed: break;
-      case JointKind::revolute:
-      case JointKind::prismatic: result.insert(result.end(), {1, 1}); break;
-      case JointKind::universal: result.insert(result.end(), {1, 1, 1, 1}); break;
-      case JointKind::spherical: result.insert(result.end(), {4, 3}); break;
-      case JointKind::free: result.insert(result.end(), {4, 3, 3, 3}); break;
+    const kreisel::JointType& type = kreisel::joint_type(body.kind);
+    for (const auto* const quantities : {&type.coordinates, &type.rates}) {
+      for (const auto& quantity : *quantities) {
+        const int count = quantity.count();
+        const bool single = type.has_single_coordinates();
+        result.insert(result.end(), single ? std::size_t(count) : 1, single ? 1 : count);
+      }
     }
   }
   return result;

@@ -145,7 +145,7 @@ void Tree::start_body(int body, State& y, std::vector<Pose>& poses) {
       break;
     }
     case JointKind::prismatic:
-      place += part.axis * Real(b.displacement);
+      place += part.axis * at_or(b.displacement, 0);
       v = part.axis * at_or(b.rate, 0);
       break;
     case JointKind::free:

@@ -25,18 +25,14 @@ double processor_seconds() {
 /// The joints' values in the order of JointValues.
 JointValues values(const kreisel::BodyTree& tree, const Scene& scene,
                    const kreisel::JointState& state) {
-  static constexpr int coordinates[] = {0, 1, 1, 2, 4, 7};
-  static constexpr int rates[] = {0, 1, 1, 2, 3, 6};
   JointValues result;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const auto kind = static_cast<std::size_t>(scene.bodies[i].kind);
-    if (coordinates[kind] == 0) continue;
     const auto place = tree.place(static_cast<int>(i));
     const auto put = [&result](const Eigen::VectorXd& from, int begin, int count) {
       for (int k = 0; k < count; ++k) result.push_back(from[begin + k]);
     };
-    put(state.coordinates, place.q, coordinates[kind]);
-    put(state.rates, place.v, rates[kind]);
+    put(state.coordinates, place.q, place.q_count);
+    put(state.rates, place.v, place.v_count);
   }
   return result;
 }

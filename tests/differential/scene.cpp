@@ -133,25 +133,47 @@ std::string gravity(const Scene& scene) {
 std::string body_name(int index) { return index < 0 ? "guide" : fmt::format("b{}", index); }
 
 std::string joint(const Body& body) {
-  static const char* const names[] = {"fixed",     "revolute",  "prismatic",
-                                      "universal", "spherical", "free"};
+  using Axis = kreisel::JointType::Axis;
+  const kreisel::JointType& type = kreisel::joint_type(body.kind);
   Inline table;
-  table.add("kind", std::string("\"") + names[static_cast<int>(body.kind)] + "\"");
-  if (single_coordinates(body.kind) > 0) table.add("axis", list(body.axis));
-  if (body.kind == JointKind::universal) table.add("second_axis", list(body.second_axis));
+  table.add("kind", "\"" + type.name + "\"");
+  if (type.axis == Axis::required) table.add("axis", list(body.axis));
+  if (type.second_axis == Axis::required) table.add("second_axis", list(body.second_axis));
   table.add_vector("position", body.position);
   if (body.orientation) table.add("orientation", list(*body.orientation));
   return table.text();
 }
 
+/// The next numbers of a list, or none where there are not so many.
+template <class T>
+std::vector<T> taken(const std::vector<T>& list, std::ptrdiff_t& at, int count) {
+  if (static_cast<std::ptrdiff_t>(list.size()) < at + count) return {};
+  const auto begin = list.begin() + at;
+  at += count;
+  return {begin, begin + count};
+}
+
+void add_single_coordinates(Inline& table, const Body& body) {
+  const kreisel::JointType& type = kreisel::joint_type(body.kind);
+  std::ptrdiff_t angle = 0;
+  std::ptrdiff_t displacement = 0;
+  std::ptrdiff_t rate = 0;
+  for (const auto& quantity : type.coordinates) {
+    if (quantity.unit == "m") {
+      const auto values = taken(body.displacement, displacement, quantity.count());
+      if (!values.empty()) table.add(quantity.key, one_or_list(values));
+    } else {
+      add_angles(table, quantity.key, taken(body.angle, angle, quantity.count()));
+    }
+  }
+  for (const auto& quantity : type.rates) {
+    add_angles(table, quantity.key, taken(body.rate, rate, quantity.count()));
+  }
+}
+
 std::string initial(const Body& body) {
   Inline table;
-  if (body.kind == JointKind::prismatic) {
-    if (body.displacement != 0) table.add("displacement", text(body.displacement));
-  } else {
-    add_angles(table, "angle", body.angle);
-  }
-  add_angles(table, "rate", body.rate);
+  if (single_coordinates(body.kind) > 0) add_single_coordinates(table, body);
   if (body.rotor && body.rotor->speed_is_initial) add_angles(table, "rate", {body.rotor->speed});
   if (body.attitude) table.add("attitude", list(*body.attitude));
   table.add_vector(angle_key("angular_velocity", body.turns_in_degrees), body.angular_velocity);
@@ -230,8 +252,15 @@ std::vector<double> Scene::times() const {
 }
 
 int single_coordinates(JointKind kind) {
-  if (kind == JointKind::revolute || kind == JointKind::prismatic) return 1;
-  return kind == JointKind::universal ? 2 : 0;
+  const kreisel::JointType& type = kreisel::joint_type(kind);
+  return type.has_single_coordinates() ? type.rate_count() : 0;
+}
+
+bool slides(JointKind kind) {
+  const auto& coordinates = kreisel::joint_type(kind).coordinates;
+  return single_coordinates(kind) > 0 &&
+         std::any_of(coordinates.begin(), coordinates.end(),
+                     [](const auto& quantity) { return quantity.unit == "m"; });
 }
 
 Scene nearer(Scene scene) {

@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/tree/joint/list.hpp>
+
 #include "log.hpp"
 
 /// A scene of the generator, and its text as a file.
 ///
 /// A new feature of scene files has four places: a member here, its text in to_toml(), a function
 /// of generate.cpp that adds it, and its physics in reference*.cpp. shrink.cpp gets a line that
-/// removes it.
+/// removes it. A new kind of joint has one place, reference_tree.cpp: the names and the number of its
+/// coordinates are those of the library's list.
 
 namespace differential {
 
@@ -62,7 +65,7 @@ struct Link {
 
 enum class GravityKind { not_given, none, uniform, inertial, earth };
 
-enum class JointKind { fixed, revolute, prismatic, universal, spherical, free };
+using kreisel::JointKind;
 
 enum class Axes { body, guide, inertial };
 
@@ -92,9 +95,9 @@ struct Body {
   double mass = 1;
   Vector centre = Vector::Zero();
   std::vector<double> inertia = {1, 1, 1};
-  // Start values; lists with one number for each coordinate, or empty.
+  // Start values; lists with one number for each angle, displacement or coordinate, or empty.
   std::vector<Angle> angle = {};
-  double displacement = 0;
+  std::vector<double> displacement = {};
   std::vector<Angle> rate = {};
   std::optional<Eigen::Vector4d> attitude = {};
   Vector angular_velocity = Vector::Zero();
@@ -133,8 +136,11 @@ struct Scene {
 /// A vector as the file has it, in radian.
 [[nodiscard]] Vector radian(const Vector& v, bool degrees);
 
-/// The number of coordinates of a joint that have single numbers: 0, 1 or 2.
+/// The number of coordinates of a joint that have single numbers.
 [[nodiscard]] int single_coordinates(JointKind kind);
+
+/// Whether one of them is a displacement.
+[[nodiscard]] bool slides(JointKind kind);
 
 /// The same scene nearer to the limit in which its model is exact. All motions except those of
 /// rotors are halved; for precession equations the rotors have twice the speed.

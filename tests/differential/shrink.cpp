@@ -29,8 +29,8 @@ void for_each(Body& body, const std::function<void(double&)>& f) {
     for_each(*v, f);
   }
   f(body.mass);
-  f(body.displacement);
-  for (auto* const list : {&body.inertia, &body.stiffness, &body.damping, &body.force}) {
+  for (auto* const list :
+       {&body.displacement, &body.inertia, &body.stiffness, &body.damping, &body.force}) {
     for (double& x : *list) f(x);
   }
   for (auto* const list : {&body.angle, &body.rate, &body.rest}) {
@@ -123,7 +123,7 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
   add([](Body& b) { b.rotor.reset(); });
   add([](Body& b) { b.drive = false; });
   add([](Body& b) { b.hold = false; });
-  add([](Body& b) { b.angle.clear(); });
+  add([](Body& b) { b.angle.clear(), b.displacement.clear(); });
   add([](Body& b) { b.rate.clear(); });
   add([](Body& b) { b.attitude.reset(); });
   add([](Body& b) { b.place.reset(); });

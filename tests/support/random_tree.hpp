@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include <dynamics/tree/description.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 #include <support/sample.hpp>
 
@@ -24,11 +24,15 @@ inline Joint random_joint(Sample& sample, JointKind kind) {
           Eigen::Quaterniond(sample.rotation())};
 }
 
+inline JointKind random_kind(Sample& sample) {
+  return static_cast<JointKind>(int(sample.uniform(0, double(joint_types().size()))));
+}
+
 inline std::vector<JointForce> random_forces(Sample& sample, JointKind kind) {
-  const bool springs = kind != JointKind::spherical && kind != JointKind::free;
-  static constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
+  const JointType& type = joint_type(kind);
+  const bool springs = type.has_single_coordinates();
   std::vector<JointForce> forces;
-  for (int i = 0; i < rate_counts[int(kind)]; ++i) {
+  for (int i = 0; i < type.rate_count(); ++i) {
     forces.push_back({springs ? sample.uniform(0, 2) : 0, springs ? sample.uniform(-1, 1) : 0,
                       sample.uniform(0, 0.5), sample.uniform(-1, 1)});
   }
@@ -40,14 +44,14 @@ inline std::vector<JointForce> random_forces(Sample& sample, JointKind kind) {
 inline std::vector<BodyDescription> random_tree(std::uint64_t seed) {
   Sample sample(seed);
   std::vector<BodyDescription> bodies;
-  constexpr JointKind roots[] = {JointKind::revolute,  JointKind::free,      JointKind::spherical,
-                                 JointKind::prismatic, JointKind::universal, JointKind::fixed};
+  const std::vector<JointType>& types = joint_types();
   const int count = 2 + int(seed % 4);
   for (int i = 0; i < count; ++i) {
     BodyDescription b;
     b.name = "body " + std::to_string(i);
-    const auto kind =
-        i == 0 ? roots[seed % std::size(roots)] : static_cast<JointKind>(int(sample.uniform(0, 5)));
+    JointKind kind = types[seed % types.size()].kind;
+    while (i > 0 && (kind = random_kind(sample)) == JointKind::free) {
+    }
     if (i > 0) b.parent = "body " + std::to_string(int(sample.uniform(0, i)));
     b.joint = random_joint(sample, kind);
     b.inertia = random_inertia(sample);

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include <dynamics/tree/body_system.hpp>
+#include <dynamics/tree/joint/list.hpp>
 
 #include <support/cast.hpp>
 #include <support/jet.hpp>
+#include <support/random_tree.hpp>
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
@@ -115,15 +117,13 @@ struct Joints {
       for (std::size_t k = 0; k < parent.size(); ++k) {
         if (bodies[k].name == b.parent) p = static_cast<int>(k);
       }
-      const int kind = static_cast<int>(b.joint.kind);
-      static constexpr int coordinate_counts[] = {0, 1, 1, 2, 4, 7};
-      static constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
+      const JointType& type = joint_type(b.joint.kind);
       parent.push_back(p);
       q.push_back(coordinates);
       v.push_back(rates);
-      dof.push_back(rate_counts[kind]);
-      coordinates += coordinate_counts[kind];
-      rates += rate_counts[kind];
+      dof.push_back(type.rate_count());
+      coordinates += type.coordinate_count();
+      rates += type.rate_count();
     }
   }
 };
@@ -338,7 +338,7 @@ struct RandomSystem {
       b.name = "body " + std::to_string(i);
       const int parent = static_cast<int>(sample.uniform(-1, i));
       if (i > 0 && !sample.once_in(6)) b.parent = "body " + std::to_string(parent < 0 ? 0 : parent);
-      b.joint.kind = static_cast<JointKind>(static_cast<int>(sample.uniform(0, 6)));
+      b.joint.kind = test::random_kind(sample);
       b.joint.axis = vec(sample.uniform(0.5, 2));
       b.joint.second_axis = b.joint.axis.cross(vec(1)) + 0.3 * b.joint.axis;
       if (b.joint.second_axis.cross(b.joint.axis).norm() < 0.1) {
@@ -360,10 +360,10 @@ struct RandomSystem {
         b.rule = JointRule::constant_rate;
       }
       if (sample.once_in(2)) {
-        static constexpr std::size_t counts[] = {0, 1, 1, 2, 3, 6};
-        b.forces.resize(counts[static_cast<int>(b.joint.kind)]);
+        const JointType& type = joint_type(b.joint.kind);
+        b.forces.resize(static_cast<std::size_t>(type.rate_count()));
         for (JointForce& f : b.forces) {
-          if (b.forces.size() <= 2) f.stiffness = sample.uniform(0, 5);
+          if (!type.has_attitude()) f.stiffness = sample.uniform(0, 5);
           f.rest = sample.uniform(-1, 1);
           f.damping = sample.uniform(0, 2);
           f.constant = sample.uniform(-2, 2);
@@ -402,7 +402,8 @@ struct RandomSystem {
     for (double& x : y) x = sample.uniform(-2, 2);
     for (double& x : extra) x = sample.uniform(-3, 3);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      if (joints.dof[i] >= 3) y[joints.q[i] + 3] = sample.uniform(0.5, 2);
+      if (joint_type(bodies[i].joint.kind).has_attitude())
+        y[joints.q[i] + 3] = sample.uniform(0.5, 2);
     }
   }
 

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/tree/joint/list.hpp>
 #include <dynamics/tree/rotor_matrices.hpp>
 
+#include <support/random_tree.hpp>
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
@@ -34,9 +36,6 @@ struct Attraction {
   [[nodiscard]] Force<Body> operator()(const LoadContext<>& s) const { return field(s); }
   [[nodiscard]] double potential(const LoadContext<>& s) const { return field.potential(s); }
 };
-
-constexpr int rate_counts[] = {0, 1, 1, 2, 3, 6};
-constexpr int coordinate_counts[] = {0, 1, 1, 2, 4, 7};
 
 struct RandomRotors {
   std::vector<BodyDescription> with;
@@ -63,8 +62,7 @@ struct RandomRotors {
       if (made > 0 && !sample.once_in(6)) {
         b.parent = "body " + std::to_string(static_cast<int>(sample.uniform(0, made)));
       }
-      b.joint.kind = rotor ? JointKind::revolute
-                           : static_cast<JointKind>(static_cast<int>(sample.uniform(0, 6)));
+      b.joint.kind = rotor ? JointKind::revolute : test::random_kind(sample);
       b.joint.axis = vec(sample.uniform(0.5, 2));
       b.joint.second_axis = b.joint.axis.unitOrthogonal();
       b.joint.position = vec(sample.uniform(0, 1));
@@ -98,16 +96,16 @@ struct RandomRotors {
         }
       }
       if (sample.once_in(4)) b.loads.emplace_back(Attraction{{vec(5)}});
-      const auto kind = static_cast<std::size_t>(b.joint.kind);
+      const JointType& type = joint_type(b.joint.kind);
       if (!rotor && sample.once_in(2)) {
-        b.forces.resize(static_cast<std::size_t>(rate_counts[kind]));
+        b.forces.resize(static_cast<std::size_t>(type.rate_count()));
         for (JointForce& f : b.forces) {
           f = {.damping = sample.uniform(0, 2), .constant = sample.uniform(-2, 2)};
         }
       }
-      if (coordinate_counts[kind] >= 4) balls.push_back(coordinates + 3);
-      rates += rate_counts[kind];
-      coordinates += coordinate_counts[kind];
+      if (type.has_attitude()) balls.push_back(coordinates + 3);
+      rates += type.rate_count();
+      coordinates += type.coordinate_count();
       BodyDescription plain = b;
       if (rotor) {
         const auto mode = static_cast<RotorMode>(static_cast<int>(sample.uniform(0, 3)));
@@ -142,7 +140,7 @@ struct RandomRotors {
     int v = coordinates;
     for (const BodyDescription& b : with) {
       if (b.rotor) y[v] *= 20;
-      v += rate_counts[static_cast<std::size_t>(b.joint.kind)];
+      v += joint_type(b.joint.kind).rate_count();
     }
   }
 };
