@@ -66,6 +66,9 @@ inline void check_joint(const BodyDescription& b) {
       refuse_body(b.name, "both axes of its " + type.name + " joint are parallel");
     }
   }
+  if (type.has_pitch && !(std::isfinite(joint.pitch) && joint.pitch != 0)) {
+    refuse_body(b.name, "the pitch of its " + type.name + " joint must be finite and not 0");
+  }
   if (!is_finite(joint.position)) {
     refuse_body(b.name, "the position of its joint is not finite");
   }

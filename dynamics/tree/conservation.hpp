@@ -210,6 +210,7 @@ using Invariants = std::vector<std::pair<std::string, double>>;
 ///   spherical  angular momentum about the joint
 ///   revolute, first axis of a universal joint   angular momentum about the axis
 ///   prismatic  linear momentum along the axis
+///   screw      angular momentum about the axis and pitch times the linear momentum along it
 ///
 /// With gravity only the linear momentum across it and the angular momentum along it.
 ///
@@ -229,16 +230,18 @@ inline void add_kept_momenta(const BodyTree& tree, const RootedPart& part,
   Vector3<double> L = part.momentum.moment;
   if (link.kind != LinkKind::free) L -= cross(w.place[part.root].x, p);
   static constexpr const char* axes[] = {" x", " y", " z"};
-  if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
-    const bool slides = link.kind == LinkKind::prismatic;
+  if (link.has_one_rate()) {
     const Vector3<double> axis =
         multiply(w.pose[static_cast<std::size_t>(link.parent)].R, link.axis);
     const Vector3<double> across = cross(axis, g);
-    const double acting = slides ? std::abs(dot(axis, g)) : std::sqrt(dot(across, across));
-    if (acting > rounding * size) return;
-    const char* const name =
-        slides ? "momentum along the axis of " : "angular momentum about the axis of ";
-    result.emplace_back(name + body, dot(axis, slides ? p : L));
+    const bool turns = link.turns_by_angle();
+    const double about = turns ? std::sqrt(dot(across, across)) : 0;
+    const double along = std::abs(link.pitch * dot(axis, g));
+    if (about > rounding * size || along > std::abs(link.pitch) * rounding * size) return;
+    const char* const name = link.kind == LinkKind::screw ? "momentum along the screw of "
+                             : turns                      ? "angular momentum about the axis of "
+                                                          : "momentum along the axis of ";
+    result.emplace_back(name + body, dot(axis, link.pitch * p) + (turns ? dot(axis, L) : 0));
     return;
   }
   for (int k = 0; k < 3 && link.kind == LinkKind::free; ++k) {

@@ -72,6 +72,21 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
   take_square(A, e.U, e.inverse);
 }
 
+/// The same of a screw joint, which moves its link by  S = (s; pitch s).
+[[gnu::noinline]] inline void eliminate_screw(const BodyTree& tree, const Link& link,
+                                              const Vector3<double>& s, const Size& size,
+                                              ArticulatedInertia& A, SingleElimination& e) {
+  const Vector3<double> slide = link.pitch * s;
+  e.U.resultant = A.linear * slide + transposed_product(A.mixed, s);
+  e.U.moment = multiply(A.mixed, slide) + A.angular * s;
+  const double resistance = dot(s, e.U.moment) + dot(slide, e.U.resultant);
+  if (resistance <= rounding(size.angular + link.pitch * link.pitch * size.linear)) {
+    refuse_singular(tree, link, "the screw motion about", s);
+  }
+  e.inverse = 1 / resistance;
+  take_square(A, e.U, e.inverse);
+}
+
 /// The same of a spherical or free joint.
 [[gnu::noinline]] inline void eliminate_ball(const BodyTree& tree, const Link& link,
                                              const Size& size, ArticulatedInertia& A,
@@ -106,6 +121,8 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
     size.angular = std::max(size.angular, trace(A.angular));
     if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
       eliminate_single(tree, link, pose.axis, size, A, w.single[i]);
+    } else if (link.kind == LinkKind::screw) {
+      eliminate_screw(tree, link, pose.axis, size, A, w.single[i]);
     } else {
       eliminate_ball(tree, link, size, A, w.ball[static_cast<std::size_t>(link.factor)]);
       if (link.kind == LinkKind::free) return;
@@ -142,9 +159,10 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
   Vector3<double> f = w.force[i].resultant;
   Vector3<double> n = w.force[i].moment;
   if (link.moved_by_forces()) {
-    if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
+    if (link.has_one_rate()) {
       SingleElimination& e = w.single[i];
-      e.rest = joint_force[link.v] - dot(pose.axis, link.kind == LinkKind::revolute ? n : f);
+      e.rest = joint_force[link.v] - dot(pose.axis, link.kind == LinkKind::prismatic ? f : n);
+      if (link.kind == LinkKind::screw) e.rest -= link.pitch * dot(pose.axis, f);
       const double q = e.rest * e.inverse;
       f += q * e.U.resultant;
       n += q * e.U.moment;
@@ -187,11 +205,12 @@ inline void accelerate(const Link& link, std::size_t i, double* acceleration, Bo
     for (int k = 0; k < rate_count(link.kind); ++k) acceleration[link.v + k] = 0;
     return;
   }
-  if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
+  if (link.has_one_rate()) {
     const SingleElimination& e = w.single[i];
     const double q = (e.rest - reciprocal(e.U, delta)) * e.inverse;
     acceleration[link.v] = q;
-    (link.kind == LinkKind::revolute ? delta.resultant : delta.moment) += q * pose.axis;
+    (link.kind == LinkKind::prismatic ? delta.moment : delta.resultant) += q * pose.axis;
+    if (link.kind == LinkKind::screw) delta.moment += link.pitch * q * pose.axis;
     return;
   }
   accelerate_ball(link, pose, w.pose[parent], w.ball[static_cast<std::size_t>(link.factor)], delta,

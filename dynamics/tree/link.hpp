@@ -19,6 +19,7 @@ struct Link {
   int factor = 0;  ///< of spherical and free links: which of the workspace's factors is its own
   Vector3<double> position = Vector3<double>::Zero();  ///< on the parent's axes, as the axis
   Vector3<double> axis = Vector3<double>::Zero();
+  double pitch = 0;  ///< along the axis by one of the coordinate: prismatic 1, screw its pitch
   /// Body to parent at the coordinate q:  still + cos(q) cosine + sin(q) sine. Only `still` where
   /// nothing turns by a single angle.
   Matrix3<double> still = Matrix3<double>::Identity();
@@ -26,6 +27,12 @@ struct Link {
   Matrix3<double> sine = Matrix3<double>::Zero();
   Inertia<double> inertia = {};  ///< with the rotors that are welded to it
 
+  [[nodiscard]] bool has_one_rate() const {
+    return kind == LinkKind::revolute || kind == LinkKind::prismatic || kind == LinkKind::screw;
+  }
+  [[nodiscard]] bool turns_by_angle() const {
+    return kind == LinkKind::revolute || kind == LinkKind::screw;
+  }
   [[nodiscard]] bool moved_by_forces() const {
     return rule == JointRule::forces && kind != LinkKind::fixed;
   }

@@ -15,7 +15,7 @@ template <class S = double>
 struct LinkPose {
   Matrix3<S> R = Matrix3<S>::Identity();  ///< body to guide axes
   Vector3<S> r = Vector3<S>::Zero();      ///< from the parent's origin to its own
-  Vector3<S> axis = Vector3<S>::Zero();   ///< of a revolute or prismatic joint
+  Vector3<S> axis = Vector3<S>::Zero();   ///< of a revolute, prismatic or screw joint
 };
 
 /// The absolute angular velocity w = u' + u, its inertial rate, and the inertial acceleration of
@@ -58,7 +58,19 @@ template <class S>
           A(2, 0) * b[0] + A(2, 1) * b[1] + A(2, 2) * b[2]};
 }
 
-/// The pose of a link that does not turn by a single angle.
+/// The axes of a link that turns by an angle, on those of its parent.
+template <class S>
+void turn_by_angle(const Link& link, const S& angle, Matrix3<S>& turned) {
+  using std::cos;
+  using std::sin;
+  const S c = cos(angle);
+  const S s = sin(angle);
+  for (int k = 0; k < 9; ++k) {
+    turned(k) = link.still(k) + c * link.cosine(k) + s * link.sine(k);
+  }
+}
+
+/// The pose of another link than a revolute one.
 template <class S>
 [[gnu::noinline]] void set_other_pose(const Link& link, const LinkPose<S>& parent, const S* q,
                                       LinkPose<S>& p) {
@@ -66,11 +78,12 @@ template <class S>
   Vector3<S> offset(link.position.x(), link.position.y(), link.position.z());
   Matrix3<S> still;
   for (int k = 0; k < 9; ++k) still(k) = link.still(k);
-  if (link.kind == LinkKind::prismatic) {
+  if (link.has_one_rate()) {
     p.axis = multiply(parent.R, link.axis);
-    const S& x = q[link.q];
+    const S x = link.pitch * q[link.q];
     offset += Vector3<S>(x * a.x(), x * a.y(), x * a.z());
   }
+  if (link.kind == LinkKind::screw) turn_by_angle(link, q[link.q], still);
   if (link.kind == LinkKind::free) offset += three(q + link.q + 4);
   if (coordinate_count(link.kind) >= 4) {
     Matrix3<S> turned;
@@ -89,14 +102,8 @@ void set_pose(const Link& link, const LinkPose<S>& parent, const S* q, LinkPose<
     set_other_pose(link, parent, q, p);
     return;
   }
-  using std::cos;
-  using std::sin;
-  const S c = cos(q[link.q]);
-  const S s = sin(q[link.q]);
   Matrix3<S> turned;
-  for (int k = 0; k < 9; ++k) {
-    turned(k) = link.still(k) + c * link.cosine(k) + s * link.sine(k);
-  }
+  turn_by_angle(link, q[link.q], turned);
   multiply(parent.R, turned, p.R);
   p.r = multiply(parent.R, link.position);
   p.axis = multiply(parent.R, link.axis);
@@ -108,10 +115,15 @@ template <class S>
                                         const LinkPose<S>& parent, const LinkMotion<S>& above,
                                         const S* v, const std::type_identity_t<S>* dv,
                                         LinkMotion<S>& m) {
-  if (link.kind == LinkKind::prismatic) {
-    const S twice = 2.0 * v[link.v];
+  if (link.has_one_rate()) {
+    const S twice = 2.0 * link.pitch * v[link.v];
     m.a += twice * cross(above.w, pose.axis);
-    if (dv) m.a += dv[link.v] * pose.axis;
+    if (dv) m.a += S(link.pitch * dv[link.v]) * pose.axis;
+    if (link.kind == LinkKind::prismatic) return;
+    const Vector3<S> turn = v[link.v] * pose.axis;
+    m.w += turn;
+    m.dw += cross(above.w, turn);
+    if (dv) m.dw += dv[link.v] * pose.axis;
     return;
   }
   const Vector3<S> turn = pose.R * three(v + link.v);
@@ -159,8 +171,8 @@ LinkPlace<S> place(const Link& link, const LinkPose<S>& pose, const LinkPose<S>&
                    const LinkPlace<S>& above, const S* v) {
   LinkPlace<S> p{above.x + pose.r, above.V.reduced_at(pose.r)};
   if (!link.moves()) return p;
-  if (link.kind == LinkKind::revolute) p.V.resultant += v[link.v] * pose.axis;
-  if (link.kind == LinkKind::prismatic) p.V.moment += v[link.v] * pose.axis;
+  if (link.turns_by_angle()) p.V.resultant += v[link.v] * pose.axis;
+  if (link.has_one_rate()) p.V.moment += S(link.pitch * v[link.v]) * pose.axis;
   if (link.kind == LinkKind::spherical || link.kind == LinkKind::free) {
     p.V.resultant += pose.R * three(v + link.v);
   }
@@ -175,6 +187,7 @@ template <class S>
   const Vector3<S> zero = Vector3<S>::Zero();
   if (link.kind == LinkKind::revolute) return {pose.axis, zero};
   if (link.kind == LinkKind::prismatic) return {zero, pose.axis};
+  if (link.kind == LinkKind::screw) return {pose.axis, S(link.pitch) * pose.axis};
   return k < 3 ? Motor<S>{column(pose.R, k), zero} : Motor<S>{zero, column(parent.R, k - 3)};
 }
 

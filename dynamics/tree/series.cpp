@@ -103,16 +103,13 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
     b.v = tree.coordinates() + link.v;
     b.rates = link.v;
     const Matrix3<double> above = branches_[b.parent].own_axes.transpose();
-    if (link.moves() && link.kind == LinkKind::revolute) {
+    if (link.moves() && link.turns_by_angle()) {
       b.way = Way::turning;
       const Matrix3<double> joint = axes_about(link.axis).transpose();
       b.own_axes = joint * (link.still + link.cosine);
       b.set_outwards(joint * above);
     } else if (link.moves() && link.kind == LinkKind::prismatic) {
       b.way = Way::sliding;
-      b.number = sliders_.size();
-      const Vector3<double> axis = above.transpose() * link.axis;
-      sliders_.emplace_back().axis = CyclicVec4d(vec4d(components(axis)));
     } else if (link.moves()) {
       b.way = Way::ball;
       b.number = static_cast<std::size_t>(link.factor);
@@ -123,6 +120,12 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
         const JointForce& f = tree.forces()[static_cast<std::size_t>(rate)];
         b.is_braked = b.is_braked || f.damping != 0 || f.constant != 0;
       }
+    }
+    if (link.moves() && link.pitch != 0) {
+      b.slides = true;
+      b.number = sliders_.size();
+      const Vector3<double> axis = link.pitch * (above.transpose() * link.axis);
+      sliders_.emplace_back().axis = CyclicVec4d(vec4d(components(axis)));
     }
     const Inertia<> T = Pose<>{b.own_axes, Vector3<double>::Zero()} * link.inertia;
     b.mass = T.mass;
@@ -210,12 +213,16 @@ void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
         for (std::size_t j = 1; j <= at; ++j) b.add_product(j, at - j);
         break;
       case Way::turning: prepare_turning(b, k, weight, c); break;
-      case Way::sliding: prepare_sliding(b, k, weight, c); break;
+      case Way::sliding:
+        c(b.q, k + 1) = weight * c(b.v, k);
+        for (std::size_t j = 1; j <= at; ++j) b.add_product(j, at - j);
+        break;
       case Way::ball:
         prepare_ball(b, k, weight, c);
         if (b.floats) prepare_floating(b, k, weight, c);
         break;
     }
+    if (b.slides) prepare_slider(b, k, c);
     b.gyroscopic_moment = b.gyroscopic.torque(b.next.next(), b.squares);
   }
   prepare_spins(k, weight, c);
@@ -261,8 +268,7 @@ void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
   b.inner = inner + turned_left(inner_left);
 }
 
-void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
-  c(b.q, k + 1) = weight * c(b.v, k);
+void TreeSeries::prepare_slider(Branch& b, int k, const Columns& c) {
   const auto last = static_cast<std::size_t>(k);
   Slider& slider = sliders_[b.number];
   slider.w_axis[last] = 2.0 * cross(branches_[b.parent].w[last], slider.axis.as_is);
@@ -270,7 +276,6 @@ void TreeSeries::prepare_sliding(Branch& b, int k, double weight, Columns& c) {
   slider.lever = Vec4d(0, 0, 0, 0);
   for (std::size_t j = 1; j <= last; ++j) {
     const double q = c(b.q, int(j));
-    b.add_product(j, last - j);
     b.carried += c(b.v, int(j)) * slider.w_axis[last - j] + q * slider.gamma_axis[last - j];
     slider.lever += q * slider.moment[last - j];
   }
@@ -351,7 +356,7 @@ void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
     const Branch& above = branches_[b.parent];
     const double* own = dv + b.rates;
     Vec4d a = above.a + above.gamma * b.r;
-    if (b.way == Way::sliding) {
+    if (b.slides) {
       Slider& slider = sliders_[b.number];
       slider.gamma_axis[k] = above.gamma * slider.axis;
       a += b.carried + own[0] * slider.axis.as_is;
@@ -412,7 +417,7 @@ void TreeSeries::go_inwards(std::size_t k) {
     }
     f = b.inwards * CyclicVec4d(f);
     n = b.inwards * CyclicVec4d(n) + cross(b.r.as_is, f);
-    if (b.way == Way::sliding) {
+    if (b.slides) {
       Slider& slider = sliders_[b.number];
       slider.moment[k] = cross(slider.axis.as_is, f);
       n += slider.lever;
@@ -432,11 +437,9 @@ void TreeSeries::set_left(int k, const Columns& c) {
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     const Branch& b = branches_[i];
     double* left = left_.data() + b.rates;
-    if (b.way == Way::turning) {
-      left[0] -= b.moment[2];
-    } else if (b.way == Way::sliding) {
-      left[0] -= along(b.outwards * sliders_[b.number].axis, b.force);
-    } else if (b.way == Way::ball) {
+    if (b.way == Way::turning) left[0] -= b.moment[2];
+    if (b.slides) left[0] -= along(b.outwards * sliders_[b.number].axis, b.force);
+    if (b.way == Way::ball) {
       for (int j = 0; j < 3; ++j) left[j] -= b.moment[j];
       if (!b.floats) continue;
       // What nothing brakes takes no force at any order.

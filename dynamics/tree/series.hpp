@@ -66,6 +66,7 @@ class KREISEL_API TreeSeries {
   /// A link. All vectors stand on its own axes where nothing else is said.
   struct Branch {
     Way way = Way::still;
+    bool slides = false;  ///< alone, or while it turns: a screw
     bool floats = false;
     bool is_turned = true;   ///< by its parent: what it hangs on is no guide at rest
     bool hands_on = true;    ///< forces to a parent that is not the guide
@@ -117,7 +118,7 @@ class KREISEL_API TreeSeries {
 
   /// What a link that slides has besides, on the parent's axes.
   struct Slider {
-    CyclicVec4d axis;
+    CyclicVec4d axis;                  ///< as long as the way by one of the coordinate
     Vec4d lever;                   ///< moment of what it hands on, but for the newest
     Of<Vec4d> gamma_axis, w_axis;  ///< of the parent: gamma e, 2 w x e
     Of<Vec4d> moment;              ///< e x f
@@ -172,7 +173,7 @@ class KREISEL_API TreeSeries {
   void prepare(int k, double h, const GuideSeries& felt, Columns& c);
   void prepare_guide(std::size_t k, double per_time, const GuideSeries& felt);
   void prepare_turning(Branch& b, int k, double weight, Columns& c);
-  void prepare_sliding(Branch& b, int k, double weight, Columns& c);
+  void prepare_slider(Branch& b, int k, const Columns& c);
   void prepare_ball(Branch& b, int k, double weight, Columns& c);
   void prepare_floating(Branch& b, int k, double weight, Columns& c);
   void prepare_spins(int k, double weight, Columns& c);

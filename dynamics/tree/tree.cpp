@@ -34,7 +34,8 @@ inline void turn_about_axis(Link& link) {
 inline void set_motion(Link& link, const JointPart& part) {
   link.kind = part.kind;
   if (dot(part.axis, part.axis) > 0) link.axis = normalized(part.axis);
-  if (link.kind == LinkKind::revolute) turn_about_axis(link);
+  link.pitch = part.pitch;
+  if (link.turns_by_angle()) turn_about_axis(link);
 }
 
 }  // namespace detail
@@ -174,7 +175,7 @@ void BodyTree::number(detail::Link& link) {
   rates_ += detail::rate_count(link.kind);
   coordinate_of_.resize(static_cast<std::size_t>(rates_), link.q);
   const auto add_blocks = [&link](std::vector<int>& blocks, int ball) {
-    if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) blocks.push_back(1);
+    if (link.has_one_rate()) blocks.push_back(1);
     if (link.kind == LinkKind::spherical || link.kind == LinkKind::free) blocks.push_back(ball);
     if (link.kind == LinkKind::free) blocks.push_back(3);
   };

@@ -12,7 +12,7 @@ namespace kreisel::detail {
           .coordinates = {{"displacement", "m", {"displacement"}, "displacement", {""}}},
           .rates = {{"rate", "m/s", {"rate"}, "rate", {""}}},
           .parts = [](const Joint& joint) {
-            return JointParts{{LinkKind::prismatic, joint.axis}};
+            return JointParts{{LinkKind::prismatic, joint.axis, 1}};
           }};
 }
 

@@ -34,13 +34,14 @@ namespace detail {
 /// How a link moves against the one before it: the motions that all joints are made of. The
 /// equations of each are in motion.hpp (pose, motion subspace, bias acceleration), passes.hpp
 /// (rates of the coordinates), elimination.hpp and series.cpp.
-enum class LinkKind { fixed, revolute, prismatic, spherical, free };
+enum class LinkKind { fixed, revolute, prismatic, screw, spherical, free };
 
 /// One motion of a joint. Several follow each other outwards, each on axes that the ones before it
 /// move, with no mass between.
 struct JointPart {
   LinkKind kind = LinkKind::fixed;
   Vector3<double> axis = Vector3<double>::Zero();  ///< on the parent's axes at zero coordinates
+  double pitch = 0;  ///< metres along the axis by one of the coordinate; of a prismatic one 1
 };
 
 /// The motions of a joint, from its parent outwards: one to three.
@@ -72,6 +73,7 @@ struct JointType {
   std::string name;  ///< `kind` in scene files
   Axis axis = Axis::none;
   Axis second_axis = Axis::none;  ///< not parallel to the first
+  bool has_pitch = false;         ///< not 0
   std::vector<JointQuantity> coordinates = {};
   std::vector<JointQuantity> rates = {};
   detail::JointParts (*parts)(const Joint& joint) = nullptr;

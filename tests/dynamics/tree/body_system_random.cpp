@@ -159,6 +159,7 @@ std::vector<Kinematics> kinematics(const std::vector<BodyDescription>& bodies, c
     const JM zero = turn(joint.orientation);
     JetPose X;
     JV offset = still(wide(joint.position));
+    const V3 axis = wide(joint.axis).normalized();
     switch (joint.kind) {
       case JointKind::fixed: X.R = P.R * zero; break;
       case JointKind::revolute: X.R = P.R * turn(joint.axis, moving(0)) * zero; break;
@@ -167,7 +168,7 @@ std::vector<Kinematics> kinematics(const std::vector<BodyDescription>& bodies, c
         break;
       case JointKind::prismatic:
         X.R = P.R * zero;
-        offset += still(V3(wide(joint.axis).normalized())) * moving(0);
+        offset += still(axis) * moving(0);
         break;
       case JointKind::free:
         for (int k = 0; k < 3; ++k) {
@@ -175,6 +176,20 @@ std::vector<Kinematics> kinematics(const std::vector<BodyDescription>& bodies, c
         }
         [[fallthrough]];
       case JointKind::spherical: X.R = P.R * zero * ball(); break;
+      case JointKind::cylindrical:
+        X.R = P.R * turn(joint.axis, moving(0)) * zero;
+        offset += still(axis) * moving(1);
+        break;
+      case JointKind::planar: {
+        const V3 across = axis.cross(wide(joint.second_axis)).normalized();
+        X.R = P.R * turn(joint.axis, moving(2)) * zero;
+        offset += still(V3(across.cross(axis))) * moving(0) + still(across) * moving(1);
+        break;
+      }
+      case JointKind::screw:
+        X.R = P.R * turn(joint.axis, moving(0)) * zero;
+        offset += still(V3(L(joint.pitch) * axis)) * moving(0);
+        break;
     }
     X.x = P.x + P.R * offset;
     const M3 R = test::value(X.R);
@@ -345,6 +360,7 @@ struct RandomSystem {
         b.joint.second_axis = b.joint.axis.unitOrthogonal();
       }
       b.joint.position = vec(sample.uniform(0, 1));
+      b.joint.pitch = sample.uniform(-0.5, 0.5);
       if (!sample.once_in(3)) b.joint.orientation = quaternion();
       const Matrix3<double> axes = sample.rotation();
       const Vector3<double> thirds(sample.uniform(0.02, 0.2), sample.uniform(0.02, 0.2),
@@ -467,7 +483,7 @@ struct RandomSystem {
         const JointForce& f = bodies[i].forces[k];
         const int rate = joints.v[i] + static_cast<int>(k);
         result[rate] = L(f.constant) - L(f.damping) * v()[rate];
-        if (bodies[i].forces.size() <= 2) {
+        if (!joint_type(bodies[i].joint.kind).has_attitude()) {
           result[rate] -= L(f.stiffness) * (q()[joints.q[i] + static_cast<int>(k)] - L(f.rest));
         }
       }

@@ -66,6 +66,7 @@ struct RandomRotors {
       b.joint.axis = vec(sample.uniform(0.5, 2));
       b.joint.second_axis = b.joint.axis.unitOrthogonal();
       b.joint.position = vec(sample.uniform(0, 1));
+      b.joint.pitch = sample.uniform(-0.5, 0.5);
       b.joint.orientation = Eigen::Quaterniond(sample.uniform(0.2, 1), sample.uniform(-1, 1),
                                                sample.uniform(-1, 1), sample.uniform(-1, 1));
       const double mass = sample.uniform(0.3, 3);

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <utility>
+
+#include <dynamics/tree/joint/type.hpp>
+
+namespace kreisel::detail {
+
+/// The two directions of the displacements of a planar joint, on the parent's axes, with which they
+/// turn: the body's own turning leaves them. The first is the part across `axis` of `second_axis`;
+/// without one, of the parent's axis that follows the one nearest to `axis` in the order x, y, z, x.
+/// The second is  axis x first.  About z they are x and y of the parent.
+[[nodiscard]] inline std::pair<Vector3<double>, Vector3<double>> directions(const Joint& joint) {
+  const Vector3<double> axis = joint.axis.normalized();
+  Vector3<double> first = joint.second_axis;
+  if (first.isZero(0)) {
+    int nearest = 0;
+    axis.cwiseAbs().maxCoeff(&nearest);
+    first = Vector3<double>::Unit((nearest + 1) % 3);
+  }
+  first.normalize();
+  first = (first - axis.dot(first) * axis).normalized();
+  return {first, axis.cross(first)};
+}
+
+/// The joint that slides in the plane normal to `axis` and turns about it.
+[[nodiscard]] inline JointType planar_joint() {
+  return {.kind = JointKind::planar,
+          .name = "planar",
+          .axis = JointType::Axis::required,
+          .second_axis = JointType::Axis::optional,
+          .coordinates = {{"displacement",
+                           "m",
+                           {"displacement 1", "displacement 2"},
+                           "displacements",
+                           {"first", "second"}},
+                          {"angle", "rad", {"angle"}, "angle", {""}}},
+          .rates =
+              {{"velocity", "m/s", {"velocity 1", "velocity 2"}, "velocities", {"first", "second"}},
+               {"rate", "rad/s", {"rate"}, "rate", {""}}},
+          .parts = [](const Joint& joint) {
+            const auto [first, second] = directions(joint);
+            return JointParts{{LinkKind::prismatic, first, 1},
+                              {LinkKind::prismatic, second, 1},
+                              {LinkKind::revolute, joint.axis}};
+          }};
+}
+
+}  // namespace kreisel::detail

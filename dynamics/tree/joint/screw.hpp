@@ -1,0 +1,20 @@
+#pragma once
+
+#include <dynamics/tree/joint/type.hpp>
+
+namespace kreisel::detail {
+
+/// The joint that turns about `axis` and advances along it by `pitch` metres per radian.
+[[nodiscard]] inline JointType screw_joint() {
+  return {.kind = JointKind::screw,
+          .name = "screw",
+          .axis = JointType::Axis::required,
+          .has_pitch = true,
+          .coordinates = {{"angle", "rad", {"angle"}, "angle", {""}}},
+          .rates = {{"rate", "rad/s", {"rate"}, "rate", {""}}},
+          .parts = [](const Joint& joint) {
+            return JointParts{{LinkKind::screw, joint.axis, joint.pitch}};
+          }};
+}
+
+}  // namespace kreisel::detail
