@@ -83,7 +83,7 @@ class Starts {
 
   static int choices(LinkKind kind) {
     if (kind == LinkKind::revolute) return 2;
-    return kind == LinkKind::prismatic ? 1 : 4;
+    return detail::rate_count(kind) == 1 ? 1 : 4;
   }
 
   /// Angles of 0 or pi; attitudes turned by pi about one of the axes, or not at all.
@@ -106,7 +106,7 @@ class Starts {
     const auto spread = [&](int q) { y[q] += (1 + std::abs(y[q])) * (2 * next() - 1); };
     for (const Link* const link : links_) {
       if (link->kind == LinkKind::revolute) y[link->q] = pi * (2 * next() - 1);
-      if (link->kind == LinkKind::prismatic) spread(link->q);
+      if (choices(link->kind) == 1) spread(link->q);
       if (choices(link->kind) != 4) continue;
       // Uniform over all attitudes, after Shoemake.
       const double share = next();

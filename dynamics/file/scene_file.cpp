@@ -586,6 +586,12 @@ class SceneReader {
       return true;
     };
     axis("axis", type.axis, joint.axis);
+    if (type.has_pitch) {
+      joint.pitch = section.required_number("pitch");
+      if (joint.pitch == 0 && section.has("pitch")) {
+        section.refuse("pitch", "is 0: the joint does not advance; take 'revolute'");
+      }
+    }
     if (!axis("second_axis", type.second_axis, joint.second_axis)) return;
     if (!(joint.axis.normalized().cross(joint.second_axis.normalized()).norm() > 1e-12)) {
       section.refuse("second_axis", "is parallel to 'axis'");

@@ -56,7 +56,7 @@ ordered_json parts(const kreisel::Joint& joint) {
     if (kreisel::detail::rate_count(part.kind) != 1) continue;
     list.push_back({{"axis", numbers(part.axis.normalized())},
                     {"turns", part.kind == LinkKind::prismatic ? 0 : 1},
-                    {"slides", part.kind == LinkKind::prismatic ? 1 : 0}});
+                    {"slides", part.pitch}});
   }
   return list;
 }

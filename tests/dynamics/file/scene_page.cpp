@@ -445,7 +445,7 @@ BOOST_AUTO_TEST_CASE(keys_of_another_kind_are_refused) {
   }
 }
 
-// "of two coordinates a number for both or [a, b]; of a ball damping alone".
+// "of several coordinates a number for each of them or a list"; "of a ball damping alone".
 BOOST_AUTO_TEST_CASE(two_coordinates_take_a_number_for_both) {
   const auto forces = [](const std::string& keys) {
     return scene(one(universal + keys)).bodies.at(0).forces;
@@ -470,6 +470,39 @@ BOOST_AUTO_TEST_CASE(two_coordinates_take_a_number_for_both) {
   BOOST_TEST(of_ball.at(2).damping == 0.3);
   BOOST_TEST(contains(mistakes(one(ball + "force = 1")), "needs a single coordinate"));
   BOOST_TEST(contains(mistakes(one(ball + "damping = [1, 1, 1]")), "must be a number"));
+}
+
+// The rows of cylindrical, planar and screw joints: coordinates and rates in the order of their row,
+// springs for each, "`rest` has no _deg"; "`pitch` metres a RADIAN".
+BOOST_AUTO_TEST_CASE(joints_of_several_units_take_their_row) {
+  const std::string axis = "axis = [0, 0, 1] }\n";
+  const auto start = [](const std::string& keys) { return scene(one(keys)).start.at(0); };
+  const std::string cylinder = "joint = { kind = \"cylindrical\", " + axis;
+  const JointStart turned =
+      start(cylinder + "initial = { angle_deg = 30, displacement = 2, rate = 3, velocity = 4 }");
+  BOOST_TEST(turned.coordinates == std::vector<double>({30 * degree, 2}));
+  BOOST_TEST(turned.rates == std::vector<double>({3, 4}));
+  const std::string plane = "joint = { kind = \"planar\", " + axis;
+  const JointStart puck =
+      start(plane + "initial = { displacement = [1, 2], angle = 3, velocity = [4, 5], rate = 6 }");
+  BOOST_TEST(puck.coordinates == std::vector<double>({1, 2, 3}));
+  BOOST_TEST(puck.rates == std::vector<double>({4, 5, 6}));
+  const auto forces = scene(one(plane + "damping = 7\nspring = { stiffness = [1, 2, 3], "
+                                        "rest = [4, 5, 6] }"))
+                          .bodies.at(0)
+                          .forces;
+  BOOST_TEST_REQUIRE(forces.size() == 3U);
+  BOOST_TEST(forces[2].stiffness == 3);
+  BOOST_TEST(forces[1].rest == 5);
+  BOOST_TEST(forces[2].damping == 7);
+  BOOST_TEST(contains(mistakes(one(plane + "spring = { stiffness = 1, rest_deg = 2 }")),
+                      "spring.rest_deg: is no key here"));
+  const std::string thread = "joint = { kind = \"screw\", pitch = 0.5, " + axis;
+  BOOST_TEST(scene(one(thread)).bodies.at(0).joint.pitch == 0.5);
+  AtStart screw(one(thread + "initial = { angle = 2 }"));
+  BOOST_TEST((screw.pose(0).translation - Vector3<double>(0, 0, 1)).norm() == 0);
+  BOOST_TEST(contains(mistakes(one(thread + "initial = { displacement = 1 }")),
+                      "initial.displacement: is no key here"));
 }
 
 // "Numbers that no mass can have": catalogue numbers rounded in the last digit.
