@@ -260,9 +260,17 @@ void add_mass(Random& r, Body& body) {
   if (r.chance(0.7)) body.centre = vector(r, 0.01, 1);
 }
 
+/// Of the kinds of joints after `free` the one at that share of the list, from 0 to 1.
+JointKind later_kind(double share) {
+  const auto& types = kreisel::joint_types();
+  const auto first = static_cast<std::size_t>(JointKind::free) + 1;
+  return types[first + static_cast<std::size_t>(share * double(types.size() - first))].kind;
+}
+
 void add_joint(Random& r, Body& body) {
   const double u = r.uniform();
-  body.kind = u < 0.45   ? JointKind::revolute
+  body.kind = u < 0.36   ? JointKind::revolute
+              : u < 0.45 ? later_kind((u - 0.36) / 0.09)
               : u < 0.60 ? JointKind::prismatic
               : u < 0.75 ? JointKind::universal
               : u < 0.87 ? JointKind::spherical
@@ -272,6 +280,10 @@ void add_joint(Random& r, Body& body) {
   do {
     body.second_axis = direction(r);
   } while (body.axis.normalized().cross(body.second_axis.normalized()).norm() < 0.1);
+  const kreisel::JointType& type = kreisel::joint_type(body.kind);
+  if (type.has_pitch) body.pitch = sign(r) * plain(r, 0.01, 1);
+  const bool optional = type.second_axis == kreisel::JointType::Axis::optional;
+  if (optional && r.chance(0.5)) body.second_axis.setZero();
   if (r.chance(0.5)) body.position = vector(r, 0.1, 2);
   if (r.chance(0.1)) body.orientation = attitude(r);
 }

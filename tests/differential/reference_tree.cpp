@@ -1,5 +1,6 @@
 #include "reference_tree.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -66,8 +67,35 @@ int rows_of(const Body& body, bool held, bool driven) {
     case JointKind::universal: return 4;
     case JointKind::spherical: return 3;
     case JointKind::free: break;
+    case JointKind::cylindrical: return 4;
+    case JointKind::planar: return 3;
+    case JointKind::screw: return 5;
   }
   return 0;
+}
+
+/// Whether a joint turns about `axis` alone.
+bool is_hinge(JointKind kind) {
+  return kind == JointKind::revolute || kind == JointKind::cylindrical ||
+         kind == JointKind::planar || kind == JointKind::screw;
+}
+
+int angle_count(JointKind kind) {
+  if (kind == JointKind::universal) return 2;
+  return is_hinge(kind) ? 1 : 0;
+}
+
+/// The first direction in the plane of a planar joint: across its axis, along the second axis or the
+/// unit vector after the one nearest to the axis.
+Vec first_in_plane(const Vec& axis, const Vector& second_axis) {
+  Vec along = wide(second_axis);
+  if (second_axis.isZero(0)) {
+    const Vec size = axis.cwiseAbs();
+    const bool x = size.x() >= size.y() && size.x() >= size.z();
+    const bool y = !x && size.y() >= size.z();
+    along = x ? Vec::UnitY() : y ? Vec::UnitZ() : Vec::UnitX();
+  }
+  return axis.cross(along).cross(axis).normalized();
 }
 
 }  // namespace
@@ -83,14 +111,15 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
     part.inertia = tensor(body.inertia);
     part.zero = turn_by(body.orientation);
     part.axis = wide(body.axis).normalized();
-    part.second_axis = wide(body.second_axis).normalized();
+    part.second_axis = body.kind == JointKind::planar ? first_in_plane(part.axis, body.second_axis)
+                                                      : Vec(wide(body.second_axis).normalized());
+    part.pitch = Real(body.pitch);
     part.position = wide(body.position);
     part.angles = size_;
     part.held = body.hold || body.kind == JointKind::fixed;
     part.driven = body.drive || (body.rotor && body.rotor->mode == RotorMode::regulated);
     part.speed = body.rotor ? number(body.rotor->speed) : at_or(body.rate, 0);
-    if (body.kind == JointKind::revolute) size_ += 1;
-    if (body.kind == JointKind::universal) size_ += 2;
+    size_ += angle_count(body.kind);
     rows += rows_of(body, part.held, part.driven);
     parts_.push_back(part);
     parents_.push_back(body.parent);
@@ -156,6 +185,23 @@ void Tree::start_body(int body, State& y, std::vector<Pose>& poses) {
       if (b.attitude) turn = turn_by(b.attitude);
       w = turn * wide(radian(b.angular_velocity, b.turns_in_degrees));
       break;
+    case JointKind::cylindrical:
+    case JointKind::planar:
+    case JointKind::screw: {
+      const bool planar = b.kind == JointKind::planar;
+      const bool screw = b.kind == JointKind::screw;
+      const Real spin = at_or(b.rate, planar ? 2 : 0);
+      turn = about(part.axis, angle(0)) * part.zero;
+      w = part.axis * spin;
+      y[part.angles] = angle(0);
+      const Vec along = planar ? part.second_axis : part.axis;
+      place += along * (screw ? part.pitch * angle(0) : at_or(b.displacement, 0));
+      v = along * (screw ? part.pitch * spin : at_or(b.rate, planar ? 0 : 1));
+      if (!planar) break;
+      place += part.axis.cross(along) * at_or(b.displacement, 1);
+      v += part.axis.cross(along) * at_or(b.rate, 1);
+      break;
+    }
     case JointKind::fixed: break;
   }
   Pose& pose = poses[static_cast<std::size_t>(body)];
@@ -186,7 +232,11 @@ Tree::Pose Tree::pose(const State& y, int body) const {
 
 void Tree::read(const State& y, const Motion& guide) {
   guide_pose_ = {guide.R, Vec::Zero(), Vec::Zero(), guide.w};
-  for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = pose(y, static_cast<int>(i));
+  first_angles_.assign(poses_.size(), 0);
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    poses_[i] = pose(y, static_cast<int>(i));
+    if (angle_count(scene_.bodies[i].kind) > 0) first_angles_[i] = y[parts_[i].angles];
+  }
 }
 
 const Tree::Pose& Tree::parent(int body) const {
@@ -210,12 +260,13 @@ Tree::Relative Tree::relative(int body) const {
   r.turn = p.R.transpose() * b.R * part.zero.transpose();
   r.axis = p.R * part.axis;
   r.second_axis = b.R * (part.zero.transpose() * part.second_axis);
+  r.near = first_angles_[static_cast<std::size_t>(body)];
   return r;
 }
 
 std::pair<Real, Real> Tree::angles_of(int body, const Relative& r) const {
   const Part& part = parts_[static_cast<std::size_t>(body)];
-  if (scene_.bodies[static_cast<std::size_t>(body)].kind == JointKind::revolute) {
+  if (is_hinge(scene_.bodies[static_cast<std::size_t>(body)].kind)) {
     const Vec side = across(part.axis).first;
     return {turn_between(part.axis, side, r.turn * side), 0};
   }
@@ -223,6 +274,11 @@ std::pair<Real, Real> Tree::angles_of(int body, const Relative& r) const {
   const Mat rest = about(part.axis, first).transpose() * r.turn;
   const Vec side = across(part.second_axis).first;
   return {first, turn_between(part.second_axis, side, rest * side)};
+}
+
+std::pair<Vec, Vec> Tree::plane_of(int body, const Relative& r) const {
+  const Vec first = parent(body).R * parts_[static_cast<std::size_t>(body)].second_axis;
+  return {first, r.axis.cross(first)};
 }
 
 Vec Tree::turned_off(int body, const Relative& r) const {
@@ -240,11 +296,11 @@ void Tree::add_translation(int body, const Relative& r, const Motion& guide, con
   const Pose& p = parent(body);
   const int index = parents_[static_cast<std::size_t>(body)];
   const auto put = [&](int to, const Vec& force, const Vec& torque) {
-    matrix_.block<1, 3>(row, 6 * to) = force.transpose();
-    matrix_.block<1, 3>(row, 6 * to + 3) = torque.transpose();
+    matrix_.block<1, 3>(row, 6 * to) += force.transpose();
+    matrix_.block<1, 3>(row, 6 * to + 3) += torque.transpose();
   };
   put(body, n, r.arm.cross(n));
-  right_[row] =
+  right_[row] +=
       n.dot(p.w.cross(p.w.cross(r.reach)) + 2 * p.w.cross(r.v) - b.w.cross(b.w.cross(r.arm)));
   if (index >= 0) {
     put(index, -n, -r.reach.cross(n));
@@ -252,8 +308,8 @@ void Tree::add_translation(int body, const Relative& r, const Motion& guide, con
     right_[row] += n.dot(guide.dw.cross(r.reach));
   }
   const auto at_row = static_cast<std::size_t>(rows_);
-  off_place_[at_row] = n.dot(r.place - p.R * parts_[static_cast<std::size_t>(body)].start_place);
-  off_velocity_[at_row] = n.dot(r.v);
+  off_place_[at_row] += n.dot(r.place - p.R * parts_[static_cast<std::size_t>(body)].start_place);
+  off_velocity_[at_row] += n.dot(r.v);
   rows_ += 1;
 }
 
@@ -262,17 +318,17 @@ void Tree::add_rotation(int body, const Relative& r, const Motion& guide, const 
   const auto N = static_cast<Eigen::Index>(6 * poses_.size());
   const Eigen::Index row = N + rows_;
   const int index = parents_[static_cast<std::size_t>(body)];
-  matrix_.block<1, 3>(row, 6 * body + 3) = n.transpose();
+  matrix_.block<1, 3>(row, 6 * body + 3) += n.transpose();
   const Pose& p = parent(body);
-  right_[row] = n.dot(p.w.cross(poses_[static_cast<std::size_t>(body)].w)) - extra;
+  right_[row] += n.dot(p.w.cross(poses_[static_cast<std::size_t>(body)].w)) - extra;
   if (index >= 0) {
-    matrix_.block<1, 3>(row, 6 * index + 3) = -n.transpose();
+    matrix_.block<1, 3>(row, 6 * index + 3) -= n.transpose();
   } else {
     right_[row] += n.dot(guide.dw);
   }
   const auto at_row = static_cast<std::size_t>(rows_);
-  off_place_[at_row] = off;
-  off_velocity_[at_row] = n.dot(r.w) - speed;
+  off_place_[at_row] += off;
+  off_velocity_[at_row] += n.dot(r.w) - speed;
   rows_ += 1;
 }
 
@@ -282,23 +338,32 @@ void Tree::add_rows(int body, const Relative& r, const Motion& guide) {
   const bool stiff = part.held || kind == JointKind::prismatic;
   if (!part.held && kind == JointKind::free) return;
   const auto [first, second] = across(r.axis);
-  for (int i = 0; i < 3; ++i) {
-    if (!part.held && kind == JointKind::prismatic) continue;
-    add_translation(body, r, guide, Vec::Unit(i));
-  }
-  if (!part.held && kind == JointKind::prismatic) {
+  const bool slides_along =
+      kind == JointKind::prismatic || kind == JointKind::cylindrical || kind == JointKind::screw;
+  if (!part.held && kind == JointKind::planar) {
+    add_translation(body, r, guide, r.axis);
+  } else if (!part.held && slides_along) {
     add_translation(body, r, guide, first);
     add_translation(body, r, guide, second);
+  } else {
+    for (int i = 0; i < 3; ++i) add_translation(body, r, guide, Vec::Unit(i));
   }
   if (stiff) {
     const Vec off = turned_off(body, r);
     for (int i = 0; i < 3; ++i) add_rotation(body, r, guide, Vec::Unit(i), 0, off[i], 0);
-  } else if (kind == JointKind::revolute) {
+  } else if (is_hinge(kind)) {
     const Vec image = parent(body).R * (r.turn * part.axis);
     const Vec off = r.axis.cross(image);
     add_rotation(body, r, guide, first, 0, off.dot(first), 0);
     add_rotation(body, r, guide, second, 0, off.dot(second), 0);
     if (part.driven) add_rotation(body, r, guide, r.axis, 0, 0, part.speed);
+    if (kind == JointKind::screw) {
+      // One row: the advance less the pitch times the angle.
+      const Real turned = nearest_turn(angles_of(body, r).first, r.near);
+      add_translation(body, r, guide, r.axis);
+      rows_ -= 1;
+      add_rotation(body, r, guide, -part.pitch * r.axis, 0, -part.pitch * turned, 0);
+    }
   } else if (kind == JointKind::universal) {
     const Vec n = r.axis.cross(r.second_axis);
     const Real off = part.axis.dot(part.second_axis) - r.axis.dot(r.second_axis);
@@ -309,6 +374,8 @@ void Tree::add_rows(int body, const Relative& r, const Motion& guide) {
 void Tree::assemble(const Motion& guide) {
   matrix_.setZero();
   right_.setZero();
+  std::fill(off_place_.begin(), off_place_.end(), Real(0));
+  std::fill(off_velocity_.begin(), off_velocity_.end(), Real(0));
   rows_ = 0;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(6 * i);
@@ -329,6 +396,15 @@ void Tree::add_torque(int body, const Vec& torque) {
   right_.segment<3>(6 * body + 3) += torque;
   const int index = parents_[static_cast<std::size_t>(body)];
   if (index >= 0) right_.segment<3>(6 * index + 3) -= torque;
+}
+
+void Tree::add_force(int body, const Relative& r, const Vec& force) {
+  right_.segment<3>(6 * body) += force;
+  right_.segment<3>(6 * body + 3) += r.arm.cross(force);
+  const int index = parents_[static_cast<std::size_t>(body)];
+  if (index < 0) return;
+  right_.segment<3>(6 * index) -= force;
+  right_.segment<3>(6 * index + 3) -= r.reach.cross(force);
 }
 
 void Tree::add_load(const Load& load, int body, const Motion& guide) {
@@ -357,14 +433,17 @@ void Tree::add_joint_force(int body, const State& y) {
     const Real motor = b.rotor && b.rotor->mode == RotorMode::torque ? Real(b.rotor->torque) : 0;
     add_torque(body, (motor + force(0, y[part.angles], r.axis.dot(r.w))) * r.axis);
   } else if (b.kind == JointKind::prismatic) {
-    const Vec f = force(0, r.axis.dot(r.place), r.axis.dot(r.v)) * r.axis;
-    right_.segment<3>(6 * body) += f;
-    right_.segment<3>(6 * body + 3) += r.arm.cross(f);
-    const int index = parents_[static_cast<std::size_t>(body)];
-    if (index >= 0) {
-      right_.segment<3>(6 * index) -= f;
-      right_.segment<3>(6 * index + 3) -= r.reach.cross(f);
-    }
+    add_force(body, r, force(0, r.axis.dot(r.place), r.axis.dot(r.v)) * r.axis);
+  } else if (b.kind == JointKind::cylindrical) {
+    add_torque(body, force(0, y[part.angles], r.axis.dot(r.w)) * r.axis);
+    add_force(body, r, force(1, r.axis.dot(r.place), r.axis.dot(r.v)) * r.axis);
+  } else if (b.kind == JointKind::planar) {
+    const auto [first, second] = plane_of(body, r);
+    add_force(body, r, force(0, first.dot(r.place), first.dot(r.v)) * first);
+    add_force(body, r, force(1, second.dot(r.place), second.dot(r.v)) * second);
+    add_torque(body, force(2, y[part.angles], r.axis.dot(r.w)) * r.axis);
+  } else if (b.kind == JointKind::screw) {
+    add_torque(body, force(0, y[part.angles], r.axis.dot(r.w)) * r.axis);
   } else if (b.kind == JointKind::universal) {
     // A torque in the plane of both axes that does the work of both forces.
     const Real c = r.axis.dot(r.second_axis);
@@ -436,10 +515,10 @@ void Tree::rates(Real t, const State& y, State& result) {
     result.segment<3>(k + 10) = R.transpose() * solution_.segment<3>(6 * i + 3);
     const Part& part = parts_[static_cast<std::size_t>(i)];
     const JointKind kind = scene_.bodies[static_cast<std::size_t>(i)].kind;
-    if (kind != JointKind::revolute && kind != JointKind::universal) continue;
+    if (angle_count(kind) == 0) continue;
     const Relative r = relative(i);
     const Real left = r.axis.dot(r.w);
-    if (kind == JointKind::revolute) {
+    if (is_hinge(kind)) {
       result[part.angles] = left;
       continue;
     }
@@ -482,7 +561,7 @@ void Tree::project(Real t, State& y) {
     y.segment<3>(k + 10) += R.transpose() * solution_.segment<3>(6 * i + 3);
     const Part& part = parts_[static_cast<std::size_t>(i)];
     const JointKind kind = scene_.bodies[static_cast<std::size_t>(i)].kind;
-    if (kind != JointKind::revolute && kind != JointKind::universal) continue;
+    if (angle_count(kind) == 0) continue;
     const auto [first, second] = angles_of(i, relative(i));
     y[part.angles] = nearest_turn(first, y[part.angles]);
     if (kind == JointKind::universal) {
@@ -505,9 +584,9 @@ Sizes Tree::sizes(Real t, const State& y) {
     sum.energy += part.mass * (b.v.squaredNorm() / 2 + g * b.x.norm()) + b.w.norm() * spin.norm();
     sum.momentum += part.mass * b.v.norm() * (1 + b.x.norm()) + spin.norm();
     for (std::size_t k = 0; k < body.stiffness.size(); ++k) {
-      const Real stretch = body.kind == JointKind::prismatic
-                               ? relative(static_cast<int>(i)).place.norm()
-                               : std::abs(y[part.angles + static_cast<Eigen::Index>(k)]);
+      const Eigen::Index angle = body.kind == JointKind::universal ? Eigen::Index(k) : 0;
+      Real stretch = angle_count(body.kind) > 0 ? std::abs(y[part.angles + angle]) : 0;
+      if (slides(body.kind)) stretch += relative(static_cast<int>(i)).place.norm();
       const Real whole = stretch + std::abs(at_or(body.rest, k));
       sum.energy += std::abs(Real(body.stiffness[k])) * whole * whole;
     }
@@ -573,9 +652,26 @@ JointValues Tree::values(Real t, const State& y) {
     switch (scene_.bodies[static_cast<std::size_t>(i)].kind) {
       case JointKind::fixed: break;
       case JointKind::revolute:
+      case JointKind::screw:
         put(y[part.angles]);
         put(left);
         break;
+      case JointKind::cylindrical:
+        put(y[part.angles]);
+        put(r.axis.dot(r.place));
+        put(left);
+        put(r.axis.dot(r.v));
+        break;
+      case JointKind::planar: {
+        const auto [first, second] = plane_of(i, r);
+        put(first.dot(r.place));
+        put(second.dot(r.place));
+        put(y[part.angles]);
+        put(first.dot(r.v));
+        put(second.dot(r.v));
+        put(left);
+        break;
+      }
       case JointKind::prismatic:
         put(r.axis.dot(r.place));
         put(r.axis.dot(r.v));

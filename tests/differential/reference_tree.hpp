@@ -10,8 +10,8 @@ namespace differential::reference {
 /// The bodies of a scene in a frame that does not turn, with the guide's origin as its origin.
 ///
 /// State  : that of the guide; of each body place of the centre of mass, attitude (x, y, z, w),
-///          velocity, and angular velocity on body axes; angles of revolute and universal joints,
-///          for whole turns count in springs
+///          velocity, and angular velocity on body axes; angles of joints about axes, for whole
+///          turns count in springs and on screws
 /// Method : M a + J^t l = f, J a = g, solved as one system; g from differentiating each joint's
 ///          conditions twice
 class Tree {
@@ -38,9 +38,10 @@ class Tree {
     Real mass = 0;
     Vec centre = Vec::Zero();
     Mat inertia = Mat::Zero();
-    Mat zero = Mat::Identity();  ///< the body's axes at zero coordinates, in the parent's
-    Vec axis = Vec::Zero();      ///< unit vectors on the parent's axes
-    Vec second_axis = Vec::Zero();
+    Mat zero = Mat::Identity();     ///< the body's axes at zero coordinates, in the parent's
+    Vec axis = Vec::Zero();         ///< unit vectors on the parent's axes
+    Vec second_axis = Vec::Zero();  ///< of a planar joint the first direction in its plane
+    Real pitch = 0;
     Vec position = Vec::Zero();
     Vec start_place = Vec::Zero();  ///< of the joint's start, on the parent's axes
     Mat start_turn = Mat::Identity();
@@ -68,6 +69,7 @@ class Tree {
     Mat turn;  ///< parent's axes from the body's, divided by `zero`
     Vec axis;
     Vec second_axis;
+    Real near = 0;  ///< the state's first angle of the joint
   };
 
   void read(const State& y, const Motion& guide);
@@ -84,10 +86,13 @@ class Tree {
   void add_forces(Real t, const State& y, const Motion& guide);
   void add_joint_force(int body, const State& y);
   void add_torque(int body, const Vec& torque);
+  void add_force(int body, const Relative& r, const Vec& force);
   void add_load(const Load& load, int body, const Motion& guide);
   void solve();
   [[nodiscard]] Vec turned_off(int body, const Relative& r) const;
   [[nodiscard]] std::pair<Real, Real> angles_of(int body, const Relative& r) const;
+  /// The directions of a planar joint, on inertial axes.
+  [[nodiscard]] std::pair<Vec, Vec> plane_of(int body, const Relative& r) const;
   void start_body(int body, State& y, std::vector<Pose>& poses);
 
   const Scene& scene_;
@@ -98,6 +103,7 @@ class Tree {
   // Data of one evaluation.
   Pose guide_pose_;
   std::vector<Pose> poses_;
+  std::vector<Real> first_angles_;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;
   State right_;
   State solution_;

@@ -138,7 +138,8 @@ std::string joint(const Body& body) {
   Inline table;
   table.add("kind", "\"" + type.name + "\"");
   if (type.axis == Axis::required) table.add("axis", list(body.axis));
-  if (type.second_axis == Axis::required) table.add("second_axis", list(body.second_axis));
+  if (type.second_axis != Axis::none) table.add_vector("second_axis", body.second_axis);
+  if (type.has_pitch) table.add("pitch", text(body.pitch));
   table.add_vector("position", body.position);
   if (body.orientation) table.add("orientation", list(*body.orientation));
   return table.text();

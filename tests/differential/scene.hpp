@@ -89,7 +89,8 @@ struct Body {
   int parent = -1;  ///< -1: the guide
   JointKind kind = JointKind::revolute;
   Vector axis = Vector::UnitZ();
-  Vector second_axis = Vector::UnitX();
+  Vector second_axis = Vector::UnitX();  ///< 0: left out
+  double pitch = 0.1;
   Vector position = Vector::Zero();
   std::optional<Eigen::Vector4d> orientation = {};  ///< w, x, y, z
   double mass = 1;
