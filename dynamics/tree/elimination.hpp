@@ -51,9 +51,28 @@ inline void factor(const BodyTree& tree, const Link& link, FactoredSymmetric3<>&
   return {dot(x, m.solve(x)), dot(y, by_y), dot(z, by_z), dot(x, by_y), dot(x, by_z), dot(y, by_z)};
 }
 
+/// Eliminates a screw joint, which moves its link by  S = (s; pitch s).
+[[gnu::noinline]] inline void eliminate_screw(const BodyTree& tree, const Link& link,
+                                              const Vector3<double>& s, const Size& size,
+                                              ArticulatedInertia& A, SingleElimination& e) {
+  const Vector3<double> slide = link.pitch * s;
+  e.U.resultant = A.linear * slide + transposed_product(A.mixed, s);
+  e.U.moment = multiply(A.mixed, slide) + A.angular * s;
+  const double resistance = dot(s, e.U.moment) + dot(slide, e.U.resultant);
+  if (resistance <= rounding(size.angular + link.pitch * link.pitch * size.linear)) {
+    refuse_singular(tree, link, "the screw motion about", s);
+  }
+  e.inverse = 1 / resistance;
+  take_square(A, e.U, e.inverse);
+}
+
 /// Eliminates a joint with one coordinate from the inertia A of its link.
 inline void eliminate_single(const BodyTree& tree, const Link& link, const Vector3<double>& s,
                              const Size& size, ArticulatedInertia& A, SingleElimination& e) {
+  if (link.kind == LinkKind::screw) {
+    eliminate_screw(tree, link, s, size, A, e);
+    return;
+  }
   const bool turns = link.kind == LinkKind::revolute;
   if (turns) {
     e.U.resultant = {A.mixed(0, 0) * s[0] + A.mixed(1, 0) * s[1] + A.mixed(2, 0) * s[2],
@@ -67,21 +86,6 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
   const double resistance = dot(s, turns ? e.U.moment : e.U.resultant);
   if (resistance <= rounding(turns ? size.angular : size.linear)) {
     refuse_singular(tree, link, turns ? "the rotation about" : "the displacement along", s);
-  }
-  e.inverse = 1 / resistance;
-  take_square(A, e.U, e.inverse);
-}
-
-/// The same of a screw joint, which moves its link by  S = (s; pitch s).
-[[gnu::noinline]] inline void eliminate_screw(const BodyTree& tree, const Link& link,
-                                              const Vector3<double>& s, const Size& size,
-                                              ArticulatedInertia& A, SingleElimination& e) {
-  const Vector3<double> slide = link.pitch * s;
-  e.U.resultant = A.linear * slide + transposed_product(A.mixed, s);
-  e.U.moment = multiply(A.mixed, slide) + A.angular * s;
-  const double resistance = dot(s, e.U.moment) + dot(slide, e.U.resultant);
-  if (resistance <= rounding(size.angular + link.pitch * link.pitch * size.linear)) {
-    refuse_singular(tree, link, "the screw motion about", s);
   }
   e.inverse = 1 / resistance;
   take_square(A, e.U, e.inverse);
@@ -119,10 +123,8 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
   if (link.moved_by_forces()) {
     size.linear = std::max(size.linear, trace(A.linear));
     size.angular = std::max(size.angular, trace(A.angular));
-    if (link.kind == LinkKind::revolute || link.kind == LinkKind::prismatic) {
+    if (link.has_one_rate()) {
       eliminate_single(tree, link, pose.axis, size, A, w.single[i]);
-    } else if (link.kind == LinkKind::screw) {
-      eliminate_screw(tree, link, pose.axis, size, A, w.single[i]);
     } else {
       eliminate_ball(tree, link, size, A, w.ball[static_cast<std::size_t>(link.factor)]);
       if (link.kind == LinkKind::free) return;

@@ -82,8 +82,8 @@ template <class S>
     p.axis = multiply(parent.R, link.axis);
     const S x = link.pitch * q[link.q];
     offset += Vector3<S>(x * a.x(), x * a.y(), x * a.z());
+    if (link.kind == LinkKind::screw) turn_by_angle(link, q[link.q], still);
   }
-  if (link.kind == LinkKind::screw) turn_by_angle(link, q[link.q], still);
   if (link.kind == LinkKind::free) offset += three(q + link.q + 4);
   if (coordinate_count(link.kind) >= 4) {
     Matrix3<S> turned;

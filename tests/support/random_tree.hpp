@@ -20,8 +20,12 @@ inline InertiaTensor<Body> random_inertia(Sample& sample) {
 }
 
 inline Joint random_joint(Sample& sample, JointKind kind) {
-  return {kind, sample.direction(), sample.direction(), 0.5 * sample.direction(),
-          Eigen::Quaterniond(sample.rotation()), sample.uniform(-0.5, 0.5)};
+  return {kind,
+          sample.direction(),
+          sample.direction(),
+          0.5 * sample.direction(),
+          Eigen::Quaterniond(sample.rotation()),
+          sample.uniform(-0.5, 0.5)};
 }
 
 inline JointKind random_kind(Sample& sample) {
