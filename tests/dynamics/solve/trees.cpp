@@ -129,14 +129,17 @@ BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
             error, distance(Scene::to_vector(found.states[i]), Scene::to_vector(truth.states[i])));
       }
       const double ratio = error / found.report.error_estimate;
-      runs += 1;
-      within += ratio >= 0.1 && ratio <= 1 ? 1 : 0;
+      // Below that it is rounding that is told, in trees that hardly move.
+      const bool by_steps = found.report.error_estimate > 1e-13;
+      runs += by_steps ? 1 : 0;
+      within += by_steps && ratio >= 0.1 && ratio <= 1 ? 1 : 0;
       greatest = test::worst_of(greatest, ratio);
       BOOST_TEST(found.report.tolerance_kept, "tree " << seed << " to " << tolerance);
       BOOST_TEST(error <= tolerance, "tree " << seed << " to " << tolerance << ": " << error);
     }
   }
   BOOST_TEST_MESSAGE(within << " of " << runs << " in [0.1, 1], greatest " << greatest);
+  BOOST_TEST(runs >= 140);
   BOOST_TEST(within >= 0.95 * runs);
   BOOST_TEST(greatest <= 3);
 }
