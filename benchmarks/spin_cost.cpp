@@ -333,7 +333,7 @@ void draw(const std::string& directory, const std::vector<Point>& points) {
               "1e-9 rad'\n");
   picture("technical",
           by_momentum +
-              "set title 'Technical equations over 1 s, from the precession'\n"
+              "set title 'Precession equations over 1 s, from the precession'\n"
               "set ylabel 'error, rad'; set key top right; set yrange [1e-16:1]\n"
               "plot $t using 1:4 lt 3 dt 2 title 'bound', $t using 1:3 lt 1 title 'true', 1e-9 lw "
               "1 lc rgb '#888888' title 'wanted'\n");
