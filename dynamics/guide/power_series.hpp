@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <dynamics/guide/series.hpp>
 
@@ -33,6 +34,15 @@ class PowerSeries {
     PowerSeries result(t);
     result.order_ = order;
     result[1] = h;
+    return result;
+  }
+
+  /// The series up to `order` with the coefficients that `coefficient(k)` returns.
+  template <class Coefficient>
+  [[nodiscard]] static PowerSeries of(int order, const Coefficient& coefficient) {
+    PowerSeries result;
+    result.order_ = order;
+    for (int k = 0; k <= order; ++k) result[k] = coefficient(static_cast<std::size_t>(k));
     return result;
   }
 

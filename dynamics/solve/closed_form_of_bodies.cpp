@@ -22,6 +22,7 @@ namespace kreisel::detail {
   for (const JointForce& force : tree.forces()) {
     if (force.stiffness != 0 || force.damping != 0 || force.constant != 0) return nullptr;
   }
+  if (!tree.timed_forces().empty()) return nullptr;
   return &tree.body(0);
 }
 

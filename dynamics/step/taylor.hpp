@@ -91,6 +91,7 @@ class TaylorSteps {
     if (end == t()) return;
     const double goal = detail::next_stop(t(), end, jumps_);
     const double left = (goal - time_.value) - time_.rest;
+    here_ = detail::on_this_side(t(), goal, jumps_);
     expand(std::abs(left));
     before_ = {time_, state_};
     doubted_ = {};
@@ -106,7 +107,8 @@ class TaylorSteps {
     const double h = leader.time_.value - leader.before_.time.value;
     scale_ = leader.scale_;
     coefficient_.col(0) = y();
-    series_(t(), scale_, order_, coefficient_);
+    here_ = detail::on_this_side(t(), leader.t(), jumps_);
+    series_(here_, scale_, order_, coefficient_);
     effort_.evaluations += order_;
     before_ = {time_, state_};
     take(h, change(h / scale_));
@@ -202,7 +204,7 @@ class TaylorSteps {
     scale_ = next_scale_ == 0 ? first_scale() : next_scale_;
     for (int i = 0; i < most_tries; ++i) {
       scale_ = std::min(scale_, left);
-      series_(t(), scale_, order_, coefficient_);
+      series_(here_, scale_, order_, coefficient_);
       effort_.evaluations += order_;
       if (!detail::finite(coefficient_)) {
         scale_ /= farthest;
@@ -227,7 +229,7 @@ class TaylorSteps {
   /// Puts the rate of the state into the probe.
   void require_finite_field() {
     probe_.col(0) = y();
-    series_(t(), 1, 1, probe_);
+    series_(here_, 1, 1, probe_);
     effort_.evaluations += 1;
     if (!detail::finite(Vector(probe_.col(1)))) {
       detail::stop_integration(t(), "the field is not finite");
@@ -343,7 +345,7 @@ class TaylorSteps {
     Vector start = before_.state.value;
     detail::move_last_digits(start, 1);
     probe_.col(0) = start;
-    series_(before_.time.value, scale_, 1, probe_);
+    series_(here_, scale_, 1, probe_);
     effort_.evaluations += 1;
     const Vector apart = (probe_.col(1) - coefficient_.col(1)) / scale_;
     if (!detail::finite(apart)) return;
@@ -360,6 +362,7 @@ class TaylorSteps {
   detail::Compensated<Vector> state_;
   detail::BlockSizes<Vector> sizes_;
   std::vector<double> jumps_;
+  double here_ = 0;  ///< where the last step began, on its side of a jump
   Begin before_;
   Coefficients coefficient_;  ///< of the last step, in powers of its time over scale_
   Coefficients probe_;        ///< only for the field, in its columns 0 and 1

@@ -45,6 +45,9 @@ class PrecessionBodies final : public PrecessionModel {
       if (!rotor.regulated() && tree.forces()[v].damping != 0) {
         refuse(rotor.link.body, "is a rotor with friction");
       }
+      if (tree.forces()[v].in_time) {
+        refuse(rotor.link.body, "is a rotor with a torque that changes with time");
+      }
     }
     for (int k = 0; k < tree.rates(); ++k) {
       if (!spins[static_cast<std::size_t>(k)]) rates_.push_back(k);

@@ -150,6 +150,7 @@ class BodySystem {
     detail::project(tree_, d, taken.data());
     detail::project_rotors(tree_, dv, d, taken.data());
     detail::set_joint_forces(tree_, y.data(), v, d);
+    detail::add_timed_forces(tree_, t, d);
 
     Vector left(tree_.rates());
     for (Eigen::Index k = 0; k < Dual().derivatives().size(); ++k) {

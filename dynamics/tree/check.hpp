@@ -141,7 +141,7 @@ inline void check_rotor(const BodyDescription& b) {
   }
   for (const JointForce& f : b.forces) {
     if (f.stiffness != 0) refuse("a spring turns it by its angle");
-    if (rotor.mode == RotorMode::free && (f.damping != 0 || f.constant != 0)) {
+    if (rotor.mode == RotorMode::free && (f.damping != 0 || f.constant != 0 || f.in_time)) {
       refuse("a joint force changes the momentum of a free one, take the mode torque");
     }
   }

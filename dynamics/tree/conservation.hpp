@@ -114,7 +114,7 @@ enum class EnergyLaw {
     if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
     const bool has_attitude = joint_type(b.joint.kind).has_attitude();
     const auto takes = [has_attitude](const JointForce& f) {
-      return f.damping != 0 || (has_attitude && f.constant != 0);
+      return f.damping != 0 || f.in_time || (has_attitude && f.constant != 0);
     };
     return b.rule == JointRule::constant_rate ||
            std::any_of(b.forces.begin(), b.forces.end(), takes) ||
@@ -197,7 +197,7 @@ struct RootedPart {
   if (!link.moved_by_forces()) return false;
   const auto first = tree.forces().begin() + link.v;
   return std::all_of(first, first + rate_count(link.kind), [](const JointForce& f) {
-    return f.stiffness == 0 && f.damping == 0 && f.constant == 0;
+    return f.stiffness == 0 && f.damping == 0 && f.constant == 0 && !f.in_time;
   });
 }
 

@@ -14,12 +14,14 @@
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/signal/signal.hpp>
 #include <dynamics/tree/joint/joint.hpp>
 
 namespace kreisel {
 
-/// A joint force that follows one coordinate q or rate:  constant - stiffness (q - rest) - damping
-/// q'. A quaternion and a free place have no spring, for they have no single coordinate to pull at.
+/// A joint force that follows one coordinate q or rate:  constant + in_time(t) - stiffness (q - rest)
+/// - damping q'. A quaternion and a free position have no spring, because no single coordinate
+/// measures their displacement.
 ///
 /// Units  : N m/rad and N m s/rad, or N/m and N s/m; rad or m; N m or N
 struct JointForce {
@@ -27,6 +29,7 @@ struct JointForce {
   double rest = 0;
   double damping = 0;
   double constant = 0;
+  std::optional<Signal<double>> in_time = std::nullopt;
 };
 
 /// What rules the motion in a joint.

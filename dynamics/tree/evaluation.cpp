@@ -103,8 +103,11 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
                 const Eigen::VectorXd& extra, double* result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses_and_motions(tree, root(now), y.data(), v, nullptr, w);
-  take_off_loads(tree, now.t, now.guide, v, w);
   set_joint_forces(tree, y.data(), v, w);
+  if (tree.is_acted_on()) {
+    take_off_loads(tree, now.t, now.guide, v, w);
+    add_timed_forces(tree, now.t, w);
+  }
   if (extra.size()) w.joint_force += extra;
   ask_spin_up(tree, now.t, w);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
@@ -138,6 +141,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   project(tree, w, result.data());
   project_rotors(tree, given, w, result.data());
   set_joint_forces(tree, y.data(), v, w);
+  add_timed_forces(tree, now.t, w);
   result -= w.joint_force;
 }
 
@@ -211,6 +215,7 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   answer(tree, weight, still, nullptr, y, w);
   note(&ReactionParts::gravity);
   set_joint_forces(tree, y.data(), v, w);
+  add_timed_forces(tree, now.t, w);
   answer(tree, {}, still, &now, y, w);
   note(&ReactionParts::forces);
 }

@@ -103,13 +103,21 @@ void set_coordinate_rates(const BodyTree& tree, const S* q, const S* v, S* resul
   for (const RotorLink& rotor : tree.rotors()) result[rotor.link.q] = v[rotor.link.v];
 }
 
-/// The forces of springs, dampers and constant joint forces.
+/// The forces of springs, dampers and constant joint forces, without those that change with time.
 template <class S>
 void set_joint_forces(const BodyTree& tree, const S* q, const S* v, MotionSpace<S>& w) {
   for (std::size_t k = 0; k < tree.forces().size(); ++k) {
     const JointForce& f = tree.forces()[k];
     w.joint_force[static_cast<Eigen::Index>(k)] =
         f.constant - f.stiffness * (q[tree.coordinate_of()[k]] - f.rest) - f.damping * v[k];
+  }
+}
+
+/// Adds the joint forces that change with time.
+template <class S>
+void add_timed_forces(const BodyTree& tree, const S& t, MotionSpace<S>& w) {
+  for (const BodyTree::TimedForce& force : tree.timed_forces()) {
+    w.joint_force[force.rate] += force.signal(t);
   }
 }
 

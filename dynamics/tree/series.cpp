@@ -83,6 +83,7 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
       workspace_(tree),
       left_(Eigen::VectorXd::Zero(tree.rates())),
       still_(Eigen::VectorXd::Zero(tree.rates())),
+      timed_(tree.timed_forces().size()),
       branches_(tree.links().size()),
       balls_(static_cast<std::size_t>(tree.balls())),
       spins_(tree.rotors().size()),
@@ -118,7 +119,7 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
       for (int j = 3; b.floats && j < 6; ++j) {
         const int rate = link.v + j;
         const JointForce& f = tree.forces()[static_cast<std::size_t>(rate)];
-        b.is_braked = b.is_braked || f.damping != 0 || f.constant != 0;
+        b.is_braked = b.is_braked || f.damping != 0 || f.constant != 0 || f.in_time;
       }
     }
     if (link.moves() && link.pitch != 0) {
@@ -152,6 +153,9 @@ void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::Mat
   c.col(1) = h * rate_;
   if (order == 1) return;
   const GuideSeries felt = felt_(t, h, order);
+  for (std::size_t j = 0; j < timed_.size(); ++j) {
+    tree_.timed_forces()[j].signal.coefficients(t, h, timed_[j]);
+  }
   begin(c);
   prepare_response();
   const double* dv = rate_.data() + tree_.coordinates();
@@ -433,6 +437,9 @@ void TreeSeries::set_left(int k, const Columns& c) {
     const JointForce& f = tree_.forces()[number];
     left_[i] = -f.stiffness * c(tree_.coordinate_of()[number], k) -
                f.damping * c(tree_.coordinates() + i, k);
+  }
+  for (std::size_t j = 0; j < timed_.size(); ++j) {
+    left_[tree_.timed_forces()[j].rate] += timed_[j][static_cast<std::size_t>(k)];
   }
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     const Branch& b = branches_[i];

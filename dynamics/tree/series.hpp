@@ -195,6 +195,7 @@ class KREISEL_API TreeSeries {
   Felt felt_;
   BodyWorkspace workspace_;
   Eigen::VectorXd y_, rate_, left_, still_;
+  std::vector<Of<double>> timed_;  ///< joint forces that change with time
   std::vector<Branch> branches_;
   std::vector<Slider> sliders_;
   std::vector<Ball> balls_;

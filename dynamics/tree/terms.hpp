@@ -48,6 +48,7 @@ namespace kreisel::detail {
   in_joints("springs in joints", &JointForce::stiffness);
   in_joints("dampers in joints", &JointForce::damping);
   in_joints("constant forces in joints", &JointForce::constant);
+  if (!tree.timed_forces().empty()) list.add("load", "forces in joints that change with time");
   list.add("load", "loads on bodies", has_loads, has_loads ? "" : "none is given");
   list.add("load", "R_ij of the joints", false, "eliminated; reactions() has them");
   return list;

@@ -142,6 +142,11 @@ void BodyTree::append(int body) {
   std::copy(b.forces.begin(), b.forces.end(),
             forces_.begin() + static_cast<std::ptrdiff_t>(before));
   if (b.rotor) forces_.back().constant += b.rotor->torque;
+  for (std::size_t k = before; k < forces_.size(); ++k) {
+    const auto& signal = forces_[k].in_time;
+    if (signal) timed_forces_.push_back({static_cast<int>(k), *signal});
+  }
+  is_acted_on_ = is_acted_on_ || !b.loads.empty() || !timed_forces_.empty();
 }
 
 void BodyTree::weld(detail::Link& link) {

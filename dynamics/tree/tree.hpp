@@ -32,6 +32,12 @@ class KREISEL_API BodyTree {
   [[nodiscard]] const std::vector<detail::Link>& links() const { return links_; }
   [[nodiscard]] const std::vector<detail::RotorLink>& rotors() const { return rotors_; }
   [[nodiscard]] const std::vector<JointForce>& forces() const { return forces_; }
+  /// The part of a joint force that changes with time.
+  struct TimedForce {
+    int rate;
+    Signal<double> signal;
+  };
+  [[nodiscard]] const std::vector<TimedForce>& timed_forces() const { return timed_forces_; }
   /// The coordinate that the spring of each joint force follows.
   [[nodiscard]] const std::vector<int>& coordinate_of() const { return coordinate_of_; }
   [[nodiscard]] int coordinates() const { return coordinates_; }
@@ -47,6 +53,9 @@ class KREISEL_API BodyTree {
 
   /// The bodies that have loads.
   [[nodiscard]] const std::vector<int>& loaded() const { return loaded_; }
+
+  /// Whether there are loads or joint forces that change with time.
+  [[nodiscard]] bool is_acted_on() const { return is_acted_on_; }
 
   /// Links and, after them, rotors: for how many things a workspace has room.
   [[nodiscard]] std::size_t slots() const { return links_.size() + rotors_.size(); }
@@ -81,12 +90,14 @@ class KREISEL_API BodyTree {
   std::vector<std::size_t> last_link_;
   std::vector<int> loaded_;
   std::vector<JointForce> forces_;
+  std::vector<TimedForce> timed_forces_;
   std::vector<int> coordinate_of_;
   std::vector<int> coordinate_blocks_;
   std::vector<int> rate_blocks_;
   int coordinates_ = 0;
   int rates_ = 0;
   int balls_ = 0;
+  bool is_acted_on_ = false;
 };
 
 }  // namespace kreisel
