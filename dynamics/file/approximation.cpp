@@ -176,6 +176,10 @@ class Approximation final : public SceneSolver {
 
 std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
                                                 std::unique_ptr<SceneSolver> exact) {
+  if (scene.model != SceneModel::exact && !scene.discontinuities.empty()) {
+    throw InvalidInput("model '" + std::string(name(scene.model)) +
+                       "' is for forces that do not jump; take model 'exact'");
+  }
   switch (scene.model) {
     case SceneModel::linear:
       return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));

@@ -62,6 +62,7 @@ void check_joints(const SceneFile& scene, const Refusal& refuse) {
     for (const JointForce& force : body.forces) {
       if (!rotor && force.rest != 0) refuse(body, "has a spring that is not slack at 0");
       if (!regulated && force.constant != 0) refuse(body, "has a constant force");
+      if (force.in_time) refuse(body, "has a force that changes with time");
       if (rotor && !regulated && (force.stiffness != 0 || force.damping != 0)) {
         refuse(body, "is a rotor that spring or friction slows down");
       }

@@ -89,6 +89,7 @@ class Beside {
     SolveOptions options;
     options.output_times = {run_.times.back()};
     options.tolerance = tolerance;
+    options.discontinuities = scene.discontinuities;
     options.method = method_named(run_.report.method).value_or(Method::automatic);
     const auto beside = other->solve(
         options, start_of(scene), [](double, const JointState&) { return true; }, interrupted_);

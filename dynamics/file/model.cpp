@@ -14,6 +14,7 @@ SolveOptions options_of(const SceneFile& scene) {
   if (options.output_times.empty() || options.output_times.back() < scene.t_end) {
     options.output_times.push_back(scene.t_end);
   }
+  options.discontinuities = scene.discontinuities;
   options.tolerance = scene.tolerance;
   options.method = scene.method;
   return options;

@@ -9,9 +9,11 @@
 #include <dynamics/file/rates_log.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/scene_section.hpp>
+#include <dynamics/file/scene_signal.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/load/signal_load.hpp>
 #include <dynamics/tree/joint/list.hpp>
 #include <motor/error.hpp>
 
@@ -61,6 +63,7 @@ class SceneReader {
     give_gravity_to_rates();
     read_bodies();
     read_report();
+    put_discontinuities_in_order();
     root_.finish();
     mistakes_.throw_any();
     return std::move(scene_);
@@ -160,6 +163,22 @@ class SceneReader {
     }
   }
 
+  /// What of a signal concerns the run.
+  template <class Value>
+  void note(const Signal<Value>& signal) {
+    if (signal.is_constant()) return;
+    scene_.forces_change = true;
+    for (const double t : signal.discontinuities()) {
+      if (t > 0 && t <= scene_.t_end) scene_.discontinuities.push_back(t);
+    }
+  }
+
+  void put_discontinuities_in_order() {
+    auto& times = scene_.discontinuities;
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+  }
+
   void read_guide() {
     if (!root_.has("guide")) {
       scene_.guide.emplace_back(scene_guide::Resting{});
@@ -171,7 +190,7 @@ class SceneReader {
 
   void read_links(Section& guide, int depth) {
     const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth",
-                                         "table",    "rates",    "chain"};
+                                         "table",    "rates",    "motion",   "chain"};
     const std::string kind =
         depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
     if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
@@ -203,6 +222,7 @@ class SceneReader {
     if (kind == "earth") read_earth(guide);
     if (kind == "table") read_table(guide);
     if (kind == "rates") read_rates(guide);
+    if (kind == "motion") read_motion(guide);
     if (kind == "chain") {
       constexpr int deepest = 8;
       if (!guide.has("links")) guide.refuse_missing("links");
@@ -299,6 +319,30 @@ class SceneReader {
       guide.refuse(key, text.substr(text.find("= ") + 2));
     }
     scene_.guide.emplace_back(std::move(link));
+  }
+
+  void read_motion(Section& guide) {
+    PoseSignals pose;
+    const auto take = [](Section& from, const std::string& key, const auto& signal, auto& to) {
+      if (!signal) return;
+      const auto jumps = signal->discontinuities();
+      if (!jumps.empty()) {
+        from.refuse(from.has(key) ? key : key + "_deg",
+                    "jumps, or its rate does, at t = " + shown_time(jumps.front()) +
+                        " s, which takes an infinite force; give 'constant', 'rate' and 'terms'");
+        return;
+      }
+      to = *signal;
+    };
+    if (!guide.has("position") && !guide.has("angles")) guide.refuse_missing("position");
+    take(guide, "position", detail::read_signal<Vector3<double>>(guide, "position"), pose.position);
+    if (auto angles = guide.section("angles")) {
+      take(*angles, "yaw", detail::read_angle_signal(*angles, "yaw"), pose.yaw);
+      take(*angles, "pitch", detail::read_angle_signal(*angles, "pitch"), pose.pitch);
+      take(*angles, "roll", detail::read_angle_signal(*angles, "roll"), pose.roll);
+      angles->finish();
+    }
+    scene_.guide.emplace_back(scene_guide::Motion{std::move(pose)});
   }
 
   /// A log's file and how to read it; nothing where that is wrong.
@@ -637,7 +681,19 @@ class SceneReader {
     }
   }
 
-  static void read_forces(Section& section, BodyDescription& body) {
+  void read_given_forces(Section& section, std::vector<JointForce>& forces) {
+    const auto signals = detail::read_signals(section, "force", forces.size());
+    for (std::size_t k = 0; k < signals.size(); ++k) {
+      note(signals[k]);
+      if (signals[k].is_constant()) {
+        forces[k].constant = signals[k](0.0);
+      } else {
+        forces[k].in_time = signals[k];
+      }
+    }
+  }
+
+  void read_forces(Section& section, BodyDescription& body) {
     const bool asked = section.has("spring") || section.has("damping") || section.has("force");
     if (!asked) return;
     const JointType& type = joint_type(body.joint.kind);
@@ -672,7 +728,7 @@ class SceneReader {
         set(&JointForce::rest, slides ? values(*spring, "rest") : spring->angle_or_list("rest", n));
         spring->finish();
       }
-      set(&JointForce::constant, values(section, "force"));
+      read_given_forces(section, forces);
     }
     const auto damping = values(section, "damping");
     if (damping && *std::min_element(damping->begin(), damping->end()) < 0) {
@@ -725,12 +781,12 @@ class SceneReader {
     std::copy(numbers->begin(), numbers->end(), at);
   }
 
-  static void read_rotor(Section& section, BodyDescription& body, JointStart& start) {
+  void read_rotor(Section& section, BodyDescription& body, JointStart& start) {
     auto rotor = section.section("rotor");
     if (!rotor) return;
     const std::string mode = rotor->required_choice("mode", {"free", "regulated", "torque"});
-    const auto speed = rotor->angle("speed");
-    const auto torque = rotor->number("torque");
+    const auto speed = detail::read_angle_signal(*rotor, "speed");
+    const auto torque = detail::read_signal<double>(*rotor, "torque");
     rotor->finish();
     if (body.joint.kind != JointKind::revolute) {
       section.refuse("rotor", "is for a revolute joint");
@@ -741,31 +797,71 @@ class SceneReader {
       if (section.has(key) && !off) section.refuse(key, "does not go with a rotor");
     }
     const double rate = start.rates.front();
-    if (speed && rate != 0 && *speed != rate) rotor->refuse("speed", "differs from initial.rate");
-    if (!speed && rate == 0 && mode != "torque") rotor->refuse_missing("speed");
-    if (speed) start.rates.front() = *speed;
-    if (torque && *torque != 0 && mode != "torque") {
-      rotor->refuse("torque", "is for mode = 'torque'");
+    if (speed && rate != 0 && (*speed)(0.0) != rate) {
+      rotor->refuse("speed", "differs from initial.rate");
     }
+    if (!speed && rate == 0 && mode != "torque") rotor->refuse_missing("speed");
+    if (speed) start.rates.front() = (*speed)(0.0);
+    if (speed && !speed->is_constant()) check_speed(*rotor, *speed, mode, body);
+    const bool acts = torque && !(torque->is_constant() && (*torque)(0.0) == 0);
+    if (acts && mode != "torque") rotor->refuse("torque", "is for mode = 'torque'");
     if (!torque && mode == "torque") rotor->refuse_missing("torque");
-    if (check_balance(section, body)) set_rotor(body, mode, torque.value_or(0));
+    if (!check_balance(section, body)) return;
+    set_rotor(body, mode);
+    if (torque) set_torque(*rotor, *torque, body);
+    if (speed) set_speed(*speed, body);
   }
 
-  static void set_rotor(BodyDescription& body, const std::string& mode, double torque) {
+  /// A speed that changes with time.
+  static void check_speed(Section& rotor, const Signal<double>& speed, const std::string& mode,
+                          const BodyDescription& body) {
+    const char* const key = rotor.has("speed") ? "speed" : "speed_deg";
+    if (mode != "regulated") {
+      rotor.refuse(key, "changes with time, which is for mode = 'regulated'");
+    } else if (!body.loads.empty()) {
+      rotor.refuse(key, "changes with time, which a rotor with a load cannot");
+    }
+    if (speed.jumps()) {
+      rotor.refuse(key, "jumps at t = " + shown_time(speed.discontinuities().front()) +
+                            " s, which takes an infinite torque; give 'points'");
+    }
+  }
+
+  static void set_rotor(BodyDescription& body, const std::string& mode) {
     if (!body.loads.empty()) {
       // A load may depend on the rotor's angle, so that it moves as any other body does.
       if (mode == "regulated") body.rule = JointRule::constant_rate;
-      if (body.forces.empty()) body.forces.resize(1);
-      body.forces.front().constant += torque;
       return;
     }
     const bool turned = std::any_of(body.forces.begin(), body.forces.end(), [](const auto& f) {
-      return f.damping != 0 || f.constant != 0;
+      return f.damping != 0 || f.constant != 0 || f.in_time;
     });
     body.rotor = Rotor{};
     if (mode == "regulated") body.rotor->mode = RotorMode::regulated;
     if (mode == "torque" || (mode == "free" && turned)) body.rotor->mode = RotorMode::torque;
-    body.rotor->torque = torque;
+  }
+
+  void set_torque(Section& rotor, const Signal<double>& torque, BodyDescription& body) {
+    note(torque);
+    if (body.rotor && torque.is_constant()) {
+      body.rotor->torque = torque(0.0);
+      return;
+    }
+    if (body.forces.empty()) body.forces.resize(1);
+    JointForce& force = body.forces.front();
+    if (torque.is_constant()) {
+      force.constant += torque(0.0);
+    } else if (force.in_time) {
+      rotor.refuse("torque", "changes with time beside 'force'; one of them may");
+    } else {
+      force.in_time = torque;
+    }
+  }
+
+  void set_speed(const Signal<double>& speed, BodyDescription& body) {
+    note(speed);
+    if (speed.is_constant() || !body.rotor) return;
+    body.rotor->acceleration = [speed](double t) { return speed.derivative(t, 1); };
   }
 
   /// Whether a rotor's mass lies evenly about its axis.
@@ -790,7 +886,7 @@ class SceneReader {
     return about > slack * trace || refuse("has no moment of inertia about its axis");
   }
 
-  static void read_loads(Section& section, BodyDescription& body) {
+  void read_loads(Section& section, BodyDescription& body) {
     const toml::node* const node = section.find("load");
     if (node == nullptr) return;
     std::vector<Section> loads;
@@ -802,14 +898,26 @@ class SceneReader {
     for (Section& load : loads) {
       if (!load.has("force") && !load.has("torque")) load.refuse_missing("force");
       const Vector3<double> zero = Vector3<double>::Zero();
-      const Vector3<double> force = load.vector("force").value_or(zero);
-      const Vector3<double> torque = load.vector("torque").value_or(zero);
+      const auto force = detail::read_signal<Vector3<double>>(load, "force").value_or(zero);
+      const auto torque = detail::read_signal<Vector3<double>>(load, "torque").value_or(zero);
       const Vector3<double> point = load.vector("point").value_or(zero);
       const std::string axes = load.choice("axes", {"body", "guide", "inertial"});
       load.finish();
-      if (axes == "body") body.loads.emplace_back(ConstantLoad<Body>{force, torque, point});
-      if (axes == "guide") body.loads.emplace_back(ConstantLoad<Guide>{force, torque, point});
-      if (axes == "inertial") body.loads.emplace_back(ConstantLoad<Inertial>{force, torque, point});
+      if (axes == "body") add_load<Body>(body, force, torque, point);
+      if (axes == "guide") add_load<Guide>(body, force, torque, point);
+      if (axes == "inertial") add_load<Inertial>(body, force, torque, point);
+    }
+  }
+
+  template <class Axes>
+  void add_load(BodyDescription& body, const Signal<Vector3<double>>& force,
+                const Signal<Vector3<double>>& torque, const Vector3<double>& point) {
+    note(force);
+    note(torque);
+    if (force.is_constant() && torque.is_constant()) {
+      body.loads.emplace_back(ConstantLoad<Axes>{force(0.0), torque(0.0), point});
+    } else {
+      body.loads.emplace_back(SignalLoad<Axes>{force, torque, point});
     }
   }
 

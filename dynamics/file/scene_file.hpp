@@ -10,6 +10,7 @@
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rates.hpp>
+#include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/guide/tabulated.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/tree/description.hpp>
@@ -65,7 +66,12 @@ struct Rates {
   LogSpline spline = {};
 };
 
-using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates>;
+/// Pose as a function of time.
+struct Motion {
+  PoseSignals pose = {};
+};
+
+using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates, Motion>;
 
 }  // namespace scene_guide
 
@@ -125,6 +131,8 @@ struct SceneFile {
   Method method = Method::automatic;
   SceneModel model = SceneModel::exact;
   std::vector<double> output_times;  ///< in order, within [0, t_end]
+  std::vector<double> discontinuities;  ///< when forces jump, in order, within (0, t_end]
+  bool forces_change = false;           ///< with time: loads, joint forces or speeds of rotors
   bool reactions = false;
   bool terms = false;
 

@@ -198,6 +198,60 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
   return values;
 }
 
+std::optional<std::vector<double>> Section::timed_row_in(const toml::node& node,
+                                                         const std::string& key,
+                                                         std::size_t width) {
+  const toml::array* const pair = node.as_array();
+  if (pair == nullptr || pair->size() != 2) {
+    const std::string value = width == 1 ? "value" : "[x, y, z]";
+    mistakes_->add(node.source(), key, "must be [time, " + value + "]");
+    return std::nullopt;
+  }
+  const auto time = number_in(*pair->get(0), key + "[0]", Range::any);
+  const toml::node& value = *pair->get(1);
+  std::optional<std::vector<double>> row;
+  if (width > 1) {
+    row = numbers_in(value, key + "[1]");
+    if (row && row->size() != width) {
+      mistakes_->add(
+          value.source(), key + "[1]",
+          "must be " + std::to_string(width) + " numbers, not " + std::to_string(row->size()));
+      return std::nullopt;
+    }
+  } else if (const auto number = number_in(value, key + "[1]", Range::any)) {
+    row = {*number};
+  }
+  if (!time || !row) return std::nullopt;
+  row->insert(row->begin(), *time);
+  return row;
+}
+
+std::optional<std::vector<std::vector<double>>> Section::timed_rows(std::string_view key,
+                                                                    std::size_t width) {
+  const toml::node* const node = find(key);
+  const toml::array* const list = node == nullptr ? nullptr : node->as_array();
+  if (list == nullptr || list->empty()) {
+    refuse(key, list == nullptr ? "must be a list of [time, value]" : "is empty");
+    return std::nullopt;
+  }
+  std::vector<std::vector<double>> rows;
+  bool good = true;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string name = path_to(key) + "[" + std::to_string(i) + "]";
+    auto row = timed_row_in(*list->get(i), name, width);
+    good = good && row;
+    if (!good) continue;
+    if (!rows.empty() && !(row->front() > rows.back().front())) {
+      mistakes_->add(list->get(i)->source(), name,
+                     "begins at " + shown(row->front()) + " s, not after " +
+                         shown(rows.back().front()) + " s, the time before it");
+      good = false;
+    }
+    rows.push_back(std::move(*row));
+  }
+  return good ? std::optional(rows) : std::nullopt;
+}
+
 template <class Read>
 std::optional<std::vector<double>> Section::in_radian(const std::string& key, const Read& read) {
   const std::string in_degrees = key + "_deg";

@@ -51,6 +51,12 @@ class Section {
   Section(const toml::table& table, std::string path, Mistakes& mistakes)
       : table_(&table), path_(std::move(path)), mistakes_(&mistakes) {}
 
+  /// A table in a list at a key.
+  [[nodiscard]] Section element(std::string_view key, std::size_t index,
+                                const toml::table& table) const {
+    return {table, path_to(key) + "[" + std::to_string(index) + "]", *mistakes_};
+  }
+
   [[nodiscard]] bool has(std::string_view key);
 
   /// Notes a mistake of the value at that key, or of the section where it has none.
@@ -77,6 +83,11 @@ class Section {
                                                                  std::size_t count);
   [[nodiscard]] std::optional<Vector3<double>> vector(std::string_view key);
   [[nodiscard]] Vector3<double> required_vector(std::string_view key);
+
+  /// A list of  [time, value],  value being one number or `width` in brackets: rows of the time and
+  /// the numbers. Times have to increase.
+  [[nodiscard]] std::optional<std::vector<std::vector<double>>> timed_rows(std::string_view key,
+                                                                           std::size_t width);
 
   /// One number as a list.
   [[nodiscard]] std::optional<std::vector<double>> single(std::string_view key);
@@ -115,6 +126,9 @@ class Section {
                                                 Range range);
   [[nodiscard]] std::optional<std::vector<double>> numbers_in(const toml::node& node,
                                                               const std::string& key);
+  [[nodiscard]] std::optional<std::vector<double>> timed_row_in(const toml::node& node,
+                                                                const std::string& key,
+                                                                std::size_t width);
   /// What `read` returns for the key, or for key_deg turned into radian.
   template <class Read>
   [[nodiscard]] std::optional<std::vector<double>> in_radian(const std::string& key,

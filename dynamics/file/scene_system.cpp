@@ -7,6 +7,7 @@
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/load/earth_gravitation.hpp>
 #include <dynamics/model/dual_numbers.hpp>
 
@@ -63,6 +64,9 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
                  },
                  [](const scene_guide::Rates& kind) -> SceneGuide {
                    return within(RatesFrame<>(kind.log, kind.start, kind.spline));
+                 },
+                 [](const scene_guide::Motion& kind) -> SceneGuide {
+                   return SignalFrame<>(kind.pose);
                  }},
       link);
 }

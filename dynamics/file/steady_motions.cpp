@@ -189,6 +189,14 @@ std::string changes(const SceneFile& scene) {
   if (has_link<scene_guide::Harmonic>(scene)) {
     return "the guide swings: the motions that stay repeat it";
   }
+  const auto moves = [](const scene_guide::Link& link) {
+    const auto* const motion = std::get_if<scene_guide::Motion>(&link);
+    return motion != nullptr && !motion->pose.is_constant();
+  };
+  if (std::any_of(scene.guide.begin(), scene.guide.end(), moves)) {
+    return "the guide moves as functions of time";
+  }
+  if (scene.forces_change) return "a force, a torque or a rotor's speed changes with time";
   return "";
 }
 

@@ -89,7 +89,8 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
 /// Whether a guide moves so that a body at rest on it has an energy: it rests or moves steadily.
 bool is_steady(const kreisel::SceneFile& scene) {
   using namespace kreisel::scene_guide;
-  return scene.guide.size() == 1 && !has_link<Harmonic>(scene) && !has_link<Table>(scene);
+  return scene.guide.size() == 1 && !has_link<Harmonic>(scene) && !has_link<Table>(scene) &&
+         !has_link<Motion>(scene);
 }
 
 /// Whether no force on the bodies at rest gives energy without end: all of it is gravity on guide

@@ -82,15 +82,9 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     const kreisel::SceneFile file =
         kreisel::parse_scene(scene.numbers.with(member.varied), request.scene, request.solve);
     const auto model = make_model(file);
-    kreisel::SolveOptions options;
-    options.output_times = file.output_times;
-    if (options.output_times.empty() || options.output_times.back() < file.t_end)
-      options.output_times.push_back(file.t_end);
-    options.tolerance = file.tolerance;
-    options.method = file.method;
     const auto ends = [&stop] { return stop || signals::caught() != 0; };
     const auto run = model->solve(
-        options, start_of(file), [&](double, const kreisel::JointState&) { return !ends(); }, ends);
+        options_of(file), start_of(file), [&](double, const kreisel::JointState&) { return !ends(); }, ends);
     if (ends() && run.report.status != RunStatus::complete) return member;
     member.status = run.report.status;
     member.message = run.report.message;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <dynamics/file/scene_section.hpp>
+#include <dynamics/signal/signal.hpp>
+
+namespace kreisel::detail {
+
+/// The signal that a table describes: { constant, rate, terms }, { steps } or { points }. Notes what
+/// is wrong with it.
+template <class Value>
+[[nodiscard]] Signal<Value> read_signal_table(Section table);
+
+/// The signal at a key: a number or a vector that never changes, or a table; nothing where the key is
+/// missing or its value is wrong.
+template <class Value>
+[[nodiscard]] std::optional<Signal<Value>> read_signal(Section& section, std::string_view key);
+
+/// One signal, which then counts `count` times, or `count` of them in brackets; none where the key is
+/// missing or its value is wrong.
+[[nodiscard]] std::vector<Signal<double>> read_signals(Section& section, std::string_view key,
+                                                       std::size_t count);
+
+/// The signal of an angle, or of its rate: at the key itself, or at key_deg in degrees.
+[[nodiscard]] std::optional<Signal<double>> read_angle_signal(Section& section,
+                                                              const std::string& key);
+
+}  // namespace kreisel::detail
