@@ -98,6 +98,51 @@ Series series(Random& r, double size, double frequency) {
   return s;
 }
 
+/// A function of time of about this size, along the direction that `along` draws.
+template <class Along>
+Signal smooth_signal(Random& r, double size, const Along& along) {
+  Signal s;
+  if (r.chance(0.5)) s.series.constant = size * plain(r, 0.1, 3) * along();
+  if (r.chance(0.4)) s.rate = 0.3 * size * plain(r, 0.1, 3) * along();
+  const int terms = r.below(3);
+  for (int i = 0; i < terms; ++i) {
+    s.series.terms.push_back({size * plain(r, 0.1, 3) * along(), {plain(r, 0.1, 10)}, phase(r)});
+  }
+  return s;
+}
+
+/// The same, or one that jumps a few times in the first seconds.
+template <class Along>
+Signal any_signal(Random& r, double size, const Along& along) {
+  if (r.chance(0.4)) return smooth_signal(r, size, along);
+  Signal s;
+  s.jumps.is_broken_line = r.chance(0.5);
+  double t = r.pick({0.0, 0.0, 0.1, -1.0});
+  const int count = 1 + r.below(4);
+  for (int i = 0; i < count; ++i) {
+    s.jumps.times.push_back(t);
+    s.jumps.values.push_back(size * plain(r, 0.1, 3) * along());
+    t += rounded(r.pick({0.05, 0.3, 1.0, 2.5}) * r.between(0.5, 1), 2);
+  }
+  return s;
+}
+
+/// A scalar function of time.
+Signal number_signal(Random& r, double size) {
+  return any_signal(r, size, [&r] { return Vector(sign(r) * Vector::UnitX()); });
+}
+
+Link moving(Random& r) {
+  Link link{.kind = LinkKind::motion};
+  const double size = r.pick({0.1, 1.0});
+  if (r.chance(0.7)) link.position = smooth_signal(r, size, [&r] { return direction(r); });
+  for (Signal& angle : link.angles) {
+    if (r.chance(0.4)) continue;
+    angle = smooth_signal(r, 0.2, [&r] { return Vector(sign(r) * Vector::UnitX()); });
+  }
+  return link;
+}
+
 /// The start of a frame that is given by its rates.
 void add_frame_start(Random& r, Link& link) {
   if (r.chance(0.75)) return;
@@ -200,7 +245,8 @@ Link rates(Random& r) {
 Link any_link(Random& r, bool first) {
   const double u = r.uniform();
   if (u < 0.25) return rotating(r);
-  if (u < 0.55) return harmonic(r);
+  if (u < 0.45) return harmonic(r);
+  if (u < 0.55) return moving(r);
   if (u < 0.75 && first) return earth(r);
   if (u < 0.83) return logged(r, LinkKind::table);
   if (u < 0.9 && first) return rates(r);
@@ -347,6 +393,7 @@ void add_joint_forces(Random& r, Body& body) {
   if (n > 0 && r.chance(0.1)) {
     body.force = for_each_coordinate(n, sign(r) * plain(r, 0.1, 10), 0);
   }
+  if (n == 1 && r.chance(0.15)) body.force_in_time = number_signal(r, 1);
 }
 
 void add_loads(Random& r, Body& body) {
@@ -357,6 +404,7 @@ void add_loads(Random& r, Body& body) {
     if (r.chance(0.5)) load.torque = vector(r, 0.01, 3);
     if (r.chance(0.3)) load.point = vector(r, 0.1, 1);
     load.axes = r.pick({Axes::body, Axes::guide, Axes::inertial});
+    if (r.chance(0.3)) load.force_in_time = any_signal(r, 1, [&r] { return direction(r); });
     body.loads.push_back(load);
   } while (r.chance(0.15));
 }
@@ -392,6 +440,9 @@ Body rotor(Random& r, int carrier) {
   if (r.chance(0.15)) rotor.speed = {sign(r) * r.pick({360.0, 3600.0}), true};
   rotor.speed_is_initial = r.chance(0.15);
   if (rotor.mode == RotorMode::torque) rotor.torque = r.chance(0.5) ? 0 : sign(r) * about;
+  if (rotor.mode == RotorMode::torque && r.chance(0.4)) {
+    rotor.torque_in_time = number_signal(r, about);
+  }
   if (rotor.mode != RotorMode::free && r.chance(0.2)) body.damping = {0.01 * about};
   body.rotor = rotor;
   return body;

@@ -114,19 +114,28 @@ struct Step {
   bool output;
 };
 
+/// The first jump before `time`, or `time` itself.
+Real next_stop(const std::vector<double>& jumps, Real t, double time) {
+  const auto next = std::find_if(jumps.begin(), jumps.end(), [t](double jump) { return jump > t; });
+  return next == jumps.end() ? Real(time) : std::min(Real(*next), Real(time));
+}
+
 /// Adaptive steps to the times; accepted steps are recorded in `taken`.
 void run(const Scene& scene, const std::vector<double>& times, double max_evaluations,
          ReferenceMotion& motion, std::vector<Step>& taken) {
   constexpr Real tolerance = 1e-15L;
   Tree tree(scene);
   Steps steps(tree, tree.start());
+  const std::vector<double> jumps = scene.jumps();
   Real t = 0;
   Real h = Real(times.back()) / 64;
   for (const double time : times) {
     while (t < Real(time)) {
       if (steps.evaluations() > max_evaluations) return;
-      const bool last = t + h * Real(1.01) >= Real(time);
-      const Real length = last ? Real(time) - t : h;
+      const Real goal = next_stop(jumps, t, time);
+      const bool last = t + h * Real(1.01) >= goal;
+      const Real length = last ? goal - t : h;
+      tree.stay_within(t + length / 2);
       const Real off = steps.attempt(t, length);
       const Real factor = Real(0.8) * std::pow(tolerance / (off + Real(1e-19)), Real(1) / 15);
       if (!(off <= tolerance)) {
@@ -134,8 +143,8 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
         if (h < Real(1e-14) * Real(times.back())) return;
         continue;
       }
-      taken.push_back({t, length, last});
-      t = last ? Real(time) : t + length;
+      taken.push_back({t, length, last && goal == Real(time)});
+      t = last ? goal : t + length;
       steps.accept(t);
       const Sizes sizes = tree.sizes(t, steps.state());
       motion.sizes.energy = std::max(motion.sizes.energy, sizes.energy);
@@ -155,6 +164,7 @@ void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion&
   Steps steps(tree, tree.start());
   for (const Step& step : taken) {
     if (motion.others.size() == motion.states.size()) break;
+    tree.stay_within(step.begin + step.length / 2);
     for (const int half : {0, 1}) {
       const Real begin = step.begin + Real(half) * step.length / 2;
       [[maybe_unused]] const Real off = steps.attempt(begin, step.length / 2);

@@ -118,6 +118,24 @@ Motion logged(const Log& log, Real t) {
           dds * wide(log.shift)};
 }
 
+/// Rotations about z, then the new y, then the new x.
+Motion moved(const Link& link, Real t) {
+  const Course position = course_of(link.position, t, t);
+  Motion motion;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Course angle = course_of(link.angles[i], t, t);
+    const Vec axis = motion.R * Vec::Unit(2 - static_cast<int>(i));
+    const Vec rate = angle.rate.x() * axis;
+    motion.dw += angle.second_rate.x() * axis + motion.w.cross(rate);
+    motion.w += rate;
+    motion.R = Eigen::AngleAxis<Real>(angle.value.x(), axis).toRotationMatrix() * motion.R;
+  }
+  motion.x = position.value;
+  motion.v = position.rate;
+  motion.a = position.second_rate;
+  return motion;
+}
+
 /// A motion relative to a frame that moves itself.
 Motion on(const Motion& base, const Motion& own) {
   const Vec x = base.R * own.x;
@@ -135,6 +153,33 @@ Motion on(const Motion& base, const Motion& own) {
 }
 
 }  // namespace
+
+Course course_of(const Signal& signal, Real t, Real within) {
+  Course sum;
+  const Jumps& jumps = signal.jumps;
+  for (std::size_t i = 0; i < jumps.times.size(); ++i) {
+    const Real begin(jumps.times[i]);
+    if (within < begin) {
+      if (i == 0 && jumps.is_broken_line) sum.value = wide(jumps.values[0]);
+      break;
+    }
+    sum.value = wide(jumps.values[i]);
+    sum.rate.setZero();
+    if (!jumps.is_broken_line || i + 1 == jumps.times.size()) continue;
+    sum.rate = (wide(jumps.values[i + 1]) - sum.value) / (Real(jumps.times[i + 1]) - begin);
+    sum.value += (t - begin) * sum.rate;
+  }
+  sum.value += wide(signal.series.constant) + t * wide(signal.rate);
+  sum.rate += wide(signal.rate);
+  for (const Series::Term& term : signal.series.terms) {
+    const auto w = Real(term.frequency.radian());
+    const Real angle = w * t + Real(term.phase.radian());
+    sum.value += std::sin(angle) * wide(term.amplitude);
+    sum.rate += w * std::cos(angle) * wide(term.amplitude);
+    sum.second_rate -= w * w * std::sin(angle) * wide(term.amplitude);
+  }
+  return sum;
+}
 
 Quat unit_quaternion(const std::optional<Eigen::Vector4d>& q) {
   if (!q) return Quat::Identity();
@@ -190,6 +235,7 @@ void Guide::start(State& y) const {
 Motion Guide::own(const Link& link, Real t, const Real* y, Real* rates) const {
   if (link.kind == LinkKind::earth) return earth(link, t);
   if (link.is_logged()) return logged(link.log, t);
+  if (link.kind == LinkKind::motion) return moved(link, t);
   if (link.kind == LinkKind::inertial) return {};
   const Oscillation u =
       link.kind == LinkKind::harmonic

@@ -50,6 +50,14 @@ class Guide {
   Eigen::Index size_ = 0;
 };
 
+/// A function of time with its first and second rate, on the piece that contains `within`.
+struct Course {
+  Vec value = Vec::Zero();
+  Vec rate = Vec::Zero();
+  Vec second_rate = Vec::Zero();
+};
+[[nodiscard]] Course course_of(const Signal& signal, Real t, Real within);
+
 /// A quaternion w, x, y, z of the file, rounded as in the library; the identity if absent.
 [[nodiscard]] Quat unit_quaternion(const std::optional<Eigen::Vector4d>& q);
 

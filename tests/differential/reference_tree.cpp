@@ -407,30 +407,38 @@ void Tree::add_force(int body, const Relative& r, const Vec& force) {
   right_.segment<3>(6 * index + 3) -= r.reach.cross(force);
 }
 
-void Tree::add_load(const Load& load, int body, const Motion& guide) {
+void Tree::add_load(Real t, const Load& load, int body, const Motion& guide) {
   const Pose& b = poses_[static_cast<std::size_t>(body)];
   const Mat axes = load.axes == Axes::body    ? b.R
                    : load.axes == Axes::guide ? guide.R
                                               : Mat(Mat::Identity());
-  const Vec force = axes * wide(load.force);
+  const bool is_timed = !load.force_in_time.empty();
+  const Vec force =
+      axes * (is_timed ? course_of(load.force_in_time, t, within_).value : wide(load.force));
   const Vec lever = b.R * (wide(load.point) - parts_[static_cast<std::size_t>(body)].centre);
   right_.segment<3>(6 * body) += force;
   right_.segment<3>(6 * body + 3) += axes * wide(load.torque) + lever.cross(force);
 }
 
-void Tree::add_joint_force(int body, const State& y) {
+void Tree::add_joint_force(Real t, int body, const State& y) {
   const Body& b = scene_.bodies[static_cast<std::size_t>(body)];
   const Part& part = parts_[static_cast<std::size_t>(body)];
-  if (b.stiffness.empty() && b.damping.empty() && b.force.empty() && !b.rotor) return;
+  const bool is_timed = !b.force_in_time.empty();
+  if (b.stiffness.empty() && b.damping.empty() && b.force.empty() && !b.rotor && !is_timed) return;
   const Relative r = relative(body);
-  const auto force = [&b](std::size_t i, Real q, Real rate) {
+  const auto force = [&](std::size_t i, Real q, Real rate) {
     const auto one = [i](const auto& list) { return at_or(list, list.size() == 1 ? 0 : i); };
-    return one(b.force) - one(b.stiffness) * (q - one(b.rest)) - one(b.damping) * rate;
+    const Real given = is_timed ? course_of(b.force_in_time, t, within_).value.x() : one(b.force);
+    return given - one(b.stiffness) * (q - one(b.rest)) - one(b.damping) * rate;
   };
   if (b.kind == JointKind::spherical) {
     add_torque(body, -at_or(b.damping, 0) * r.w);
   } else if (b.kind == JointKind::revolute) {
-    const Real motor = b.rotor && b.rotor->mode == RotorMode::torque ? Real(b.rotor->torque) : 0;
+    Real motor = 0;
+    if (b.rotor && b.rotor->mode == RotorMode::torque) {
+      const Signal& torque = b.rotor->torque_in_time;
+      motor = torque.empty() ? Real(b.rotor->torque) : course_of(torque, t, within_).value.x();
+    }
     add_torque(body, (motor + force(0, y[part.angles], r.axis.dot(r.w))) * r.axis);
   } else if (b.kind == JointKind::prismatic) {
     add_force(body, r, force(0, r.axis.dot(r.place), r.axis.dot(r.v)) * r.axis);
@@ -464,9 +472,9 @@ void Tree::add_forces(Real t, const State& y, const Motion& guide) {
       right_.segment<3>(6 * i) += part.mass * (guide_.gravity(t, guide, x) - guide.a);
     }
     for (const Load& load : scene_.bodies[static_cast<std::size_t>(i)].loads) {
-      add_load(load, i, guide);
+      add_load(t, load, i, guide);
     }
-    if (!part.held) add_joint_force(i, y);
+    if (!part.held) add_joint_force(t, i, y);
   }
 }
 
@@ -613,7 +621,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
     right_.segment<3>(6 * i) -= part.mass * accelerations.segment<3>(6 * i);
     right_.segment<3>(6 * i + 3) -= I * accelerations.segment<3>(6 * i + 3) + b.w.cross(I * b.w);
     for (const Load& load : scene_.bodies[at_body].loads) {
-      add_load(load, static_cast<int>(i), guide);
+      add_load(t, load, static_cast<int>(i), guide);
     }
   }
   std::vector<double> result(static_cast<std::size_t>(6 * n));

@@ -29,6 +29,8 @@ class Tree {
   /// The force of each body's parent through the joint: force, then torque about the body's origin,
   /// on body axes.
   [[nodiscard]] std::vector<double> reactions(Real t, const State& y);
+  /// Takes functions of time on the pieces that contain t: the middle of a step.
+  void stay_within(Real t) { within_ = t; }
   /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
 
@@ -84,10 +86,10 @@ class Tree {
   void add_rotation(int body, const Relative& r, const Motion& guide, const Vec& n, Real extra,
                     Real off, Real speed);
   void add_forces(Real t, const State& y, const Motion& guide);
-  void add_joint_force(int body, const State& y);
+  void add_joint_force(Real t, int body, const State& y);
   void add_torque(int body, const Vec& torque);
   void add_force(int body, const Relative& r, const Vec& force);
-  void add_load(const Load& load, int body, const Motion& guide);
+  void add_load(Real t, const Load& load, int body, const Motion& guide);
   void solve();
   [[nodiscard]] Vec turned_off(int body, const Relative& r) const;
   [[nodiscard]] std::pair<Real, Real> angles_of(int body, const Relative& r) const;
@@ -100,6 +102,7 @@ class Tree {
   std::vector<Part> parts_;
   std::vector<int> parents_;
   Eigen::Index size_ = 0;
+  Real within_ = 0;
   // Data of one evaluation.
   Pose guide_pose_;
   std::vector<Pose> poses_;

@@ -43,6 +43,7 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
   kreisel::SolveOptions options;
   options.output_times = file.output_times;
   options.tolerance = file.tolerance;
+  options.discontinuities = file.discontinuities;
   options.method = *kreisel::method_named(method);
   options.max_evaluations = limits.evaluations;
   const double end = processor_seconds() + limits.seconds;

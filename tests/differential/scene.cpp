@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 
 namespace differential {
 
@@ -60,6 +61,49 @@ std::string series(const Series& s) {
   return table.text();
 }
 
+/// Numbers of which the x component alone counts are written by `value`.
+std::string signal(const Signal& s, const std::function<std::string(const Vector&)>& value) {
+  Inline table;
+  std::string pairs;
+  for (std::size_t i = 0; i < s.jumps.times.size(); ++i) {
+    pairs += (pairs.empty() ? "[" : ", [") + text(s.jumps.times[i]) + ", " +
+             value(s.jumps.values[i]) + "]";
+  }
+  if (!pairs.empty()) {
+    table.add(s.jumps.is_broken_line ? "points" : "steps", "[" + pairs + "]");
+    return table.text();
+  }
+  table.add("constant", value(s.series.constant));
+  if (!s.rate.isZero(0)) table.add("rate", value(s.rate));
+  std::string terms;
+  for (const Series::Term& term : s.series.terms) {
+    Inline one;
+    one.add("amplitude", value(term.amplitude));
+    add_angles(one, "frequency", {term.frequency});
+    add_angles(one, "phase", {term.phase});
+    terms += (terms.empty() ? "" : ", ") + one.text();
+  }
+  if (!terms.empty()) table.add("terms", "[" + terms + "]");
+  return table.text();
+}
+
+std::string vector_signal(const Signal& s) {
+  return signal(s, [](const Vector& v) { return list(v); });
+}
+
+std::string number_signal(const Signal& s) {
+  return signal(s, [](const Vector& v) { return text(v.x()); });
+}
+
+std::string angles(const std::array<Signal, 3>& signals) {
+  Inline table;
+  static const char* const names[] = {"yaw", "pitch", "roll"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!signals[i].empty()) table.add(names[i], number_signal(signals[i]));
+  }
+  return table.text();
+}
+
 std::string log_name(std::size_t link) { return fmt::format("log{}.csv", link); }
 
 /// The motion of a frame by its rates.
@@ -88,6 +132,10 @@ Keys keys(const Link& link, std::size_t index, double t_end) {
       return moving_keys(link, "\"harmonic\"", series(link.turning), series(link.pushing));
     case LinkKind::table: return link.log.keys(log_name(index), t_end, false);
     case LinkKind::rates: return link.log.keys(log_name(index), t_end, true);
+    case LinkKind::motion:
+      return {{"kind", "\"motion\""},
+              {"position", vector_signal(link.position)},
+              {"angles", angles(link.angles)}};
     case LinkKind::earth: break;
   }
   Keys result{{"kind", "\"earth\""},
@@ -192,7 +240,11 @@ std::string forces(const Body& body) {
     result += "spring = " + spring.text() + "\n";
   }
   if (!body.damping.empty()) result += "damping = " + one_or_list(body.damping) + "\n";
-  if (!body.force.empty()) result += "force = " + one_or_list(body.force) + "\n";
+  if (!body.force_in_time.empty()) {
+    result += "force = " + number_signal(body.force_in_time) + "\n";
+  } else if (!body.force.empty()) {
+    result += "force = " + one_or_list(body.force) + "\n";
+  }
   return result;
 }
 
@@ -201,7 +253,10 @@ std::string rotor(const Rotor& rotor) {
   Inline table;
   table.add("mode", std::string("\"") + modes[static_cast<int>(rotor.mode)] + "\"");
   if (!rotor.speed_is_initial) add_angles(table, "speed", {rotor.speed});
-  if (rotor.mode == RotorMode::torque) table.add("torque", text(rotor.torque));
+  if (rotor.mode == RotorMode::torque) {
+    const bool is_timed = !rotor.torque_in_time.empty();
+    table.add("torque", is_timed ? number_signal(rotor.torque_in_time) : text(rotor.torque));
+  }
   return "rotor = " + table.text() + "\n";
 }
 
@@ -210,7 +265,8 @@ std::string loads(const Body& body) {
   std::string all;
   for (const Load& load : body.loads) {
     Inline table;
-    table.add("force", list(load.force));
+    const bool is_timed = !load.force_in_time.empty();
+    table.add("force", is_timed ? vector_signal(load.force_in_time) : list(load.force));
     table.add_vector("torque", load.torque);
     table.add_vector("point", load.point);
     table.add("axes", std::string("\"") + axes[static_cast<int>(load.axes)] + "\"");
@@ -238,6 +294,24 @@ std::string body(const Scene& scene, int index) {
 }  // namespace
 
 double Angle::radian() const { return degrees ? value * degree : value; }
+
+bool Signal::empty() const {
+  return series.constant.isZero(0) && series.terms.empty() && rate.isZero(0) && jumps.times.empty();
+}
+
+std::vector<double> Scene::jumps() const {
+  std::vector<double> times;
+  const auto add = [&times](const Signal& s) {
+    times.insert(times.end(), s.jumps.times.begin(), s.jumps.times.end());
+  };
+  for (const Body& body : bodies) {
+    add(body.force_in_time);
+    if (body.rotor) add(body.rotor->torque_in_time);
+    for (const Load& load : body.loads) add(load.force_in_time);
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
 
 bool Scene::has_log() const {
   return std::any_of(guide.begin(), guide.end(), [](const Link& link) { return link.is_logged(); });

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,7 +40,23 @@ struct Series {
   std::vector<Term> terms = {};
 };
 
-enum class LinkKind { inertial, rotating, harmonic, earth, table, rates };
+/// A function of time that jumps, or whose rate does; of a number the x component counts.
+struct Jumps {
+  bool is_broken_line = false;  ///< else steps
+  std::vector<double> times = {};
+  std::vector<Vector> values = {};
+};
+
+/// A function of time as the file has it; nothing where neither member holds anything.
+struct Signal {
+  Series series = {};
+  Vector rate = Vector::Zero();
+  Jumps jumps = {};
+
+  [[nodiscard]] bool empty() const;
+};
+
+enum class LinkKind { inertial, rotating, harmonic, earth, table, rates, motion };
 
 struct Link {
   LinkKind kind = LinkKind::inertial;
@@ -57,6 +74,8 @@ struct Link {
   std::optional<Angle> rate = {};
   std::string gravity = {};  ///< of an earth, as in the file; empty: not given
   Log log = {};
+  Signal position = {};               ///< of a motion
+  std::array<Signal, 3> angles = {};  ///< yaw, pitch, roll
 
   [[nodiscard]] bool is_logged() const {
     return kind == LinkKind::table || kind == LinkKind::rates;
@@ -74,6 +93,7 @@ struct Load {
   Vector torque = Vector::Zero();
   Vector point = Vector::Zero();
   Axes axes = Axes::body;
+  Signal force_in_time = {};  ///< instead of the force
 };
 
 enum class RotorMode { free, regulated, torque };
@@ -83,6 +103,7 @@ struct Rotor {
   Angle speed = {};
   bool speed_is_initial = false;  ///< as initial.rate
   double torque = 0;
+  Signal torque_in_time = {};  ///< instead of the torque
 };
 
 struct Body {
@@ -110,6 +131,7 @@ struct Body {
   std::vector<Angle> rest = {};
   std::vector<double> damping = {};
   std::vector<double> force = {};
+  Signal force_in_time = {};  ///< in a joint of one coordinate, instead of the force
   std::optional<Rotor> rotor = {};
   bool drive = false;
   bool hold = false;
@@ -131,6 +153,8 @@ struct Scene {
   int outputs = 20;         ///< evenly spaced after t = 0; from three on by a step
 
   [[nodiscard]] bool has_log() const;
+  /// The times at which something jumps, in order.
+  [[nodiscard]] std::vector<double> jumps() const;
   [[nodiscard]] std::vector<double> times() const;
 };
 

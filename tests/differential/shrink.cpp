@@ -90,6 +90,8 @@ void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
         [i](Scene& s) { s.guide.erase(s.guide.begin() + static_cast<std::ptrdiff_t>(i)); });
     changes.emplace_back([i](Scene& s) { s.guide[i].turning = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].pushing = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].position = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].angles = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].rate.reset(); });
     changes.emplace_back([i](Scene& s) { s.guide[i].attitude.reset(); });
     changes.emplace_back([i](Scene& s) { s.guide[i].turns_in_degrees = false; });
@@ -120,6 +122,13 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
   add([](Body& b) { b.rest.clear(); });
   add([](Body& b) { b.damping.clear(); });
   add([](Body& b) { b.force.clear(); });
+  add([](Body& b) { b.force_in_time = {}; });
+  add([](Body& b) {
+    for (Load& load : b.loads) load.force_in_time = {};
+  });
+  add([](Body& b) {
+    if (b.rotor) b.rotor->torque_in_time = {};
+  });
   add([](Body& b) { b.rotor.reset(); });
   add([](Body& b) { b.drive = false; });
   add([](Body& b) { b.hold = false; });
