@@ -1,55 +1,79 @@
 #pragma once
 
-#include <cmath>
+#include <type_traits>
 
 #include <dynamics/load/load.hpp>
+#include <dynamics/load/planet_field.hpp>
+#include <motor/error.hpp>
+#include <motor/lanes.hpp>
 
 namespace kreisel {
 
-/// The gravitation of a planet at the body's centre of mass, with the first term of the flattening.
+/// The gravitation of a planet with the first term of its flattening, or of a point mass (j2 = 0).
 ///
 ///   g = -(GM / r^2) [ (1 + k (1 - 5 s^2)) e_r + 2 k s e_z ],   k = (3/2) J2 (R / r)^2,  s = z / r
 ///
-/// Inertial is the frame at the planet's centre, z to the pole. The field's gradient over the body
-/// is left out; its torque is at most (3/2) (GM / r^3) (the greatest difference of moments of
-/// inertia).
+/// The force is m g at the body's centre of mass. With `gradient` the terms of second order in the
+/// body's size are added, force and torque, with the bound of what is neglected: see
+/// PlanetField::size_terms.
 ///
+/// Frame  : centre and pole on the axes of Inertial
 /// Units  : m^3/s^2, metre; the defaults are WGS84's
 /// Source : the potential GM/r [1 - J2 (R/r)^2 P2(s)], differentiated
+/// Throws : ComputationFailed where the centre of mass is at the field's centre
 template <class S = double>
 struct OblateGravitation {
   static constexpr const char* kind = "gravitation of a planet";
   static constexpr bool ignores_spin = true;
+  static constexpr bool rests_inertially = true;  ///< its potential does not move with the guide
 
   S parameter = S(3986004418LL) * S(100000);  ///< GM
   S radius = S(6378137);                      ///< R, equatorial
   S j2 = S(1.08262982131e-3);                 ///< 0: a sphere
+  Vector3<S> centre = Vector3<S>::Zero();
+  Vector3<S> pole = Vector3<S>::UnitZ();  ///< of length 1
+  bool gradient = false;
 
   [[nodiscard]] Vector3<S> operator()(const Vector3<S>& p_Inertial) const {
-    const S r2 = p_Inertial.squaredNorm();
-    using std::sqrt;
-    const S r = sqrt(r2);
-    const S s = p_Inertial.z() / r;
-    const S k = S(1.5) * j2 * radius * radius / r2;
-    Vector3<S> g = (S(1) + k * (S(1) - S(5) * s * s)) * p_Inertial;
-    g.z() += S(2) * k * s * r;
-    return -(parameter / (r2 * r)) * g;
+    return field(pole).acceleration(p_Inertial - centre);
   }
 
-  [[nodiscard]] Force<Body, S> operator()(const LoadContext<S>& s) const {
-    const Vector3<S> centre = s.centre();
-    const Vector3<S> g =
-        s.template on_body_axes<Inertial>((*this)(s.template position<Inertial>(centre)));
-    const Vector3<S> weight = s.inertia.value.mass * g;
-    return {{weight, centre.cross(weight)}};
+  template <class N>
+  [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
+    const Vector3<N> p = position(s);
+    const Vector3<N> k = s.template on_body_axes<Inertial>(pole.template cast<N>());
+    const PlanetField<N> planet = field(k);
+    return detail::gravitation_on(s, planet.acceleration(p), gradient, planet, p);
   }
+
+  [[nodiscard]] bool keeps_energy() const { return true; }
 
   [[nodiscard]] S potential(const LoadContext<S>& s) const {
-    const Vector3<S> p = s.template position<Inertial>(s.centre());
-    const S r = p.norm();
-    const S sine = p.z() / r;
-    const S flattened = j2 * radius * radius / (r * r) * (S(1.5) * sine * sine - S(0.5));
-    return -s.inertia.value.mass * parameter / r * (S(1) - flattened);
+    const Vector3<S> p = position(s);
+    const PlanetField<S> planet = field(s.template on_body_axes<Inertial>(pole));
+    const Inertia<S>& T = s.inertia.value;
+    const S of_mass = -T.mass * planet.potential(p);
+    if (!gradient) return of_mass;
+    return of_mass - planet.size_terms(p, detail::central_tensor(T)).energy;
+  }
+
+ private:
+  template <class N>
+  [[nodiscard]] PlanetField<N> field(const Vector3<N>& k) const {
+    return {N(parameter), N(S(1.5) * parameter * j2 * radius * radius), k, j2 != S(0)};
+  }
+
+  /// The centre of mass from the field's centre, on body axes.
+  template <class N>
+  [[nodiscard]] Vector3<N> position(const LoadContext<N>& s) const {
+    const Vector3<N> p = s.template position<Inertial>(s.centre()) - centre.template cast<N>();
+    if constexpr (std::is_floating_point_v<N>) {
+      if (p.isZero(N(0))) {
+        throw ComputationFailed(
+            "gravitation: the centre of mass of a body is at the centre of the field");
+      }
+    }
+    return s.template on_body_axes<Inertial>(p);
   }
 };
 

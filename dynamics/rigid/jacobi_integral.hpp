@@ -20,6 +20,8 @@ template <class M, class L>
     return true;
   } else if constexpr (std::is_same_v<L, UniformGravity<Inertial>>) {
     return decltype(std::declval<const M&>().steady().u)::static_zero;
+  } else if constexpr (requires { L::rests_inertially; }) {
+    return is_resting<M>;
   } else if constexpr (requires { load.keeps_energy(); }) {
     return load.keeps_energy();
   } else {
