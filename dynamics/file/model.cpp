@@ -1,10 +1,38 @@
+#include <variant>
+
 #include <dynamics/file/approximation.hpp>
 #include <dynamics/file/model.hpp>
+#include <dynamics/file/scene_system.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 
+namespace {
+
+/// Throws : InvalidInput, naming the body, for a field whose centre is at a centre of mass at t = 0
+void check_field(const SceneFile& scene, const SceneSolver& model) {
+  const auto* const planet = std::get_if<OblateGravitation<>>(&scene.gravity);
+  if (planet == nullptr) return;
+  const auto guide = make_guide(scene)(0).X;
+  const JointState start = start_of(scene);
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    const BodyDescription& body = scene.bodies[static_cast<std::size_t>(i)];
+    const Inertia<>& T = body.inertia.value;
+    if (!(T.mass > 0)) continue;
+    const Pose<double> X = model.pose(0, start, i);
+    const Vector3<double> place =
+        guide.point(X.rotation * (T.first_moment / T.mass) + X.translation);
+    if (place != planet->centre) continue;
+    throw InvalidInput("gravity.centre: the centre of mass of body '" + body.name +
+                       "' is at the centre of the field at t = 0; move one of them");
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<SceneSolver> make_model(const SceneFile& scene) {
   auto exact = scene.rests() ? make_resting_model(scene) : make_moving_model(scene);
+  check_field(scene, *exact);
   return make_approximation(scene, std::move(exact));
 }
 

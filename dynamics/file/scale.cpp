@@ -18,6 +18,9 @@ double gravity_of(const SceneFile& scene) {
           return double(field.g.norm());
         } else if constexpr (requires { field.magnitude; }) {
           return double(field.magnitude);
+        } else if constexpr (requires { field.parameter; }) {
+          // Where a planet's surface is, if that is given.
+          return field.j2 == 0 ? 0.0 : field.parameter / (field.radius * field.radius);
         } else {
           return std::is_same_v<Field, scene_gravity::Ellipsoid> ? 9.8 : 0.0;
         }

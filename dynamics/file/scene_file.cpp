@@ -190,7 +190,7 @@ class SceneReader {
 
   void read_links(Section& guide, int depth) {
     const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth",
-                                         "table",    "rates",    "motion",   "chain"};
+                                         "table",    "rates",    "motion",   "orbit", "chain"};
     const std::string kind =
         depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
     if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
@@ -223,6 +223,7 @@ class SceneReader {
     if (kind == "table") read_table(guide);
     if (kind == "rates") read_rates(guide);
     if (kind == "motion") read_motion(guide);
+    if (kind == "orbit") read_orbit(guide);
     if (kind == "chain") {
       constexpr int deepest = 8;
       if (!guide.has("links")) guide.refuse_missing("links");
@@ -343,6 +344,27 @@ class SceneReader {
       angles->finish();
     }
     scene_.guide.emplace_back(scene_guide::Motion{std::move(pose)});
+  }
+
+  void read_orbit(Section& guide) {
+    if (!scene_.guide.empty()) {
+      guide.refuse("kind",
+                   "'orbit' must be the first link: it is about a planet's centre, which rests "
+                   "inertially");
+    }
+    OrbitElements<> orbit;
+    orbit.semi_major_axis = guide.required_number("semi_major_axis", Range::positive);
+    orbit.eccentricity = guide.number("eccentricity").value_or(0);
+    if (!(orbit.eccentricity >= 0 && orbit.eccentricity < 1)) {
+      guide.refuse("eccentricity", "must be from 0 to below 1: an orbit is an ellipse");
+    }
+    orbit.inclination = guide.angle("inclination").value_or(0);
+    orbit.node = guide.angle("node").value_or(0);
+    orbit.perigee = guide.angle("perigee").value_or(0);
+    orbit.anomaly = guide.angle("anomaly").value_or(0);
+    orbit.parameter = guide.number("mu", Range::positive).value_or(orbit.parameter);
+    if (guide.flag("j2")) orbit.j2 = OblateGravitation<>{}.j2;
+    scene_.guide.emplace_back(scene_guide::Orbit{orbit});
   }
 
   /// A log's file and how to read it; nothing where that is wrong.
@@ -496,7 +518,8 @@ class SceneReader {
     }
     auto gravity = root_.section("gravity");
     if (!gravity) return;
-    const std::string kind = gravity->choice("kind", {"none", "uniform", "inertial", "earth"});
+    const std::string kind =
+        gravity->choice("kind", {"none", "uniform", "inertial", "earth", "point", "j2", "orbit"});
     if (gravity->has("kind") && gravity->text("kind").value_or("") != kind) gravity->ignore_rest();
     if (kind == "uniform") {
       scene_.gravity = UniformGravity<Guide>{gravity->required_vector("vector")};
@@ -508,10 +531,23 @@ class SceneReader {
         !scene_.guide.empty() && std::holds_alternative<scene_guide::Earth>(scene_.guide.front());
     if (kind == "earth") {
       scene_.gravity = scene_gravity::Ellipsoid{};
+      if (gravity->choice("field", {"normal", "j2"}) == "j2")
+        scene_.gravity = OblateGravitation<>{};
       if (!on_earth) {
         gravity->refuse("kind",
                         "'earth' needs a guide of kind 'earth', or a chain that begins "
                         "with one");
+      }
+    }
+    if (kind == "point" || kind == "j2") scene_.gravity = read_planet(*gravity, kind == "j2");
+    if (kind == "orbit") {
+      const bool gradient = !gravity->has("gradient") || gravity->flag("gradient");
+      scene_.gravity = scene_gravity::OnOrbit{gradient};
+      const bool on_orbit =
+          !scene_.guide.empty() && std::holds_alternative<scene_guide::Orbit>(scene_.guide.front());
+      if (!on_orbit) {
+        gravity->refuse("kind",
+                        "'orbit' needs a guide of kind 'orbit', or a chain that begins with one");
       }
     }
     const bool number = std::holds_alternative<scene_gravity::AtSite>(site_gravity_);
@@ -521,6 +557,20 @@ class SceneReader {
                                   "number already");
     }
     gravity->finish();
+  }
+
+  static OblateGravitation<> read_planet(Section& gravity, bool oblate) {
+    OblateGravitation<> planet;
+    planet.parameter = gravity.required_number("mu", Range::positive);
+    planet.j2 = oblate ? gravity.required_number("j2") : 0;
+    if (oblate) planet.radius = gravity.required_number("radius", Range::positive);
+    planet.centre = gravity.vector("centre").value_or(planet.centre);
+    if (const auto pole = oblate ? gravity.vector("pole") : std::nullopt) {
+      if (pole->isZero(0)) gravity.refuse("pole", "is 0 and has no direction");
+      planet.pole = pole->normalized();
+    }
+    planet.gradient = gravity.flag("gradient");
+    return planet;
   }
 
   void read_bodies() {

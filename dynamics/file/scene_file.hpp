@@ -9,9 +9,11 @@
 
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/orbit.hpp>
 #include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/guide/tabulated.hpp>
+#include <dynamics/load/oblate_gravitation.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/tree/description.hpp>
 #include <motor/error.hpp>
@@ -71,7 +73,11 @@ struct Motion {
   PoseSignals pose = {};
 };
 
-using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates, Motion>;
+struct Orbit {
+  OrbitElements<double> elements;
+};
+
+using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates, Motion, Orbit>;
 
 }  // namespace scene_guide
 
@@ -88,8 +94,13 @@ struct AtSite {
   double magnitude = 0;  ///< m/s^2
 };
 
-using Field =
-    std::variant<None, UniformGravity<Guide>, UniformGravity<Inertial>, Ellipsoid, AtSite>;
+/// The planet of the orbit on which the guide goes, at every body's own place.
+struct OnOrbit {
+  bool gradient = true;  ///< with the terms of the bodies' size
+};
+
+using Field = std::variant<None, UniformGravity<Guide>, UniformGravity<Inertial>, Ellipsoid, AtSite,
+                           OblateGravitation<>, OnOrbit>;
 
 }  // namespace scene_gravity
 

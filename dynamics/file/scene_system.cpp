@@ -9,6 +9,7 @@
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/load/earth_gravitation.hpp>
+#include <dynamics/load/orbit_gravitation.hpp>
 #include <dynamics/model/dual_numbers.hpp>
 
 namespace kreisel {
@@ -44,30 +45,29 @@ SceneGuide within(Frame known) {
 
 SceneGuide make_link(const scene_guide::Link& link, double t_end) {
   return std::visit(
-      Overloaded{[](const scene_guide::Resting&) -> SceneGuide { return RestingFrame<>{}; },
-                 [](const scene_guide::Rotating& kind) -> SceneGuide {
-                   return RotatingFrame<>{kind.angular_velocity, kind.origin_acceleration,
-                                          pose(kind.start), kind.start.origin_velocity};
-                 },
-                 [t_end](const scene_guide::Harmonic& kind) -> SceneGuide {
-                   return HarmonicFrame<>(kind.angular_velocity, kind.origin_acceleration, 0,
-                                          t_end * past_the_end, pose(kind.start),
-                                          kind.start.origin_velocity);
-                 },
-                 [](const scene_guide::Earth& kind) -> SceneGuide {
-                   // The centrifugal part at the origin is in the number.
-                   if (kind.gravity) return RotatingFrame<>{earth_rotation(kind.site)};
-                   return earth_frame(kind.site);
-                 },
-                 [](const scene_guide::Table& kind) -> SceneGuide {
-                   return within(TabulatedFrame<>(kind.log, kind.spline));
-                 },
-                 [](const scene_guide::Rates& kind) -> SceneGuide {
-                   return within(RatesFrame<>(kind.log, kind.start, kind.spline));
-                 },
-                 [](const scene_guide::Motion& kind) -> SceneGuide {
-                   return SignalFrame<>(kind.pose);
-                 }},
+      Overloaded{
+          [](const scene_guide::Resting&) -> SceneGuide { return RestingFrame<>{}; },
+          [](const scene_guide::Rotating& kind) -> SceneGuide {
+            return RotatingFrame<>{kind.angular_velocity, kind.origin_acceleration,
+                                   pose(kind.start), kind.start.origin_velocity};
+          },
+          [t_end](const scene_guide::Harmonic& kind) -> SceneGuide {
+            return HarmonicFrame<>(kind.angular_velocity, kind.origin_acceleration, 0,
+                                   t_end * past_the_end, pose(kind.start),
+                                   kind.start.origin_velocity);
+          },
+          [](const scene_guide::Earth& kind) -> SceneGuide {
+            // The centrifugal part at the origin is in the number.
+            if (kind.gravity) return RotatingFrame<>{earth_rotation(kind.site)};
+            return earth_frame(kind.site);
+          },
+          [](const scene_guide::Table& kind) -> SceneGuide {
+            return within(TabulatedFrame<>(kind.log, kind.spline));
+          },
+          [](const scene_guide::Rates& kind) -> SceneGuide {
+            return within(RatesFrame<>(kind.log, kind.start, kind.spline));
+          },
+          [](const scene_guide::Orbit& kind) -> SceneGuide { return OrbitFrame<>(kind.elements); }},
       link);
 }
 
@@ -85,13 +85,15 @@ struct SiteWeight {
   }
 };
 
-}  // namespace
-
-SceneGuide make_guide(const SceneFile& scene) {
+std::vector<SceneGuide> make_links(const SceneFile& scene) {
   std::vector<SceneGuide> links;
   for (const scene_guide::Link& link : scene.guide) links.push_back(make_link(link, scene.t_end));
+  return links;
+}
+
+SceneGuide chained(std::vector<SceneGuide> links) {
   if (links.size() == 1) return links.front();
-  return [links](double t) {
+  return [links = std::move(links)](double t) {
     Motion whole = links.front()(t);
     for (std::size_t i = 1; i < links.size(); ++i) {
       const FrameMotion<Outer, Inertial> outer{{whole.X.value}, {whole.V.value}, {whole.dV.value}};
@@ -100,6 +102,22 @@ SceneGuide make_guide(const SceneFile& scene) {
     }
     return whole;
   };
+}
+
+const OrbitElements<>& orbit_of(const SceneFile& scene) {
+  return std::get<scene_guide::Orbit>(scene.guide.front()).elements;
+}
+
+}  // namespace
+
+SceneGuide make_guide(const SceneFile& scene) { return chained(make_links(scene)); }
+
+SceneGuide make_guide_of_equations(const SceneFile& scene) {
+  std::vector<SceneGuide> links = make_links(scene);
+  if (std::holds_alternative<scene_gravity::OnOrbit>(scene.gravity)) {
+    links.front() = OrbitAxes<>(orbit_of(scene));
+  }
+  return chained(std::move(links));
 }
 
 SceneBodies bodies_in_gravity(const SceneFile& scene) {
@@ -115,6 +133,10 @@ SceneBodies bodies_in_gravity(const SceneFile& scene) {
           [&result](const UniformGravity<Guide>& g) { result.gravity = g; },
           [&result](const UniformGravity<Inertial>& g) { result.gravity = g; },
           [&](const scene_gravity::Ellipsoid&) { add_to_all(EarthGravitation{}); },
+          [&](const OblateGravitation<>& planet) { add_to_all(planet); },
+          [&](const scene_gravity::OnOrbit& orbit) {
+            add_to_all(OrbitGravitation<>(orbit_of(scene), orbit.gradient));
+          },
           [&](const scene_gravity::AtSite& site) {
             const Vector3<double> g(site.magnitude, 0, 0);
             if (scene.guide.size() == 1) {

@@ -43,6 +43,11 @@ class SceneGuide {
 /// Throws : InvalidInput as the kinds do, where what each of them takes was not checked in the file
 [[nodiscard]] SceneGuide make_guide(const SceneFile& scene);
 
+/// The guide motion that goes with bodies_in_gravity() into a system of bodies. It is that of
+/// make_guide(), but for gravity of kind orbit: then it is against the frame that goes along with the
+/// orbit's origin and does not turn, and the acceleration of that origin is in the gravity.
+[[nodiscard]] SceneGuide make_guide_of_equations(const SceneFile& scene);
+
 /// What a BodySystem takes: the bodies, with the gravity that is not uniform among their loads.
 struct SceneBodies {
   std::vector<BodyDescription> bodies;

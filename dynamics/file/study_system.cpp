@@ -39,7 +39,8 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 
 StudySystem::StudySystem(const SceneFile& scene) {
   auto [bodies, gravity] = bodies_in_gravity(scene);
-  bodies_ = std::make_unique<const Bodies>(make_guide(scene), std::move(bodies), gravity);
+  bodies_ =
+      std::make_unique<const Bodies>(make_guide_of_equations(scene), std::move(bodies), gravity);
 }
 
 StudySystem::~StudySystem() = default;

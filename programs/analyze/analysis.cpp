@@ -89,16 +89,23 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
 /// Whether a guide moves so that a body at rest on it has an energy: it rests or moves steadily.
 bool is_steady(const kreisel::SceneFile& scene) {
   using namespace kreisel::scene_guide;
+  const auto* const orbit = std::get_if<kreisel::scene_guide::Orbit>(&scene.guide.front());
+  const bool is_circle =
+      orbit == nullptr || (orbit->elements.eccentricity == 0 && orbit->elements.j2 == 0);
   return scene.guide.size() == 1 && !has_link<Harmonic>(scene) && !has_link<Table>(scene) &&
-         !has_link<Motion>(scene);
+         !has_link<Motion>(scene) && is_circle;
 }
 
 /// Whether no force on the bodies at rest gives energy without end: all of it is gravity on guide
 /// axes or that of the earth the guide is on, springs, constant joint forces, loads with a
 /// potential, and dampers.
 bool has_potential(const kreisel::SceneFile& scene) {
+  const auto* const planet = std::get_if<kreisel::OblateGravitation<>>(&scene.gravity);
+  const bool turns_along = planet != nullptr && has_link<kreisel::scene_guide::Earth>(scene) &&
+                           planet->centre.isZero(0) && planet->pole.head<2>().isZero(0);
   const bool stands_still =
-      std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity);
+      std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity) ||
+      (planet != nullptr && !turns_along);
   if (!is_steady(scene) || (stands_still && !scene.rests())) return false;
   return std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& body) {
     const bool is_pushed = kreisel::joint_type(body.joint.kind).has_attitude() &&

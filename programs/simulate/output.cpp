@@ -30,10 +30,24 @@ int bodies(const Result& result) { return static_cast<int>(result.scene.bodies.s
 
 std::string gravity_name(const kreisel::SceneFile& scene) {
   static constexpr const char* names[] = {
-      "", "uniform on guide axes", "uniform on inertial axes",
+      "",
+      "uniform on guide axes",
+      "uniform on inertial axes",
       "gravitation of the WGS84 ellipsoid at every body's centre of mass",
-      "the effective gravity at the site, its centrifugal part included"};
+      "the effective gravity at the site, its centrifugal part included",
+      "gravitation of a point or of a flattened planet at every body's centre of mass",
+      "gravitation at every body's centre of mass, less that of the orbit's origin"};
   return names[scene.gravity.index()];
+}
+
+/// Whether gravity has the terms of the bodies' size; nothing where its kind knows none.
+std::optional<bool> size_terms(const kreisel::SceneFile& scene) {
+  return std::visit(
+      []([[maybe_unused]] const auto& field) -> std::optional<bool> {
+        if constexpr (requires { field.gradient; }) return field.gradient;
+        return std::nullopt;
+      },
+      scene.gravity);
 }
 
 ordered_json json(const std::vector<TermLine>& terms) {
@@ -155,6 +169,13 @@ std::vector<TermLine> terms_dropped(const Result& result) {
   }
   if (scene.gravity.index() == 3) {
     terms.push_back({"gravity gradient over a body", "gravitation is taken at the centre of mass"});
+  }
+  if (const auto sized = size_terms(scene)) {
+    terms.push_back({"gravity's change over a body",
+                     *sized
+                         ? "beyond second order in its size: at most 2.07 mu M3/r^4 of torque and "
+                           "4 mu M3/r^5 of force, M3 the integral of |x|^3 dm"
+                         : "gradient = true adds it"});
   }
   if (scene.gravity.index() == 4) {
     terms.push_back({"gravity gradient", "the gravity at the site is the same for all bodies"});

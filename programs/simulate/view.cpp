@@ -78,6 +78,9 @@ Eigen::Vector3d up(const kreisel::SceneFile& scene) {
   if (std::holds_alternative<kreisel::scene_guide::Earth>(scene.guide.front())) {
     down = Eigen::Vector3d::UnitX();
   }
+  if (std::holds_alternative<kreisel::scene_guide::Orbit>(scene.guide.front())) {
+    down = -Eigen::Vector3d::UnitX();
+  }
   std::visit(
       [&down](const auto& field) {
         if constexpr (requires { field.g; }) down = field.g;

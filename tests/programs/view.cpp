@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
 
   const SceneFile scene = parse_scene(all_joints, file);
   auto [bodies, gravity] = bodies_in_gravity(scene);
-  const BodySystem system(make_guide(scene), bodies, gravity);
+  const BodySystem system(make_guide_of_equations(scene), bodies, gravity);
   auto start = system.rest();
   Eigen::Index q = 0;
   Eigen::Index v = 0;

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/model.hpp>
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/scene_system.hpp>
 #include <dynamics/guide/chain.hpp>
 #include <dynamics/guide/earth_frame.hpp>
+#include <dynamics/guide/orbit.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/tree/body_system.hpp>
 #include <dynamics/tree/joint/list.hpp>
@@ -29,6 +31,9 @@ mass = 2
 inertia = [1, 1, 1]
 )";
 const std::string site = "kind = \"earth\"\nlatitude_deg = 50\nheight = 100\nazimuth_deg = 30\n";
+const std::string orbit =
+    "kind = \"orbit\"\nsemi_major_axis = 7e6\neccentricity = 0.1\ninclination = 1\nnode_deg = "
+    "90\nperigee = 0.5\nanomaly = 2\n";
 const std::string run = "[solve]\nt_end = 4\n";
 
 SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
@@ -109,6 +114,21 @@ BOOST_AUTO_TEST_CASE(move_on_the_earth_as_in_the_library) {
   // A gravity given as a number includes the centrifugal part.
   check_same(guide("[guide]\n" + site + "gravity = 9.81\n"),
              RotatingFrame<>{earth_rotation(EarthSite<>{50, 30, 100})});
+}
+
+BOOST_AUTO_TEST_CASE(go_along_an_orbit_as_the_library_has_it) {
+  OrbitElements<> o{.semi_major_axis = 7e6,
+                    .eccentricity = 0.1,
+                    .inclination = 1,
+                    .node = 90 * 0.017453292519943295,
+                    .perigee = 0.5,
+                    .anomaly = 2};
+  check_same(guide("[guide]\n" + orbit), OrbitFrame<>(o));
+  o.parameter = 4.9e12;
+  o.j2 = 1.08262982131e-3;
+  check_same(guide("[guide]\n" + orbit + "mu = 4.9e12\nj2 = true\n"), OrbitFrame<>(o));
+  check_same(guide("[guide]\nkind = \"orbit\"\nsemi_major_axis = 8e6\n"),
+             OrbitFrame<>(OrbitElements<>{.semi_major_axis = 8e6}));
 }
 
 BOOST_AUTO_TEST_CASE(follow_a_log_beside_the_scene) {
@@ -199,7 +219,7 @@ BOOST_AUTO_TEST_SUITE(gravity_of_a_scene_file)
 Eigen::VectorXd acceleration(const std::string& text) {
   const SceneFile read = scene(text);
   SceneBodies bodies = bodies_in_gravity(read);
-  const BodySystem system(make_guide(read), std::move(bodies.bodies), bodies.gravity);
+  const BodySystem system(make_guide_of_equations(read), std::move(bodies.bodies), bodies.gravity);
   auto state = system.rest();
   BodyWorkspace w = system.workspace();
   Eigen::VectorXd result;
@@ -235,6 +255,84 @@ BOOST_AUTO_TEST_CASE(points_in_the_given_direction) {
   BOOST_TEST(std::abs(acceleration(turning + uniform("uniform"))[0] + 9 * lever) < 1e-14);
   BOOST_TEST(std::abs(acceleration(turning + uniform("inertial"))[0] + 9 * lever * std::cos(0.3)) <
              1e-14);
+}
+
+// A planet's centre 100 m below: 0.5 m along y and its first order in 0.5/100.
+BOOST_AUTO_TEST_CASE(points_to_a_planets_centre) {
+  const auto planet = [](const std::string& keys) {
+    return acceleration("[gravity]\nmu = 1e5\ncentre = [100, 0, 0]\n" + keys + arm + run)[0];
+  };
+  const double r = std::hypot(100, 0.5);
+  const double g = 1e5 / (r * r * r) * 100;
+  BOOST_TEST(std::abs(planet("kind = \"point\"\n") + g * lever) < 1e-13);
+  // In the plane of the equator J2 adds its (3/2) J2 (R/r)^2.
+  const double k = 1.5 * 0.01 * (50 / r) * (50 / r);
+  const std::string j2 = "kind = \"j2\"\nj2 = 0.01\nradius = 50\n";
+  BOOST_TEST(std::abs(planet(j2) + g * (1 + k) * lever) < 1e-13);
+  BOOST_TEST(std::abs(planet(j2 + "pole = [0, 0, 2]\n") - planet(j2)) < 1e-15);
+  BOOST_TEST(planet(j2 + "pole = [1, 0, 0]\n") > planet(j2));
+  // Of a body that is no sphere its size counts where that is asked for.
+  const auto rod = [&](const std::string& keys) {
+    return acceleration("[gravity]\nkind = \"point\"\nmu = 1e5\ncentre = [100, 0, 0]\n" + keys +
+                        "[[body]]\nname = \"rod\"\njoint = { kind = \"revolute\", axis = [0, 0, 1] "
+                        "}\nmass = 1\ninertia = [0, 1, 1]\ncentre = [0.5, 0.5, 0]\n" +
+                        run)[0];
+  };
+  BOOST_TEST(std::abs(rod("gradient = true\n") - rod("")) > 1e-6);
+  BOOST_TEST(rod("gradient = false\n") == rod(""));
+}
+
+// Along the orbit the origin is free of weight, and what lies across it is drawn back by mu/r^3.
+BOOST_AUTO_TEST_CASE(of_an_orbit_is_the_planets) {
+  const std::string text =
+      "[guide]\nkind = \"orbit\"\nsemi_major_axis = 7e6\n[gravity]\nkind = "
+      "\"orbit\"\n";
+  const std::string slide =
+      "[[body]]\nname = \"a\"\njoint = { kind = \"prismatic\", axis = [0, 0, 1] }\nmass = 2\n"
+      "inertia = [1, 1, 1]\ncentre = [0, 0, 3]\n";
+  const double rate2 = 3.986004418e14 / (7e6 * 7e6 * 7e6);
+  BOOST_TEST(std::abs(acceleration(text + slide + run)[0] + 3 * rate2) < 1e-12 * rate2);
+  // Seen from space gravity is the same, but for eight digits.
+  const std::string point =
+      "[guide]\nkind = \"orbit\"\nsemi_major_axis = 7e6\n[gravity]\nkind = "
+      "\"point\"\nmu = 3.986004418e14\n";
+  BOOST_TEST(std::abs(acceleration(point + slide + run)[0] + 3 * rate2) < 1e-8 * rate2);
+  // In a chain it stays that of the orbit.
+  const std::string chain =
+      "[guide]\nkind = \"chain\"\nlinks = [{ kind = \"orbit\", semi_major_axis = 7e6 }, { kind = "
+      "\"rotating\", angular_velocity = [0, 0, 1] }]\n[gravity]\nkind = \"orbit\"\n";
+  BOOST_TEST(std::abs(acceleration(chain + slide + run)[0] + 3 * rate2) < 1e-12 * rate2);
+}
+
+// NESC check case 1: a sphere dropped from 30000 ft over the equator. J2 counts, the ellipsoid's
+// gravitation ends 0.064 ft lower. The altitude is printed to 1e-7 ft.
+//
+// Source : E. B. Jackson et al., Check-Cases for Verification of 6-Degree-of-Freedom Flight Vehicle
+//          Simulations, NASA/TM-2015-218675
+BOOST_AUTO_TEST_CASE(drops_a_sphere_as_nesc_has_it) {
+  const SceneFile dropped = scene(R"(
+[guide]
+kind = "earth"
+latitude_deg = 0
+height = 9144
+azimuth_deg = 90
+[gravity]
+kind = "earth"
+field = "j2"
+[[body]]
+name = "sphere"
+joint = { kind = "free" }
+mass = 14.59
+inertia = [4.88, 4.88, 4.88]
+[solve]
+t_end = 30
+tolerance = 1e-12
+)");
+  const auto run = run_scene(dropped);
+  const Eigen::Vector3d fallen = run.states.back().coordinates.segment<3>(4);  // down, north, east
+  const double equator = 6378137;
+  const double altitude = std::hypot(equator + 9144 - fallen.x(), fallen.z()) - equator;
+  BOOST_TEST(std::abs(altitude / 0.3048 - 15598.9043522) < 5e-7);
 }
 
 // Both ways to specify gravity give the effective one. They differ by its gradient over half a
@@ -423,7 +521,7 @@ BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
       {"a = 1\na = 2\n", "is no TOML"},
       {"[guide]\nkind = \"rotatin\"\n" + body + run,
        "s.toml:2:8: guide.kind: 'rotatin' is none of 'inertial', 'rotating', 'harmonic', 'earth', "
-       "'table', 'rates' or 'chain' (did you mean 'rotating'?)"},
+       "'table', 'rates', 'orbit' or 'chain' (did you mean 'rotating'?)"},
       {"[guide]\nkind = \"rotating\"\n" + body + run,
        "s.toml:1:1: guide.angular_velocity: is missing"},
       {"[guide]\nkind = \"earth\"\nlatitude_deg = 91\nheight = 0\nazimuth_deg = 0\n" + body + run,
@@ -516,6 +614,29 @@ BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
       {earth("2e7", "0", "0"), "s.toml:4:10: guide.height: 20000000 m lies outside"},
       {earth("0", "361", "0"), "s.toml:5:15: guide.azimuth_deg: 361 degrees lies outside"},
       {earth("0", "0", "1001"), "s.toml:6:8: guide.rate: 1001 rad/s lies outside"},
+      {guide("kind = \"orbit\"\n"), "guide.semi_major_axis: is missing"},
+      {guide("kind = \"orbit\"\nsemi_major_axis = 0\n"),
+       "guide.semi_major_axis: 0 must be above 0"},
+      {guide("kind = \"orbit\"\nsemi_major_axis = 7e6\neccentricity = 1\n"),
+       "s.toml:4:16: guide.eccentricity: must be from 0 to below 1"},
+      {guide("kind = \"orbit\"\nsemi_major_axis = 7e6\neccentricity = -0.1\n"),
+       "guide.eccentricity: must be from 0 to below 1"},
+      {guide("kind = \"orbit\"\nsemi_major_axis = 7e6\nmu = -1\n"), "guide.mu: -1 must be above 0"},
+      {guide("kind = \"chain\"\nlinks = [{ kind = \"inertial\" }, { kind = \"orbit\", "
+             "semi_major_axis = 7e6 }]\n"),
+       "'orbit' must be the first link"},
+      {"[gravity]\nkind = \"point\"\n" + body + run, "gravity.mu: is missing"},
+      {"[gravity]\nkind = \"point\"\nmu = 0\n" + body + run, "gravity.mu: 0 must be above 0"},
+      {"[gravity]\nkind = \"point\"\nmu = 1\npole = [0, 0, 1]\n" + body + run,
+       "gravity.pole: is no key here"},
+      {"[gravity]\nkind = \"j2\"\nmu = 1\n" + body + run, "gravity.j2: is missing"},
+      {"[gravity]\nkind = \"j2\"\nmu = 1\nj2 = 1e-3\nradius = 0\n" + body + run,
+       "gravity.radius: 0 must be above 0"},
+      {"[gravity]\nkind = \"j2\"\nmu = 1\nj2 = 1e-3\nradius = 1\npole = [0, 0, 0]\n" + body + run,
+       "gravity.pole: is 0 and has no direction"},
+      {"[gravity]\nkind = \"orbit\"\n" + body + run, "gravity.kind: 'orbit' needs a guide of kind"},
+      {"[guide]\n" + site + "[gravity]\nkind = \"earth\"\nfield = \"j4\"\n" + body + run,
+       "gravity.field: 'j4' is none of 'normal' or 'j2'"},
       {"[gravity]\nkind = \"moon\"\nvector = [0, 0, 1]\n" + body + run,
        "s.toml:2:8: gravity.kind: 'moon' is none of"},
       {"body = []\n" + run, "s.toml:1:8: body: is empty"},
