@@ -242,7 +242,21 @@ Link rates(Random& r) {
   return link;
 }
 
+Link orbit(Random& r) {
+  Link link{.kind = LinkKind::orbit};
+  const auto element = [&r] { return r.chance(0.4) ? Angle{} : angle(r); };
+  link.orbit = {.semi_major_axis = r.pick({7e6, 8.5e6, 4.2164e7}),
+                .eccentricity = r.chance(0.4) ? 0 : rounded(r.between(0, 0.3), 3),
+                .inclination = element(),
+                .node = element(),
+                .perigee = element(),
+                .anomaly = element(),
+                .j2 = r.chance(0.3)};
+  return link;
+}
+
 Link any_link(Random& r, bool first) {
+  if (first && r.chance(0.08)) return orbit(r);
   const double u = r.uniform();
   if (u < 0.25) return rotating(r);
   if (u < 0.45) return harmonic(r);
@@ -270,15 +284,30 @@ void add_gravity_of_log(Random& r, Scene& scene) {
   log.gravity = log.says_gravity ? Vector(9.81 * direction(r)) : scene.gravity_vector;
 }
 
+/// A planet some earth's radii away.
+void add_planet(Random& r, Scene& scene) {
+  scene.gravity = r.chance(0.5) ? GravityKind::point : GravityKind::j2;
+  scene.gravity_vector = r.pick({6.4e6, 7e6, 2e7}) * direction(r);
+  scene.pole = direction(r);
+  if (r.chance(0.7)) scene.gradient = r.chance(0.7);
+}
+
 void add_gravity(Random& r, Scene& scene) {
+  if (!scene.guide.empty() && scene.guide.front().kind == LinkKind::orbit && r.chance(0.8)) {
+    scene.gravity = GravityKind::orbit;
+    if (r.chance(0.4)) scene.gradient = r.chance(0.5);
+    return;
+  }
   const bool on_earth = !scene.guide.empty() && scene.guide.front().kind == LinkKind::earth;
   if (on_earth) {
     if (scene.guide.front().gravity == "\"none\"" && r.chance(0.5)) {
-      scene.gravity = GravityKind::earth;
+      scene.gravity = r.chance(0.7) ? GravityKind::earth : GravityKind::earth_j2;
     }
     return;
   }
   if (r.chance(0.3)) return;
+  const bool of_log = !scene.guide.empty() && scene.guide.front().kind == LinkKind::rates;
+  if (!of_log && r.chance(0.1)) return add_planet(r, scene);
   scene.gravity = r.chance(0.1)   ? GravityKind::none
                   : r.chance(0.5) ? GravityKind::uniform
                                   : GravityKind::inertial;
@@ -661,6 +690,10 @@ void add_fast_gyro(Random& r, Scene& scene) {
 
 void add_approximation(Random& r, Scene& scene) {
   scene.guide.clear();
+  const auto needs_guide = {GravityKind::earth, GravityKind::earth_j2, GravityKind::orbit};
+  if (std::count(needs_guide.begin(), needs_guide.end(), scene.gravity) > 0) {
+    scene.gravity = GravityKind::not_given;
+  }
   const double u = r.uniform();
   if (u < 0.4) {
     add_small_pendulums(r, scene);

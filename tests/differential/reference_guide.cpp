@@ -136,6 +136,57 @@ Motion moved(const Link& link, Real t) {
   return motion;
 }
 
+constexpr Real earth_gm = 3.986004418e14L;
+constexpr Real earth_j2 = 1.08262982131e-3L;
+
+/// A frame that turns about an axis from an angle on.
+Motion turning(const Vec& axis, Real angle, Real rate) {
+  return {Eigen::AngleAxis<Real>(angle, axis).toRotationMatrix(), rate * axis};
+}
+
+/// The eccentric anomaly by bisection.
+Real eccentric_anomaly(Real M, Real e) {
+  Real low = M - e;
+  Real high = M + e;
+  for (int i = 0; i < 80; ++i) {
+    const Real middle = (low + high) / 2;
+    (middle - e * std::sin(middle) < M ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/// Kepler's motion in the plane of the orbit, x to the perigee, with axes along radius and normal.
+Motion in_plane(const Orbit& o, Real n, Real t) {
+  const Real e = o.eccentricity;
+  const Real a = o.semi_major_axis;
+  const Real b = a * std::sqrt(1 - e * e);
+  const Real f = o.anomaly.radian();
+  const Real start = std::atan2(std::sqrt(1 - e * e) * std::sin(f), e + std::cos(f));
+  const Real E = eccentric_anomaly(start - e * std::sin(start) + n * t, e);
+  const Vec x(a * (std::cos(E) - e), b * std::sin(E), 0);
+  const Real r = x.norm();
+  const Real rate = n * a / r;
+  const Vec v(-a * std::sin(E) * rate, b * std::cos(E) * rate, 0);
+  const Vec out = x / r;
+  const Vec h = x.cross(v);
+  Motion motion;
+  motion.R << out, Vec::UnitZ().cross(out), Vec::UnitZ();
+  motion.w = h / (r * r);
+  motion.dw = -2 * x.dot(v) / (r * r) * motion.w;
+  motion.x = x;
+  motion.v = v;
+  motion.a = -earth_gm / (r * r * r) * x;
+  return motion;
+}
+
+/// Gravitation of a planet from its centre.
+Vec planet_gravitation(const Vec& p, const Vec& pole, bool oblate) {
+  const Real r = p.norm();
+  const Real s = p.dot(pole) / r;
+  const Real k = oblate ? Real(1.5) * earth_j2 * (equator / r) * (equator / r) : 0;
+  return -earth_gm / (r * r) * ((1 + k * (1 - 5 * s * s)) * p / r + 2 * k * s * pole);
+}
+
 /// A motion relative to a frame that moves itself.
 Motion on(const Motion& base, const Motion& own) {
   const Vec x = base.R * own.x;
@@ -150,6 +201,25 @@ Motion on(const Motion& base, const Motion& own) {
   sum.a = base.a + base.dw.cross(x) + base.w.cross(base.w.cross(x)) + 2 * base.w.cross(v) +
           base.R * own.a;
   return sum;
+}
+
+}  // namespace
+
+namespace {
+
+/// Node, inclination and perigee turn one after the other.
+Motion along_orbit(const Orbit& o, Real t) {
+  const Real a = o.semi_major_axis;
+  const Real n = std::sqrt(earth_gm / (a * a * a));
+  const Real p = a * (1 - Real(o.eccentricity) * o.eccentricity);
+  const Real k = o.j2 ? n * earth_j2 * (equator / p) * (equator / p) : 0;
+  const Real c = std::cos(Real(o.inclination.radian()));
+  const Real node = Real(-1.5) * k * c;
+  const Real perigee = Real(0.75) * k * (5 * c * c - 1);
+  const Motion plane = on(turning(Vec::UnitZ(), o.node.radian() + node * t, node),
+                          turning(Vec::UnitX(), o.inclination.radian(), 0));
+  const Motion apse = on(plane, turning(Vec::UnitZ(), o.perigee.radian() + perigee * t, perigee));
+  return on(apse, in_plane(o, n, t));
 }
 
 }  // namespace
@@ -237,6 +307,7 @@ Motion Guide::own(const Link& link, Real t, const Real* y, Real* rates) const {
   if (link.is_logged()) return logged(link.log, t);
   if (link.kind == LinkKind::motion) return moved(link, t);
   if (link.kind == LinkKind::inertial) return {};
+  if (link.kind == LinkKind::orbit) return along_orbit(link.orbit, t);
   const Oscillation u =
       link.kind == LinkKind::harmonic
           ? differential::reference::at(link.turning, t, link.turns_in_degrees)
@@ -271,6 +342,17 @@ void Guide::project(State& y) const {
   for (Eigen::Index i = 0; i < size_; i += 10) y.segment<4>(i).normalize();
 }
 
+bool Guide::has_gradient() const {
+  const bool planet = scene_.gravity == GravityKind::point || scene_.gravity == GravityKind::j2;
+  if (scene_.gravity == GravityKind::orbit) return scene_.gradient.value_or(true);
+  return planet && scene_.gradient.value_or(false);
+}
+
+Real Guide::depth(const Motion& motion, const Vec& place) const {
+  const bool planet = scene_.gravity == GravityKind::point || scene_.gravity == GravityKind::j2;
+  return planet ? (motion.x + place - wide(scene_.gravity_vector)).norm() : place.norm();
+}
+
 Vec Guide::gravity(Real t, const Motion& motion, const Vec& place) const {
   const Vec given = wide(scene_.gravity_vector);
   const bool on_earth = !scene_.guide.empty() && scene_.guide.front().kind == LinkKind::earth;
@@ -279,6 +361,13 @@ Vec Guide::gravity(Real t, const Motion& motion, const Vec& place) const {
     case GravityKind::uniform: return motion.R * given;
     case GravityKind::inertial: return given;
     case GravityKind::earth: return ellipsoid_gravitation(motion.x + place);
+    case GravityKind::earth_j2: return planet_gravitation(motion.x + place, Vec::UnitZ(), true);
+    case GravityKind::point:
+    case GravityKind::j2:
+      return planet_gravitation(motion.x + place - given, wide(scene_.pole).normalized(),
+                                scene_.gravity == GravityKind::j2);
+    case GravityKind::orbit:
+      return planet_gravitation(motion.x + place, Vec::UnitZ(), scene_.guide.front().orbit.j2);
     case GravityKind::not_given: break;
   }
   if (!on_earth) return Vec::Zero();

@@ -43,6 +43,12 @@ class Guide {
   /// Gravity on inertial axes, at a position on inertial axes from the guide's origin.
   [[nodiscard]] Vec gravity(Real t, const Motion& motion, const Vec& place) const;
 
+  /// Whether gravity acts on all parts of a body, not on its centre of mass alone.
+  [[nodiscard]] bool has_gradient() const;
+
+  /// The way to where the potential of gravity is 0, on which it has about its strength.
+  [[nodiscard]] Real depth(const Motion& motion, const Vec& place) const;
+
  private:
   [[nodiscard]] Motion own(const Link& link, Real t, const Real* y, Real* rates) const;
 

@@ -1,5 +1,7 @@
 #include "reference_tree.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -98,6 +100,18 @@ Vec first_in_plane(const Vec& axis, const Vector& second_axis) {
   return axis.cross(along).cross(axis).normalized();
 }
 
+/// Along the principal axes, so that the sum of m x x^t is that of the tensor.
+Mat six_masses(const Mat& inertia, Real mass) {
+  if (!(mass > 0)) return Mat::Zero();
+  const Mat second = inertia.trace() / 2 * Mat::Identity() - inertia;
+  const Eigen::SelfAdjointEigenSolver<Mat> axes(second);
+  Mat masses = axes.eigenvectors();
+  for (int k = 0; k < 3; ++k) {
+    masses.col(k) *= std::sqrt(std::max<Real>(0, 3 * axes.eigenvalues()[k] / mass));
+  }
+  return masses;
+}
+
 }  // namespace
 
 Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodies.size()) {
@@ -109,6 +123,7 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
     part.mass = Real(body.mass);
     part.centre = wide(body.centre);
     part.inertia = tensor(body.inertia);
+    part.masses = six_masses(part.inertia, body.mass);
     part.zero = turn_by(body.orientation);
     part.axis = wide(body.axis).normalized();
     part.second_axis = body.kind == JointKind::planar ? first_in_plane(part.axis, body.second_axis)
@@ -392,6 +407,23 @@ void Tree::assemble(const Motion& guide) {
   matrix_.topRightCorner(N, rows_) = matrix_.bottomLeftCorner(rows_, N).transpose();
 }
 
+/// On the centre of mass, or on six masses: what these have more is of fourth order in the size.
+void Tree::add_gravity(int body, Real t, const Motion& guide) {
+  const Part& part = parts_[static_cast<std::size_t>(body)];
+  const Pose& b = poses_[static_cast<std::size_t>(body)];
+  if (!(part.mass > 0)) return;
+  if (!guide_.has_gradient()) {
+    right_.segment<3>(6 * body) += part.mass * (guide_.gravity(t, guide, b.x) - guide.a);
+    return;
+  }
+  for (int k = 0; k < 6; ++k) {
+    const Vec reach = (k % 2 == 0 ? 1 : -1) * (b.R * part.masses.col(k / 2));
+    const Vec force = part.mass / 6 * (guide_.gravity(t, guide, b.x + reach) - guide.a);
+    right_.segment<3>(6 * body) += force;
+    right_.segment<3>(6 * body + 3) += reach.cross(force);
+  }
+}
+
 void Tree::add_torque(int body, const Vec& torque) {
   right_.segment<3>(6 * body + 3) += torque;
   const int index = parents_[static_cast<std::size_t>(body)];
@@ -467,10 +499,7 @@ void Tree::add_joint_force(Real t, int body, const State& y) {
 void Tree::add_forces(Real t, const State& y, const Motion& guide) {
   for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
     const Part& part = parts_[static_cast<std::size_t>(i)];
-    const Vec& x = poses_[static_cast<std::size_t>(i)].x;
-    if (part.mass > 0) {
-      right_.segment<3>(6 * i) += part.mass * (guide_.gravity(t, guide, x) - guide.a);
-    }
+    add_gravity(i, t, guide);
     for (const Load& load : scene_.bodies[static_cast<std::size_t>(i)].loads) {
       add_load(t, load, i, guide);
     }
@@ -589,7 +618,8 @@ Sizes Tree::sizes(Real t, const State& y) {
     const Body& body = scene_.bodies[i];
     const Vec spin = part.inertia * (b.R.transpose() * b.w);
     const Real g = guide_.gravity(t, guide, b.x).norm();
-    sum.energy += part.mass * (b.v.squaredNorm() / 2 + g * b.x.norm()) + b.w.norm() * spin.norm();
+    sum.energy += part.mass * (b.v.squaredNorm() / 2 + g * guide_.depth(guide, b.x)) +
+                  b.w.norm() * spin.norm();
     sum.momentum += part.mass * b.v.norm() * (1 + b.x.norm()) + spin.norm();
     for (std::size_t k = 0; k < body.stiffness.size(); ++k) {
       const Eigen::Index angle = body.kind == JointKind::universal ? Eigen::Index(k) : 0;
@@ -615,9 +645,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
     const Part& part = parts_[at_body];
     const Pose& b = poses_[at_body];
     const Mat I = b.R * part.inertia * b.R.transpose();
-    if (part.mass > 0) {
-      right_.segment<3>(6 * i) = part.mass * (guide_.gravity(t, guide, b.x) - guide.a);
-    }
+    add_gravity(static_cast<int>(i), t, guide);
     right_.segment<3>(6 * i) -= part.mass * accelerations.segment<3>(6 * i);
     right_.segment<3>(6 * i + 3) -= I * accelerations.segment<3>(6 * i + 3) + b.w.cross(I * b.w);
     for (const Load& load : scene_.bodies[at_body].loads) {

@@ -40,6 +40,8 @@ class Tree {
     Real mass = 0;
     Vec centre = Vec::Zero();
     Mat inertia = Mat::Zero();
+    /// Columns: six equal masses at these points and opposite to them have the same inertia.
+    Mat masses = Mat::Zero();
     Mat zero = Mat::Identity();     ///< the body's axes at zero coordinates, in the parent's
     Vec axis = Vec::Zero();         ///< unit vectors on the parent's axes
     Vec second_axis = Vec::Zero();  ///< of a planar joint the first direction in its plane
@@ -87,6 +89,7 @@ class Tree {
                     Real off, Real speed);
   void add_forces(Real t, const State& y, const Motion& guide);
   void add_joint_force(Real t, int body, const State& y);
+  void add_gravity(int body, Real t, const Motion& guide);
   void add_torque(int body, const Vec& torque);
   void add_force(int body, const Relative& r, const Vec& force);
   void add_load(Real t, const Load& load, int body, const Motion& guide);

@@ -121,6 +121,21 @@ Keys moving_keys(const Link& link, const char* kind, const std::string& turning,
   return result;
 }
 
+Keys orbit_keys(const Orbit& orbit) {
+  Keys result{{"kind", "\"orbit\""}, {"semi_major_axis", text(orbit.semi_major_axis)}};
+  const auto add = [&result](const char* key, const Angle& angle) {
+    result.emplace_back(angle_key(key, angle.degrees), text(angle.value));
+  };
+  if (orbit.eccentricity != 0) result.emplace_back("eccentricity", text(orbit.eccentricity));
+  add("inclination", orbit.inclination);
+  add("node", orbit.node);
+  add("perigee", orbit.perigee);
+  add("anomaly", orbit.anomaly);
+  result.emplace_back("mu", "3.986004418e14");
+  if (orbit.j2) result.emplace_back("j2", "true");
+  return result;
+}
+
 /// The keys of a guide frame.
 Keys keys(const Link& link, std::size_t index, double t_end) {
   switch (link.kind) {
@@ -136,6 +151,7 @@ Keys keys(const Link& link, std::size_t index, double t_end) {
       return {{"kind", "\"motion\""},
               {"position", vector_signal(link.position)},
               {"angles", angles(link.angles)}};
+    case LinkKind::orbit: return orbit_keys(link.orbit);
     case LinkKind::earth: break;
   }
   Keys result{{"kind", "\"earth\""},
@@ -166,11 +182,25 @@ std::string guide(const Scene& scene) {
   return result + (scene.chain_in_chain ? "  ] },\n]\n" : "]\n");
 }
 
+std::string planet(const Scene& scene) {
+  const bool oblate = scene.gravity == GravityKind::j2;
+  std::string result = std::string("[gravity]\nkind = \"") + (oblate ? "j2" : "point") +
+                       "\"\nmu = 3.986004418e14\ncentre = " + list(scene.gravity_vector) + "\n";
+  if (!oblate) return result;
+  return result + "j2 = 1.08262982131e-3\nradius = 6378137\npole = " + list(scene.pole) + "\n";
+}
+
 std::string gravity(const Scene& scene) {
+  const std::string gradient =
+      scene.gradient ? std::string("gradient = ") + (*scene.gradient ? "true\n" : "false\n") : "";
   switch (scene.gravity) {
     case GravityKind::not_given: return {};
     case GravityKind::none: return "[gravity]\nkind = \"none\"\n";
     case GravityKind::earth: return "[gravity]\nkind = \"earth\"\n";
+    case GravityKind::earth_j2: return "[gravity]\nkind = \"earth\"\nfield = \"j2\"\n";
+    case GravityKind::point:
+    case GravityKind::j2: return planet(scene) + gradient;
+    case GravityKind::orbit: return "[gravity]\nkind = \"orbit\"\n" + gradient;
     case GravityKind::uniform:
       return "[gravity]\nkind = \"uniform\"\nvector = " + list(scene.gravity_vector) + "\n";
     case GravityKind::inertial: break;

@@ -56,7 +56,18 @@ struct Signal {
   [[nodiscard]] bool empty() const;
 };
 
-enum class LinkKind { inertial, rotating, harmonic, earth, table, rates, motion };
+/// Elements of an orbit about the earth.
+struct Orbit {
+  double semi_major_axis = 0;
+  double eccentricity = 0;
+  Angle inclination = {};
+  Angle node = {};
+  Angle perigee = {};
+  Angle anomaly = {};
+  bool j2 = false;
+};
+
+enum class LinkKind { inertial, rotating, harmonic, earth, table, rates, motion, orbit };
 
 struct Link {
   LinkKind kind = LinkKind::inertial;
@@ -76,13 +87,14 @@ struct Link {
   Log log = {};
   Signal position = {};               ///< of a motion
   std::array<Signal, 3> angles = {};  ///< yaw, pitch, roll
+  Orbit orbit = {};
 
   [[nodiscard]] bool is_logged() const {
     return kind == LinkKind::table || kind == LinkKind::rates;
   }
 };
 
-enum class GravityKind { not_given, none, uniform, inertial, earth };
+enum class GravityKind { not_given, none, uniform, inertial, earth, earth_j2, point, j2, orbit };
 
 using kreisel::JointKind;
 
@@ -143,7 +155,9 @@ struct Scene {
   std::vector<Link> guide = {};  ///< more than one: a chain; none: not given
   bool chain_in_chain = false;   ///< of all links but the first
   GravityKind gravity = GravityKind::not_given;
-  Vector gravity_vector = Vector::Zero();
+  Vector gravity_vector = Vector::Zero();  ///< of a planet its centre
+  Vector pole = Vector::UnitZ();
+  std::optional<bool> gradient = {};  ///< as in the file
   std::vector<Body> bodies = {};
   double t_end = 1;
   double tolerance = 1e-10;

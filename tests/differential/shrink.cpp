@@ -85,10 +85,14 @@ void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
   changes.emplace_back([](Scene& s) { s.model.clear(), s.method.clear(), s.reports = false; });
   changes.emplace_back([](Scene& s) { s.guide.clear(); });
   changes.emplace_back([](Scene& s) { s.gravity = GravityKind::not_given; });
+  changes.emplace_back([](Scene& s) { s.gradient.reset(); });
+  changes.emplace_back([](Scene& s) { s.pole = Vector::UnitZ(); });
   for (std::size_t i = 0; i < scene.guide.size(); ++i) {
     changes.emplace_back(
         [i](Scene& s) { s.guide.erase(s.guide.begin() + static_cast<std::ptrdiff_t>(i)); });
     changes.emplace_back([i](Scene& s) { s.guide[i].turning = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].orbit.eccentricity = 0; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].orbit.j2 = false; });
     changes.emplace_back([i](Scene& s) { s.guide[i].pushing = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].position = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].angles = {}; });

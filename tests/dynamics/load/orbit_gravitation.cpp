@@ -229,7 +229,7 @@ BOOST_DATA_TEST_CASE(keeps_energy_of_large_bodies, data::xrange(2), oblate) {
                                  .centre = {1, 2, 3},
                                  .gradient = true};
   const FreeBody body(cloud(3, 2).inertia(), RestingFrame<>{}, load);
-  decltype(body)::State start;
+  typename decltype(body)::State start;
   start.position = {11, 3, 5};
   start.velocity.value = {{0.5, -1, 0.7}, {1, 8, 4}};
   const auto energy = [&](const auto& state) {
@@ -269,7 +269,7 @@ BOOST_DATA_TEST_CASE(moves_particles_as_two_orbits_do, data::xrange(6), k) {
   const FreeBody particle(
       InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Identity()), axes,
       OrbitGravitation<>(orbit));
-  decltype(particle)::State start;
+  typename decltype(particle)::State start;
   start.position = size * Vector3<double>(0.6, -0.5, 0.4);
   start.velocity.value.moment = 1e-3 * size * Vector3<double>(0.2, 0.5, -0.3);
   const double t = 6000;
@@ -311,7 +311,7 @@ BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_circle) {
   const OrbitGravitation<> load(circle);
   const OrbitAxes<> axes(circle);
   const FreeBody body(cloud(5, 1e5).inertia(), axes, load);
-  decltype(body)::State start;
+  typename decltype(body)::State start;
   start.position = {3e4, 1e5, -2e4};
   start.velocity.value = {{1e-3, -2e-3, 1e-3}, {20, -10, 30}};
   const auto integral = [&](double t, const auto& state) {
@@ -340,12 +340,12 @@ BOOST_DATA_TEST_CASE(moves_bodies_as_j2_does, data::xrange(2), k) {
   const InertiaTensor<Body> inertia = cloud(7, 10).inertia();
   const FreeBody on_orbit(inertia, axes, OrbitGravitation<>(orbit));
   const FreeBody in_space(inertia, RestingFrame<>{}, OblateGravitation<>{.gradient = true});
-  decltype(on_orbit)::State start;
+  typename decltype(on_orbit)::State start;
   start.position = {5, -30, 10};
   start.velocity.value = {{1e-3, 2e-3, -1e-3}, {0.1, 0.2, -0.1}};
   const OrbitFrame<> frame(orbit);
   const auto now = frame(0.0);
-  decltype(in_space)::State from;
+  typename decltype(in_space)::State from;
   from.attitude = Eigen::Quaterniond(now.X.value.rotation);
   from.position = now.X.point(start.position);
   const Motor<> carried = now.V.value.reduced_at(start.position);
