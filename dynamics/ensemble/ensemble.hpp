@@ -17,8 +17,8 @@
 #include <vector>
 
 #include <dynamics/ensemble/packed_steps.hpp>
-#include <dynamics/ensemble/random.hpp>
 #include <dynamics/ensemble/workers.hpp>
+#include <dynamics/random.hpp>
 #include <dynamics/solve/adaptive_runs.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/missed.hpp>

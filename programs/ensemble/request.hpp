@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <dynamics/ensemble/random.hpp>
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/random.hpp>
 
 /// How numbers of the scene differ from member to member; those of one variation together.
 struct Variation {

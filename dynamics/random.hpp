@@ -13,7 +13,7 @@ namespace kreisel {
 ///
 /// Source : Philox4x32-10: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, Parallel random
 ///          numbers: as easy as 1, 2, 3, SC11 (2011); key: the seed, counter: the block and the
-///          index. Held against the authors' known answers (tests/dynamics/ensemble/random.cpp)
+///          index. Held against the authors' known answers (tests/dynamics/random.cpp)
 class MemberRandom {
  public:
   using Block = std::array<std::uint32_t, 4>;

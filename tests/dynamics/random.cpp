@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <set>
 
-#include <dynamics/ensemble/random.hpp>
+#include <dynamics/random.hpp>
 
 using namespace kreisel;
 
