@@ -1,0 +1,95 @@
+#include <dynamics/sensor/sensors.hpp>
+
+namespace kreisel {
+
+namespace {
+
+using Vector = Vector3<double>;
+
+/// The point of a body as the guide sees it, on guide axes.
+PointReading seen_from_guide(const BodyKinematics& body, const Vector& at) {
+  const Vector r = body.R * at;
+  const Vector turn = body.w.cross(r);
+  return {body.x + r, body.v + turn, body.a + body.dw.cross(r) + body.w.cross(turn)};
+}
+
+/// The same as the inertial frame sees it, on guide axes still.
+PointReading seen_from_inertial(const PointReading& p, const FrameMotion<Guide, Inertial>& guide) {
+  const auto& [u, v_origin] = guide.V.value;
+  const Vector& du = guide.dV.value.resultant;
+  const auto& [R, origin] = guide.X.value;
+  const Vector turn = u.cross(p.position);
+  return {R.transpose() * origin + p.position, v_origin + turn + p.velocity,
+          p.acceleration + guide.origin_acceleration() + du.cross(p.position) + u.cross(turn) +
+              2 * u.cross(p.velocity)};
+}
+
+/// The same as a body sees it, on guide axes still.
+PointReading seen_from_body(const PointReading& p, const BodyKinematics& body) {
+  const Vector r = p.position - body.x;
+  const Vector turn = body.w.cross(r);
+  const Vector v = p.velocity - body.v - turn;
+  return {r, v,
+          p.acceleration - body.a - body.dw.cross(r) - body.w.cross(turn) - 2 * body.w.cross(v)};
+}
+
+/// Takes components on guide axes to those of the frame.
+Matrix3<double> from_guide(const SensorFrame& frame, const SystemKinematics& system) {
+  switch (frame.kind) {
+    case SensorFrame::Kind::guide: break;
+    case SensorFrame::Kind::inertial: return system.guide.X.value.rotation;
+    case SensorFrame::Kind::body: return system.body(frame.body).R.transpose();
+  }
+  return Matrix3<double>::Identity();
+}
+
+/// Gravitation at a point of a body on guide axes: what the load is on a mass of 1 kg there.
+Vector gravitation(const SystemKinematics& system, int body, const Vector& at) {
+  if (system.gravity.load == nullptr) return system.gravity.uniform;
+  const BodyKinematics& b = system.body(body);
+  const Matrix3<double> to_body = b.R.transpose();
+  const LoadContext<> here{
+      system.t,
+      {{b.R, b.x}},
+      {{to_body * b.w, to_body * b.v}},
+      system.guide,
+      InertiaTensor<Body>::about_centre(1, at, Matrix3<double>::Zero(), Mass::zero_allowed)};
+  return system.gravity.uniform + b.R * (*system.gravity.load)(here).value.resultant;
+}
+
+}  // namespace
+
+Vector Gyro::operator()(const SystemKinematics& system) const {
+  const BodyKinematics& b = system.body(body);
+  return axes.conjugate() * (b.R.transpose() * (b.w + system.guide.V.value.resultant));
+}
+
+Vector Accelerometer::operator()(const SystemKinematics& system) const {
+  const BodyKinematics& b = system.body(body);
+  const Vector a = seen_from_inertial(seen_from_guide(b, at), system.guide).acceleration;
+  return axes.conjugate() * (b.R.transpose() * (a - gravitation(system, body, at)));
+}
+
+PointReading PointSensor::operator()(const SystemKinematics& system) const {
+  PointReading p = seen_from_guide(system.body(body), at);
+  if (against.kind == SensorFrame::Kind::inertial) p = seen_from_inertial(p, system.guide);
+  if (against.kind == SensorFrame::Kind::body) p = seen_from_body(p, system.body(against.body));
+  const Matrix3<double> turn = from_guide(axes, system);
+  return {turn * p.position, turn * p.velocity, turn * p.acceleration};
+}
+
+Matrix3<double> AttitudeSensor::operator()(const SystemKinematics& system) const {
+  return from_guide(against, system) * system.body(body).R;
+}
+
+Motor<> ReactionSensor::operator()(const SystemKinematics& system) const {
+  const Motor<> on_body =
+      system.reactions.on_body[static_cast<std::size_t>(body)].value.reduced_at(at);
+  const auto turned = [&](const Vector& v) -> Vector {
+    if (!frame) return axes.conjugate() * v;
+    return axes.conjugate() * (from_guide(*frame, system) * (system.body(body).R * v));
+  };
+  return {turned(on_body.resultant), turned(on_body.moment)};
+}
+
+}  // namespace kreisel
