@@ -19,6 +19,7 @@
 
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/model.hpp>
+#include <dynamics/file/readings.hpp>
 #include <motor/error.hpp>
 
 using namespace kreisel;
@@ -42,6 +43,7 @@ struct Run {
   py::dict coordinates;
   py::dict rates;
   py::dict reactions;
+  py::dict sensors;
   py::array_t<double> errors;
   std::vector<kreisel::Term> terms;
   kreisel::RunReport report;
@@ -129,13 +131,13 @@ std::string toml_of(const std::string& key, const py::handle& value) {
                        py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
 }
 
-/// The scene of keyword arguments, a line for each keyword and for each body.
+/// The scene of keyword arguments, a line for each keyword and for each body and sensor.
 Scene scene_of_keywords(const py::kwargs& keywords) {
   std::string text;
   for (const auto& [name, value] : keywords) {
     const auto key = name.cast<std::string>();
-    const bool list =
-        key == "body" && (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
+    const bool list = (key == "body" || key == "sensor") &&
+                      (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
     text += key_of(key) + " = " + (list ? toml_list(key, value, "\n") : toml_of(key, value)) + "\n";
   }
   return scene_of_text(std::move(text), "keywords");
@@ -212,13 +214,15 @@ void warn_if_missed(const kreisel::RunReport& report) {
 Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
                 const std::optional<std::string>& method,
                 const std::optional<std::vector<double>>& times, bool reactions) {
-  const kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
+  kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
+  file.reactions = reactions;
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
   kreisel::SolveOptions options = options_of(file);
   options.output_times = file.output_times;
   SignalWatch watch;
   kreisel::Trajectory<kreisel::JointState> run;
   std::vector<std::vector<double>> numbers;
+  kreisel::SensorReadings readings(file);
   {
     const py::gil_scoped_release released;
     run = model->solve(
@@ -227,6 +231,8 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
         [&watch] { return watch.stop(); });
     for (std::size_t i = 0; i < run.states.size() && !watch.stop(); ++i) {
       numbers.push_back(row(*model, run.times[i], run.states[i], reactions));
+      const std::vector<double> own = readings.row(*model, run.times[i], run.states[i]);
+      numbers.back().insert(numbers.back().end(), own.begin(), own.end());
     }
   }
   watch.rethrow();
@@ -243,7 +249,7 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
   result.errors =
       py::array_t<double>(static_cast<py::ssize_t>(run.errors.size()), run.errors.data());
   result.report = run.report;
-  result.columns = columns(model->tree(), reactions);
+  result.columns = columns(file);
   const std::size_t width = result.columns.size();
   result.rows = py::array_t<double>({numbers.size(), width});
   auto cells = result.rows.mutable_unchecked<2>();
@@ -261,12 +267,21 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
     result.rates[name] = part(result.rows, at, v_count);
     at += static_cast<std::size_t>(v_count);
   }
-  if (!reactions) return result;
   for (const kreisel::BodyDescription& body : file.bodies) {
+    if (!reactions) break;
     result.reactions[py::str(body.name)] =
         py::dict("force"_a = part(result.rows, at, 3), "torque"_a = part(result.rows, at + 3, 3),
                  "drive_torque"_a = part(result.rows, at + 6, 1));
     at += 7;
+  }
+  for (const kreisel::SceneSensor& sensor : file.sensors) {
+    py::dict reading;
+    for (const kreisel::SensorPart& piece : parts(sensor, file.bodies)) {
+      const auto count = static_cast<int>(piece.components.size());
+      reading[py::str(piece.name)] = part(result.rows, at, count);
+      at += piece.components.size();
+    }
+    result.sensors[py::str(sensor.name)] = std::move(reading);
   }
   return result;
 }
@@ -338,6 +353,9 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("reactions", &Run::reactions,
                     "by body, on request: 'force' in N and 'torque' in N m of the parent at the "
                     "joint, on body axes, and 'drive_torque' in N m")
+      .def_readonly("sensors", &Run::sensors,
+                    "by sensor a dict of its parts: 'value', with errors also 'true'; of a point "
+                    "'position', 'velocity', 'acceleration'; of a reaction 'force', 'torque'")
       .def_readonly(
           "errors", &Run::errors,
           "estimates of the global error over time; Report.error_estimate is the greatest")
@@ -348,9 +366,9 @@ PYBIND11_MODULE(kreisel, m) {
                     "A mechanical system on a guide frame, described as in a scene file.")
       .def(py::init(&scene_of_file), "path"_a, "Reads a scene file (TOML).")
       .def(py::init(&scene_of_keywords),
-           "Builds a scene from keyword arguments: title, guide, gravity, body, solve, report, as "
-           "in "
-           "a\nscene file. Tables are dicts, body is a list of dicts; numpy arrays are lists.\n\n"
+           "Builds a scene from keyword arguments: title, guide, gravity, body, sensor, solve, "
+           "report, as in a\nscene file. Tables are dicts, body and sensor are lists of dicts; numpy "
+           "arrays are lists.\n\n"
            "    Scene(gravity={'kind': 'uniform', 'vector': [0, 0, -9.81]},\n"
            "          body=[{'name': 'rod', 'joint': {'kind': 'revolute', 'axis': [0, 1, 0]},\n"
            "                 'mass': 1, 'centre': [0, 0, -1], 'inertia': [0.1, 0.1, 0.1]}],\n"

@@ -51,7 +51,8 @@ def simulate(scene, *arguments):
 
 class AsSimulate(unittest.TestCase):
     def test_to_the_last_bit(self):
-        for name in ["cardan_gyro_springs", "crane_on_ship", "satellite", "tumbling_body"]:
+        for name in ["cardan_gyro_springs", "crane_on_ship", "satellite", "tumbling_body",
+                     "imu_on_ship"]:
             with self.subTest(name):
                 path = SCENES / (name + ".toml")
                 summary, names, rows = simulate(path, "--t-end", "2", "--reactions")
@@ -89,6 +90,15 @@ class AsSimulate(unittest.TestCase):
         run = scene.solve(times=[0.25, 1.25], tolerance=1e-6, method="radau13")
         self.assertEqual(run.times.tolist(), [0.25, 1.25])
         self.assertEqual((run.report.tolerance, run.report.method), (1e-6, "radau13"))
+
+    def test_sensors_by_name(self):
+        run = kreisel.Scene(SCENES / "imu_on_ship.toml").solve(t_end=0.2)
+        for name, part, column in [("gyro", "value", "gyro.x"),
+                                   ("antenna", "velocity", "antenna.velocity x"),
+                                   ("cheap gyro", "true", "cheap gyro.true x")]:
+            at = run.columns.index(column)
+            np.testing.assert_array_equal(run.sensors[name][part], run.rows[:, at:at + 3])
+        self.assertEqual(set(run.sensors["antenna"]), {"position", "velocity", "acceleration"})
 
 
 class OfKeywords(unittest.TestCase):

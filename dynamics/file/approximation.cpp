@@ -148,6 +148,9 @@ class Approximation final : public SceneSolver {
       double t, const JointState& state) const override {
     return exact_->conserved(t, state);
   }
+  [[nodiscard]] SystemKinematics kinematics(double t, const JointState& state) const override {
+    return exact_->kinematics(t, state);
+  }
   [[nodiscard]] Pose<double> pose(double t, const JointState& state, int body) const override {
     return exact_->pose(t, state, body);
   }

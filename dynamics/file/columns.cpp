@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -6,15 +7,14 @@
 
 namespace kreisel {
 
-namespace {
-
-/// The quantities of a joint in the order of the columns: coordinates, then rates.
-std::vector<JointQuantity> quantities(const BodyDescription& body) {
-  const JointType& type = joint_type(body.joint.kind);
+std::vector<JointQuantity> joint_quantities(JointKind kind) {
+  const JointType& type = joint_type(kind);
   std::vector<JointQuantity> all = type.coordinates;
   all.insert(all.end(), type.rates.begin(), type.rates.end());
   return all;
 }
+
+namespace {
 
 int count(const BodyTree& tree) { return static_cast<int>(tree.bodies().size()); }
 
@@ -24,21 +24,60 @@ bool has_attitude(const BodyTree& tree, int body) {
 
 }  // namespace
 
-std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
+std::vector<std::string> columns(const std::vector<BodyDescription>& bodies, bool reactions) {
   std::vector<std::string> names{"t"};
-  for (const auto& body : tree.bodies()) {
-    for (const JointQuantity& quantity : quantities(body)) {
+  for (const auto& body : bodies) {
+    for (const JointQuantity& quantity : joint_quantities(body.joint.kind)) {
       for (const std::string& column : quantity.columns) names.push_back(body.name + "." + column);
     }
   }
   if (!reactions) return names;
-  for (const auto& body : tree.bodies()) {
-    for (const char* const part :
-         {"force x", "force y", "force z", "torque x", "torque y", "torque z", "drive torque"}) {
-      names.push_back(body.name + "." + part);
-    }
+  for (const auto& body : bodies) {
+    for (const char* const part : reaction_quantities) names.push_back(body.name + "." + part);
   }
   return names;
+}
+
+std::vector<std::string> columns(const SceneFile& scene) {
+  std::vector<std::string> names = columns(scene.bodies, scene.reactions);
+  for (const SceneSensor& sensor : scene.sensors) {
+    const std::vector<std::string> own = columns(sensor, scene.bodies);
+    names.insert(names.end(), own.begin(), own.end());
+  }
+  return names;
+}
+
+bool names_column(std::string_view word, std::string_view column) {
+  if (!column.starts_with(word)) return false;
+  return column.size() == word.size() || column[word.size()] == '.' || column[word.size()] == ' ';
+}
+
+std::vector<std::size_t> chosen_columns(const std::vector<std::string>& columns,
+                                        const std::vector<std::string>& words) {
+  std::vector<std::size_t> chosen{0};
+  for (const std::string& word : words) {
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+      const bool is_new = std::find(chosen.begin(), chosen.end(), i) == chosen.end();
+      if (is_new && names_column(word, columns[i])) chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+void append_joint(const BodyTree& tree, int body, const JointState& state,
+                  std::vector<double>& values) {
+  const auto append = [&values](const auto& vector) {
+    values.insert(values.end(), vector.data(), vector.data() + vector.size());
+  };
+  const auto [q, q_count, v, v_count] = tree.place(body);
+  if (has_attitude(tree, body)) {
+    const Eigen::Quaterniond a = attitude(tree, body, state);
+    append(Eigen::Vector4d(a.w(), a.x(), a.y(), a.z()));
+    if (q_count == 7) append(place(tree, body, state));
+  } else {
+    append(state.coordinates.segment(q, q_count).eval());
+  }
+  append(state.rates.segment(v, v_count).eval());
 }
 
 std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
@@ -48,17 +87,7 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
   const auto append = [&values](const auto& vector) {
     values.insert(values.end(), vector.data(), vector.data() + vector.size());
   };
-  for (int i = 0; i < count(tree); ++i) {
-    const auto [q, q_count, v, v_count] = tree.place(i);
-    if (has_attitude(tree, i)) {
-      const Eigen::Quaterniond a = attitude(tree, i, state);
-      append(Eigen::Vector4d(a.w(), a.x(), a.y(), a.z()));
-      if (q_count == 7) append(place(tree, i, state));
-    } else {
-      append(state.coordinates.segment(q, q_count).eval());
-    }
-    append(state.rates.segment(v, v_count).eval());
-  }
+  for (int i = 0; i < count(tree); ++i) append_joint(tree, i, state, values);
   if (!reactions) return values;
   const JointReactions carried = model.reactions(t, state);
   for (int i = 0; i < count(tree); ++i) {
@@ -78,7 +107,9 @@ std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
     for (int k = 0; k < count; ++k, ++at) values[at] = shown(values[at], size);
   };
   for (const auto& body : tree.bodies()) {
-    for (const JointQuantity& quantity : quantities(body)) show(quantity.unit, quantity.count());
+    for (const JointQuantity& quantity : joint_quantities(body.joint.kind)) {
+      show(quantity.unit, quantity.count());
+    }
   }
   while (at < values.size()) {
     show("N", 3);

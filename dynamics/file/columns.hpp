@@ -1,20 +1,48 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/scale.hpp>
+#include <dynamics/tree/joint/type.hpp>
 
 namespace kreisel {
 
+/// The quantities of a joint in the order of the columns: coordinates, then rates.
+std::vector<JointQuantity> joint_quantities(JointKind kind);
+
+/// Names of what a joint carries.
+inline constexpr std::array reaction_quantities{"force x",  "force y",  "force z",     "torque x",
+                                                "torque y", "torque z", "drive torque"};
+
 /// The columns of a trajectory: t, coordinates and rates of every joint, and on demand what it
 /// carries and what its drive needs. Attitudes (w, x, y, z) and places are against the parent.
-std::vector<std::string> columns(const BodyTree& tree, bool reactions);
+std::vector<std::string> columns(const std::vector<BodyDescription>& bodies, bool reactions);
+inline std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
+  return columns(tree.bodies(), reactions);
+}
+
+/// The columns of a run of a scene: joints, what they carry where it is reported, and sensors.
+[[nodiscard]] std::vector<std::string> columns(const SceneFile& scene);
+
+/// Whether a word is a column's name, or that of its group: all of it before a dot or a blank.
+[[nodiscard]] bool names_column(std::string_view word, std::string_view column);
+
+/// The indices of the columns that words name, in the order of the words, after that of the time.
+[[nodiscard]] std::vector<std::size_t> chosen_columns(const std::vector<std::string>& columns,
+                                                      const std::vector<std::string>& words);
 
 /// The numbers of a row, in the order of the columns.
 std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
                         bool reactions);
+
+/// Appends coordinates and rates of a body's joint, as the columns have them.
+void append_joint(const BodyTree& tree, int body, const JointState& state,
+                  std::vector<double>& values);
 
 /// The row as pictures show it: what is rounding next to the scale is 0.
 std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,

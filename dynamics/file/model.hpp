@@ -40,6 +40,8 @@ class SceneSolver {
   [[nodiscard]] virtual Terms equation_terms() const = 0;
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const = 0;
+  /// How all bodies move, and what their joints carry.
+  [[nodiscard]] virtual SystemKinematics kinematics(double t, const JointState& state) const = 0;
   /// The body in the guide.
   [[nodiscard]] virtual Pose<double> pose(double t, const JointState& state, int body) const = 0;
 };

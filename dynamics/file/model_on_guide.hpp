@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <utility>
 
 #include <dynamics/file/model.hpp>
@@ -77,6 +78,7 @@ class ModelOnGuide final : public SceneSolver {
  public:
   ModelOnGuide(M guide, SceneBodies scene)
       : system_(std::move(guide), std::move(scene.bodies), scene.gravity),
+        gravitation_(std::move(scene.gravitation)),
         workspace_(system_.workspace()) {}
 
   [[nodiscard]] Trajectory<JointState> solve(
@@ -117,6 +119,11 @@ class ModelOnGuide final : public SceneSolver {
     return result;
   }
 
+  [[nodiscard]] SystemKinematics kinematics(double t, const JointState& state) const override {
+    return kreisel::kinematics(system_, t, vector(state), workspace_,
+                               gravitation_ ? &*gravitation_ : nullptr);
+  }
+
   [[nodiscard]] Pose<double> pose(double t, const JointState& state, int body) const override {
     return system_.situation(t, vector(state), body, workspace_).X.value;
   }
@@ -127,6 +134,7 @@ class ModelOnGuide final : public SceneSolver {
   }
 
   System system_;
+  std::optional<BodyLoad> gravitation_;
   mutable BodyWorkspace workspace_;
 };
 

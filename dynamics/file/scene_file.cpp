@@ -4,12 +4,14 @@
 #include <limits>
 #include <utility>
 
+#include <dynamics/file/columns.hpp>
 #include <dynamics/file/log_options.hpp>
 #include <dynamics/file/motion_log.hpp>
 #include <dynamics/file/rates_log.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/scene_signal.hpp>
+#include <dynamics/file/sensor_keys.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
@@ -36,19 +38,6 @@ std::string reason(const InvalidInput& error) {
   return colon == std::string::npos ? text : text.substr(colon + 2);
 }
 
-/// A quaternion [w, x, y, z] of norm 1, but for what rounding to a few digits takes.
-std::optional<Eigen::Quaterniond> quaternion(Section& section, std::string_view key) {
-  const auto values = section.numbers(key, 4);
-  if (!values) return std::nullopt;
-  const Eigen::Quaterniond q((*values)[0], (*values)[1], (*values)[2], (*values)[3]);
-  if (!(std::abs(q.norm() - 1) <= 1e-3)) {
-    section.refuse(
-        key, "is a quaternion [w, x, y, z] of norm " + std::to_string(q.norm()) + ", not of 1");
-    return std::nullopt;
-  }
-  return q.normalized();
-}
-
 class SceneReader {
  public:
   SceneReader(const toml::table& root, const std::filesystem::path& path,
@@ -62,8 +51,11 @@ class SceneReader {
     read_gravity();
     give_gravity_to_rates();
     read_bodies();
+    scene_.sensors = detail::read_sensors(root_, scene_.bodies, scene_.points, mistakes_.none());
     read_report();
     put_discontinuities_in_order();
+    if (mistakes_.none()) scene_.columns = detail::read_output(root_, columns(scene_));
+    (void)root_.has("output");
     root_.finish();
     mistakes_.throw_any();
     return std::move(scene_);
@@ -599,6 +591,7 @@ class SceneReader {
     check_parent(section, body.parent, i, names);
     const std::optional<Joint> joint = read_joint(section);
     read_inertia(section, body);
+    scene_.points.push_back(detail::read_points(section));
     if (!joint) {  // and so nobody knows what else belongs to the body
       section.ignore_rest();
       scene_.bodies.push_back(std::move(body));

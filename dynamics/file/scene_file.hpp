@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include <dynamics/file/scene_sensor.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/orbit.hpp>
@@ -136,7 +137,9 @@ struct SceneFile {
   std::vector<scene_guide::Link> guide;  ///< from the inertial frame inwards; never empty
   scene_gravity::Field gravity;
   std::vector<BodyDescription> bodies;
-  std::vector<JointStart> start;  ///< one for each body
+  std::vector<JointStart> start;    ///< one for each body
+  std::vector<NamedPoints> points;  ///< one for each body
+  std::vector<SceneSensor> sensors;
   double t_end = 0;
   double tolerance = 1e-10;
   Method method = Method::automatic;
@@ -144,6 +147,7 @@ struct SceneFile {
   std::vector<double> output_times;  ///< in order, within [0, t_end]
   std::vector<double> discontinuities;  ///< when forces jump, in order, within (0, t_end]
   bool forces_change = false;           ///< with time: loads, joint forces or speeds of rotors
+  std::vector<std::string> columns;  ///< that are chosen, or groups of them; empty: all
   bool reactions = false;
   bool terms = false;
 

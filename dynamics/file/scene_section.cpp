@@ -305,6 +305,27 @@ std::optional<std::string> Section::text(std::string_view key) {
   return value->get();
 }
 
+std::vector<std::string> Section::texts(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return {};
+  const toml::array* const list = node->as_array();
+  if (list == nullptr) {
+    refuse(key, "must be a list of texts, not " + kind_of(*node));
+    return {};
+  }
+  std::vector<std::string> result;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const toml::node& entry = *list->get(i);
+    if (const auto* const text = entry.as_string()) {
+      result.push_back(text->get());
+    } else {
+      mistakes_->add(entry.source(), path_to(key) + "[" + std::to_string(i) + "]",
+                     "must be a text, not " + kind_of(entry));
+    }
+  }
+  return result;
+}
+
 std::optional<std::vector<double>> Section::single(std::string_view key) {
   const auto value = number(key);
   return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
@@ -355,6 +376,24 @@ std::optional<Section> Section::section(std::string_view key) {
 std::optional<Section> Section::required_section(std::string_view key) {
   if (!has(key)) refuse_missing(key);
   return section(key);
+}
+
+std::optional<Eigen::Quaterniond> quaternion(Section& section, std::string_view key) {
+  const auto values = section.numbers(key, 4);
+  if (!values) return std::nullopt;
+  const Eigen::Quaterniond q((*values)[0], (*values)[1], (*values)[2], (*values)[3]);
+  if (!(std::abs(q.norm() - 1) <= 1e-3)) {
+    section.refuse(
+        key, "is a quaternion [w, x, y, z] of norm " + std::to_string(q.norm()) + ", not of 1");
+    return std::nullopt;
+  }
+  return q.normalized();
+}
+
+std::vector<std::string> Section::keys() const {
+  std::vector<std::string> result;
+  for (const auto& [key, value] : *table_) result.emplace_back(key.str());
+  return result;
 }
 
 std::vector<Section> Section::sections(std::string_view key) {

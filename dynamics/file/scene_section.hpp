@@ -1,6 +1,8 @@
 #pragma once
 
 // Knows toml++: for the .cpp files of this folder alone.
+#include <Eigen/Geometry>
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -93,6 +95,8 @@ class Section {
   [[nodiscard]] std::optional<std::vector<double>> single(std::string_view key);
 
   [[nodiscard]] std::optional<std::string> text(std::string_view key);
+  /// A list of texts; empty where it is not there.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key);
   /// A text that is there, or nothing; notes no mistake.
   [[nodiscard]] std::string peek(std::string_view key) const;
   [[nodiscard]] std::string required_text(std::string_view key);
@@ -107,6 +111,9 @@ class Section {
   [[nodiscard]] std::optional<Section> required_section(std::string_view key);
   /// A list of tables.
   [[nodiscard]] std::vector<Section> sections(std::string_view key);
+
+  /// The keys that are there, in the order of the alphabet.
+  [[nodiscard]] std::vector<std::string> keys() const;
 
   [[nodiscard]] const toml::node* find(std::string_view key);
   void refuse_missing(std::string_view key);
@@ -140,5 +147,8 @@ class Section {
   std::vector<std::string> known_;
   bool ignores_ = false;
 };
+
+/// A quaternion [w, x, y, z] of norm 1, but for what rounding to a few digits takes; normalised.
+[[nodiscard]] std::optional<Eigen::Quaterniond> quaternion(Section& section, std::string_view key);
 
 }  // namespace kreisel::detail

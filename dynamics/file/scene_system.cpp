@@ -123,6 +123,7 @@ SceneGuide make_guide_of_equations(const SceneFile& scene) {
 SceneBodies bodies_in_gravity(const SceneFile& scene) {
   SceneBodies result{scene.bodies, {}};
   const auto add_to_all = [&result](const auto& load) {
+    result.gravitation = load;
     for (BodyDescription& body : result.bodies) {
       if (body.inertia.value.mass > 0) body.loads.emplace_back(load);
     }

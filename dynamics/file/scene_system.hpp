@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -52,6 +53,7 @@ class SceneGuide {
 struct SceneBodies {
   std::vector<BodyDescription> bodies;
   Gravity gravity;
+  std::optional<BodyLoad> gravitation = {};  ///< the load on all bodies that stands for gravity
 };
 
 [[nodiscard]] SceneBodies bodies_in_gravity(const SceneFile& scene);

@@ -38,9 +38,9 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 }  // namespace
 
 StudySystem::StudySystem(const SceneFile& scene) {
-  auto [bodies, gravity] = bodies_in_gravity(scene);
-  bodies_ =
-      std::make_unique<const Bodies>(make_guide_of_equations(scene), std::move(bodies), gravity);
+  SceneBodies in_gravity = bodies_in_gravity(scene);
+  bodies_ = std::make_unique<const Bodies>(make_guide_of_equations(scene),
+                                           std::move(in_gravity.bodies), in_gravity.gravity);
 }
 
 StudySystem::~StudySystem() = default;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/readings.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
 
@@ -59,13 +60,39 @@ Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scen
 /// The rows and the checkpoint of a run, both kept while it is computed.
 struct Record {
   Record(const Request& request, const std::string& scene_text, const kreisel::SceneFile& scene,
-         const kreisel::SceneSolver& model)
-      : rows(*request.csv, columns(model.tree(), scene.reactions)),
+         const kreisel::SceneSolver& solver)
+      : model(solver),
+        reactions(scene.reactions),
+        sensors(scene),
+        chosen(scene.columns.empty() ? std::vector<std::size_t>{}
+                                     : chosen_columns(columns(scene), scene.columns)),
+        rows(*request.csv, of_chosen(columns(scene))),
         resume(*request.csv, identity(scene_text, scene)) {}
 
+  const kreisel::SceneSolver& model;
+  bool reactions;
+  kreisel::SensorReadings sensors;
+  std::vector<std::size_t> chosen;  ///< columns; empty: all
   RowFile rows;
   ResumeFile resume;
   std::chrono::steady_clock::time_point next = {};  ///< when the next checkpoint is due
+
+  /// The numbers of a row, in the order of the columns.
+  [[nodiscard]] std::vector<double> numbers_at(double t, const kreisel::JointState& state) {
+    std::vector<double> numbers = row(model, t, state, reactions);
+    const std::vector<double> own = sensors.row(model, t, state);
+    numbers.insert(numbers.end(), own.begin(), own.end());
+    return of_chosen(std::move(numbers));
+  }
+
+  /// What stands in the chosen columns.
+  template <class Entry>
+  [[nodiscard]] std::vector<Entry> of_chosen(std::vector<Entry> all) const {
+    if (chosen.empty()) return all;
+    std::vector<Entry> result;
+    for (const std::size_t i : chosen) result.push_back(all[i]);
+    return result;
+  }
 
   /// Leaves the checkpoint of a run that begins behind these rows, or none of one from the start.
   void begin_behind(double t, const RowFile::Mark& end) const {
@@ -133,7 +160,7 @@ Begin from_rows(const kreisel::SceneSolver& model, Record& record,
   Begin begin = from_the_start(scene);
   if (rows.empty()) return begin;
   const std::vector<double>& start = rows.front().values;
-  if (start.front() == 0 && start != row(model, 0, begin.state, scene.reactions)) {
+  if (start.front() == 0 && start != record.numbers_at(0, begin.state)) {
     refuse_rows(record.rows, "the rows begin with another state than the scene");
   }
   const RowFile::Row& last = rows.back();
@@ -200,7 +227,7 @@ kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene
     const bool is_there =
         options.begin > 0 && t == options.begin;  // the end of a run that was complete
     if (record && !is_there && (end_is_a_row || t < scene.t_end)) {
-      record->rows.write(row(model, t, state, scene.reactions));
+      record->rows.write(record->numbers_at(t, state));
     }
     progress.report(t / scene.t_end,
                     [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
@@ -234,6 +261,9 @@ int run(const Request& request) {
   scene.terms = scene.terms || request.terms;
   if (request.resume && scene.model != kreisel::SceneModel::exact) {
     throw kreisel::InvalidInput("--resume: an approximation is computed as a whole");
+  }
+  if (request.resume && !scene.columns.empty()) {
+    throw kreisel::InvalidInput("--resume: the rows hold the columns of [output] alone, no states");
   }
   if (request.plot) gnuplot::require_installed();
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(scene);

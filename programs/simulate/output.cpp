@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <dynamics/file/printable.hpp>
+#include <dynamics/file/readings.hpp>
 #include <dynamics/solve/report.hpp>
 #include <motor/error.hpp>
 
@@ -104,6 +105,23 @@ ordered_json log_errors(const Result& result) {
   return table;
 }
 
+/// The last reading of each sensor, by the names of its parts.
+ordered_json final_sensors(const Result& result, const kreisel::SceneScale& scale) {
+  kreisel::SensorReadings readings(result.scene);
+  const std::vector<double> numbers =
+      readings.row(result.model, result.run.times.back(), result.run.states.back());
+  auto next = numbers.begin();
+  ordered_json table = ordered_json::object();
+  for (const kreisel::SceneSensor& sensor : result.scene.sensors) {
+    ordered_json& entry = table[sensor.name];
+    for (const kreisel::SensorPart& part : parts(sensor, result.scene.bodies)) {
+      ordered_json& list = entry[part.name] = ordered_json::array();
+      for (const std::string& unit : part.units) list.push_back(shown(*next++, scale.of(unit)));
+    }
+  }
+  return table;
+}
+
 ordered_json final_state(const Result& result, const kreisel::SceneScale& scale = {}) {
   const double t = result.run.times.back();
   const kreisel::JointState& state = result.run.states.back();
@@ -124,6 +142,7 @@ ordered_json final_state(const Result& result, const kreisel::SceneScale& scale 
   ordered_json final{{"t", t}, {"joints", joints}};
   if (result.reactions) final["reactions"] = carried;
   if (result.terms) final["terms"] = parts;
+  if (!result.scene.sensors.empty()) final["sensors"] = final_sensors(result, scale);
   if (!result.log_error.joints.empty()) final["error_of_log"] = log_errors(result);
   return final;
 }
@@ -272,6 +291,7 @@ void print_summary(const Result& result) {
   const ordered_json final = final_state(result, scale_of(result));
   joint_tables::print(fmt::format("joints at t = {:.15g} s", final["t"].get<double>()).c_str(),
                       final["joints"]);
+  if (final.contains("sensors")) joint_tables::print("sensors, SI", final["sensors"]);
   if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);
   if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
   if (logged) {

@@ -61,6 +61,13 @@ json run_in(const std::string& page) {
 /// The text as a basic string of TOML.
 std::string toml(const std::string& text) { return json(text).dump(); }
 
+/// The rod's point and a sensor there, both of that name.
+std::string with_sensor(std::string text, const std::string& name, const std::string& at) {
+  text.insert(text.find("mass = "), "points = { " + toml(name) + " = [0, 0, 1] }\n");
+  return text + "[[sensor]]\nname = " + toml(name) + "\nkind = \"point\"\nbody = " + toml(name) +
+         "\nat = " + toml(at) + "\n";
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(outputs_of_programs)
@@ -68,13 +75,15 @@ BOOST_AUTO_TEST_SUITE(outputs_of_programs)
 BOOST_AUTO_TEST_CASE(hostile_names_and_titles_are_only_shown) {
   for (const std::string& name : hostile_names()) {
     const Scratch folder;
-    const std::string file =
-        folder.write("s.toml", rod("title = " + toml(name) + "\n", toml(name), "0.1")).string();
+    const std::string plain = rod("title = " + toml(name) + "\n", toml(name), "0.1");
+    const std::string file = folder.write("s.toml", with_sensor(plain, name, name)).string();
     const std::string here = "cd " + folder.path().string() + " && ";
     const Outcome run =
         test::run(here + simulate + " s.toml --csv out.csv --json --terms --plot pictures");
     BOOST_TEST(run.status == 0, name << ": " << run.err);
-    BOOST_TEST(test::parsed(run.out).at("title") == name);
+    const json result = test::parsed(run.out);
+    BOOST_TEST(result.at("title") == name);
+    BOOST_TEST(result.at("final").at("sensors").at(name).at("position").size() == 3U, name);
     BOOST_TEST(folder.read("pictures/coordinates.svg").find("</svg>") != std::string::npos, name);
     BOOST_TEST(lines(folder.read("out.csv")) >= 12, name);
     const Outcome text = test::run(here + simulate + " s.toml");
@@ -128,6 +137,11 @@ BOOST_AUTO_TEST_CASE(hostile_texts_stay_in_one_line) {
     std::string text = rod("", "\"rod\"", "0.1");
     text.insert(text.find("mass = "), "parent = " + toml(name) + "\n");
     const std::string file = folder.write("s.toml", text).string();
+    const std::string point = with_sensor(rod("", toml(name), "0.1"), name, "no " + name);
+    const std::string pointless = folder.write("p.s.toml", point).string();
+    const std::string at_point = test::run(simulate + " " + pointless).err;
+    BOOST_TEST(lines(at_point) == 1, at_point);
+    BOOST_TEST(at_point.size() < 1500U, at_point.size());
     for (const std::string& program : {simulate, analyze}) {
       const Outcome outcome = test::run(program + " " + file);
       BOOST_TEST(outcome.status == 2);

@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   BOOST_TEST(found.at("words").get<std::string>().find("rad/s") != std::string::npos);
 
   const SceneFile scene = parse_scene(all_joints, file);
-  auto [bodies, gravity] = bodies_in_gravity(scene);
+  auto [bodies, gravity, gravitation] = bodies_in_gravity(scene);
   const BodySystem system(make_guide_of_equations(scene), bodies, gravity);
   auto start = system.rest();
   Eigen::Index q = 0;

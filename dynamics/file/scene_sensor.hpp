@@ -1,0 +1,57 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <dynamics/sensor/errors.hpp>
+#include <dynamics/sensor/sensors.hpp>
+#include <dynamics/tree/description.hpp>
+
+/// Sensors and points of bodies, as a scene file names them.
+
+namespace kreisel {
+
+/// Points of a body by name, on the body's axes.
+using NamedPoints = std::map<std::string, Vector3<double>>;
+
+namespace scene_sensor {
+
+struct Attitude {
+  AttitudeSensor sensor = {};
+  bool as_angles = false;  ///< yaw, pitch, roll instead of a quaternion
+};
+
+/// Coordinates and rates of a body's joint, as the columns of a run have them.
+struct Joint {
+  int body = 0;
+};
+
+using Kind = std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor>;
+
+}  // namespace scene_sensor
+
+struct SceneSensor {
+  std::string name;
+  scene_sensor::Kind kind = Gyro{};
+  std::optional<SensorErrors> errors = {};  ///< of a gyro or an accelerometer; none: ideal
+};
+
+/// Numbers of a reading that belong together: "value", "true", "position", "force" and the like.
+struct SensorPart {
+  std::string name;
+  std::vector<std::string> components;
+  std::vector<std::string> units;  ///< one for each component
+};
+
+/// The parts of a sensor's reading in their order.
+[[nodiscard]] std::vector<SensorPart> parts(const SceneSensor& sensor,
+                                            const std::vector<BodyDescription>& bodies);
+
+/// The columns of a sensor: NAME.x of its value, NAME.position x of another part.
+[[nodiscard]] std::vector<std::string> columns(const SceneSensor& sensor,
+                                               const std::vector<BodyDescription>& bodies);
+
+}  // namespace kreisel

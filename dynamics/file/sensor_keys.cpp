@@ -1,0 +1,283 @@
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+
+#include <dynamics/file/columns.hpp>
+#include <dynamics/file/quoted.hpp>
+#include <dynamics/file/sensor_keys.hpp>
+
+namespace kreisel::detail {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string result;
+  for (const std::string& name : names) result += (result.empty() ? "" : ", ") + in_quotes(name);
+  return result.empty() ? "there are none" : "there are " + result;
+}
+
+class SensorReader {
+ public:
+  SensorReader(const std::vector<BodyDescription>& bodies, const std::vector<NamedPoints>& points,
+               bool sound)
+      : bodies_(bodies), points_(points), sound_(sound) {
+    for (const BodyDescription& body : bodies) names_.push_back(body.name);
+  }
+
+  SceneSensor read(Section& section, const std::string& name) {
+    SceneSensor sensor{.name = name};
+    const std::string kind = section.required_choice(
+        "kind", {"gyro", "accelerometer", "point", "attitude", "joint", "reaction"});
+    if (section.peek("kind") != kind) {  // nothing can be said about the other keys
+      section.ignore_rest();
+      return sensor;
+    }
+    if (kind == "gyro") sensor.kind = gyro(section);
+    if (kind == "accelerometer") sensor.kind = accelerometer(section);
+    if (kind == "point") sensor.kind = point(section);
+    if (kind == "attitude") sensor.kind = attitude(section);
+    if (kind == "joint") sensor.kind = joint(section);
+    if (kind == "reaction") sensor.kind = reaction(section);
+    const bool is_instrument = kind == "gyro" || kind == "accelerometer";
+    if (is_instrument) sensor.errors = errors(section, kind == "gyro");
+    return sensor;
+  }
+
+ private:
+  /// The body of that name at a key that is needed.
+  int body(Section& section, const char* key) {
+    if (!section.has(key)) section.refuse_missing(key);
+    const auto name = section.text(key);
+    return name ? index(section, key, *name, names_, "body") : 0;
+  }
+
+  /// The index of a word among those allowed.
+  static int index(Section& section, const char* key, const std::string& word,
+                   const std::vector<std::string>& words, const char* what) {
+    const auto found = std::find(words.begin(), words.end(), word);
+    if (found != words.end()) return static_cast<int>(found - words.begin());
+    section.refuse(
+        key, in_quotes(word) + " is no " + what + did_you_mean(word, words) + "; " + listed(words));
+    return 0;
+  }
+
+  SensorFrame frame(Section& section, const char* key) {
+    const auto name = section.text(key);
+    if (!name) return SensorFrame::guide();
+    std::vector<std::string> words{"guide", "inertial"};
+    words.insert(words.end(), names_.begin(), names_.end());
+    const int found = index(section, key, *name, words, "frame");
+    if (found == 0) return SensorFrame::guide();
+    return found == 1 ? SensorFrame::inertial() : SensorFrame::of_body(found - 2);
+  }
+
+  /// A point of the body: numbers, or its name.
+  Vector3<double> at(Section& section, int body) {
+    const toml::node* const node = section.find("at");
+    if (node == nullptr) return Vector3<double>::Zero();
+    if (!node->is_string()) return section.vector("at").value_or(Vector3<double>::Zero());
+    const std::string name = section.peek("at");
+    const NamedPoints& known = points_[static_cast<std::size_t>(body)];
+    if (const auto found = known.find(name); found != known.end()) return found->second;
+    std::vector<std::string> words;
+    for (const auto& [word, place] : known) words.push_back(word);
+    section.refuse("at", in_quotes(name) + " is no point of body " +
+                             in_quotes(names_[static_cast<std::size_t>(body)]) +
+                             did_you_mean(name, words) + "; " + listed(words));
+    return Vector3<double>::Zero();
+  }
+
+  static Eigen::Quaterniond axes(Section& section) {
+    return quaternion(section, "axes").value_or(Eigen::Quaterniond::Identity());
+  }
+
+  /// A gyro reads the same at all points of its body.
+  Gyro gyro(Section& section) {
+    Gyro sensor{body(section, "body")};
+    (void)at(section, sensor.body);
+    sensor.axes = axes(section);
+    return sensor;
+  }
+
+  Accelerometer accelerometer(Section& section) {
+    Accelerometer sensor{body(section, "body")};
+    sensor.at = at(section, sensor.body);
+    sensor.axes = axes(section);
+    return sensor;
+  }
+
+  PointSensor point(Section& section) {
+    PointSensor sensor{body(section, "body")};
+    sensor.at = at(section, sensor.body);
+    sensor.against = frame(section, "against");
+    sensor.axes = section.has("axes") ? frame(section, "axes") : sensor.against;
+    return sensor;
+  }
+
+  scene_sensor::Attitude attitude(Section& section) {
+    const int own = body(section, "body");
+    return {{own, frame(section, "against")},
+            section.choice("as", {"quaternion", "yaw pitch roll"}) == "yaw pitch roll"};
+  }
+
+  scene_sensor::Joint joint(Section& section) {
+    const int own = body(section, "joint");
+    const BodyDescription& described = bodies_[static_cast<std::size_t>(own)];
+    const bool is_it = sound_ && section.peek("joint") == described.name;
+    if (is_it && described.joint.kind == JointKind::fixed) {
+      section.refuse("joint", in_quotes(described.name) + " is fixed and has no coordinate");
+    }
+    return {own};
+  }
+
+  ReactionSensor reaction(Section& section) {
+    ReactionSensor sensor{body(section, "joint")};
+    sensor.at = at(section, sensor.body);
+    const toml::node* const node = section.find("axes");
+    if (node != nullptr && node->is_string()) {
+      sensor.frame = frame(section, "axes");
+    } else {
+      sensor.axes = axes(section);
+    }
+    return sensor;
+  }
+
+  static Vector3<double> three(const std::optional<std::vector<double>>& numbers) {
+    if (!numbers) return Vector3<double>::Zero();
+    return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+  }
+
+  /// One number for all axes, or three.
+  static Vector3<double> numbers(Section& section, const std::string& key, bool is_angle) {
+    return three(is_angle ? section.angle_or_list(key, 3) : section.number_or_list(key, 3));
+  }
+
+  /// Standard deviations and densities.
+  static Vector3<double> size(Section& section, const std::string& key, bool is_angle) {
+    Vector3<double> result = numbers(section, key, is_angle);
+    if (result.minCoeff() < 0) section.refuse(key, "must not be below 0");
+    return result;
+  }
+
+  static double limit(Section& section, const std::string& key, bool is_angle) {
+    const auto value = is_angle ? section.angle(key) : section.number(key);
+    if (value && !(*value > 0)) section.refuse(key, "must be above 0");
+    return value.value_or(0);
+  }
+
+  static bool has_errors(Section& section) {
+    const std::vector<std::string> known{"misalignment", "scale",      "bias",  "noise", "drift",
+                                         "correlation",  "resolution", "range", "seed"};
+    return std::any_of(known.begin(), known.end(), [&section](const std::string& key) {
+      return section.has(key) || section.has(key + "_deg");
+    });
+  }
+
+  static std::uint64_t seed(Section& section) {
+    const toml::node* const node = section.find("seed");
+    if (node == nullptr) return 0;
+    const auto* const number = node->as_integer();
+    if (number != nullptr && number->get() >= 0) return static_cast<std::uint64_t>(number->get());
+    section.refuse("seed", "must be a whole number, not below 0");
+    return 0;
+  }
+
+  /// Those of a gyro are angular rates, which may be given in degrees.
+  static std::optional<SensorErrors> errors(Section& section, bool is_gyro) {
+    if (!has_errors(section)) return std::nullopt;
+    SensorErrors result;
+    result.misalignment = three(section.angles("misalignment", 3));
+    result.scale = three(section.number_or_list("scale", 3));
+    result.bias = numbers(section, "bias", is_gyro);
+    result.noise = size(section, "noise", is_gyro);
+    result.drift = size(section, "drift", is_gyro);
+    if (auto correlation = section.section("correlation")) {
+      if (!correlation->has("sigma") && !correlation->has("sigma_deg")) {
+        correlation->refuse_missing("sigma");
+      }
+      result.correlation = {size(*correlation, "sigma", is_gyro),
+                            correlation->required_number("time", Range::positive)};
+      correlation->finish();
+    }
+    result.resolution = limit(section, "resolution", is_gyro);
+    result.range = limit(section, "range", is_gyro);
+    result.seed = seed(section);
+    return result;
+  }
+
+  const std::vector<BodyDescription>& bodies_;
+  const std::vector<NamedPoints>& points_;
+  bool sound_;
+  std::vector<std::string> names_;
+};
+
+/// Refuses columns of a sensor that are there already.
+void check_columns(Section& section, const SceneSensor& sensor,
+                   const std::vector<BodyDescription>& bodies, std::set<std::string>& taken) {
+  for (const std::string& column : columns(sensor, bodies)) {
+    if (taken.insert(column).second) continue;
+    section.refuse("name", "would make a second column " + in_quotes(column) +
+                               "; choose another name for the sensor");
+    return;
+  }
+}
+
+}  // namespace
+
+NamedPoints read_points(Section& body) {
+  NamedPoints points;
+  auto section = body.section("points");
+  if (!section) return points;
+  for (const std::string& name : section->keys()) {
+    if (name.empty()) section->refuse(name, "is a point without a name");
+    points[name] = section->vector(name).value_or(Vector3<double>::Zero());
+  }
+  return points;
+}
+
+std::vector<SceneSensor> read_sensors(Section& root, const std::vector<BodyDescription>& bodies,
+                                      const std::vector<NamedPoints>& points, bool sound) {
+  std::vector<SceneSensor> result;
+  if (!root.has("sensor") || bodies.empty()) return result;
+  SensorReader reader(bodies, points, sound);
+  std::set<std::string> names;
+  const std::vector<std::string> of_bodies = columns(bodies, true);
+  std::set<std::string> taken(of_bodies.begin(), of_bodies.end());
+  for (Section& section : root.sections("sensor")) {
+    const std::string name = section.required_text("name");
+    if (section.has("name") && section.find("name")->is_string() && name.empty()) {
+      section.refuse("name", "is empty");
+    }
+    if (!name.empty()) section.rename("sensor '" + name + "'");
+    result.push_back(reader.read(section, name));
+    section.finish();
+    if (name.empty()) continue;
+    if (!names.insert(name).second) {
+      section.refuse("name", "is used by an earlier sensor");
+    } else {
+      check_columns(section, result.back(), bodies, taken);
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> read_output(Section& root, const std::vector<std::string>& known) {
+  auto output = root.section("output");
+  if (!output) return {};
+  std::vector<std::string> words = output->texts("columns");
+  for (const std::string& word : words) {
+    const bool is_known = std::any_of(known.begin() + 1, known.end(), [&word](const auto& column) {
+      return names_column(word, column);
+    });
+    if (is_known) continue;
+    output->refuse("columns", in_quotes(word) + " is no column" + did_you_mean(word, known) +
+                                  "; write NAME of a body or a sensor, or NAME.quantity");
+  }
+  if (!output->has("columns")) output->refuse_missing("columns");
+  output->finish();
+  return words;
+}
+
+}  // namespace kreisel::detail

@@ -1,0 +1,372 @@
+// Points and sensors of scene files: what is read, what is refused, and what the readings are.
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <dynamics/file/columns.hpp>
+#include <dynamics/file/readings.hpp>
+#include <dynamics/file/scene_file.hpp>
+#include <dynamics/guide/normal_gravity.hpp>
+
+using namespace kreisel;
+
+namespace {
+
+const std::string hinge = "joint = { kind = \"revolute\", axis = [0, 1, 0] }\n";
+const std::string run = "[solve]\nt_end = 1\noutput_step = 0.1\n";
+const std::string site = "kind = \"earth\"\nlatitude_deg = 50\nheight = 100\nazimuth_deg = 30\n";
+
+/// A body with these keys.
+std::string body(const std::string& name, const std::string& keys) {
+  return "[[body]]\nname = \"" + name + "\"\nmass = 2\ninertia = [0.2, 0.25, 0.3]\n" + keys + "\n";
+}
+
+std::string sensor(const std::string& keys) { return "[[sensor]]\nname = \"s\"\n" + keys + "\n"; }
+
+/// One body with a point, and one sensor at line 7.
+std::string with(const std::string& keys) {
+  return body("a", hinge + "points = { tip = [0, 0, 1.5] }") + sensor(keys) + run;
+}
+
+SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
+
+std::string mistakes(const std::string& text) {
+  try {
+    (void)scene(text);
+  } catch (const SceneMistakes& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+void check_told(const std::vector<std::pair<std::string, std::string>>& cases) {
+  for (const auto& [text, reason] : cases) {
+    const std::string found = mistakes(text);
+    BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
+  }
+}
+
+/// The readings at the start.
+std::vector<double> at_start(const std::string& text) {
+  const SceneFile file = scene(text);
+  const auto model = make_model(file);
+  return SensorReadings(file).row(*model, 0, start_of(file));
+}
+
+std::vector<std::string> columns_of(const std::string& text) {
+  const std::vector<std::string> all = columns(scene(text));
+  return {all.begin() + 3, all.end()};  // behind the time, the angle and the rate
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(points_of_a_scene_file)
+
+BOOST_AUTO_TEST_CASE(are_read_by_name) {
+  const SceneFile file =
+      scene(body("a", hinge + "points = { tip = [0, 0, 1.5], \"a b\" = [1, 2, 3] }") +
+            body("b", hinge) + run);
+  BOOST_REQUIRE(file.points.size() == 2U);
+  BOOST_TEST((file.points[0].at("tip") == Vector3<double>(0, 0, 1.5)));
+  BOOST_TEST((file.points[0].at("a b") == Vector3<double>(1, 2, 3)));
+  BOOST_TEST(file.points[1].empty());
+}
+
+BOOST_AUTO_TEST_CASE(are_told_where_they_are_wrong) {
+  const auto points = [](const std::string& value) {
+    return body("a", hinge + "points = " + value) + run;
+  };
+  check_told({
+      {points("3"), "s.toml:6:10: body 'a'.points: must be a table, not a whole number"},
+      {points("{ tip = [0, 1] }"), "s.toml:6:18: body 'a'.points.tip: must be 3 numbers, not 2"},
+      {points("{ tip = \"top\" }"),
+       "s.toml:6:18: body 'a'.points.tip: must be a list of numbers, not a text"},
+      {points("{ \"\" = [0, 1, 2] }"), "is a point without a name"},
+  });
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(mistakes_of_sensors)
+
+BOOST_AUTO_TEST_CASE(are_told_at_their_keys) {
+  check_told({
+      {body("a", hinge) + "[[sensor]]\nkind = \"gyro\"\nbody = \"a\"\n" + run,
+       "s.toml:7:1: sensor[0].name: is missing"},
+      {body("a", hinge) + "[[sensor]]\nname = \"\"\nkind = \"gyro\"\nbody = \"a\"\n" + run,
+       "s.toml:8:8: sensor[0].name: is empty"},
+      {with("kind = \"gyro\"\nbody = \"a\"") + sensor("kind = \"gyro\"\nbody = \"a\""),
+       "s.toml:15:8: sensor 's'.name: is used by an earlier sensor"},
+      {with(""), "sensor 's'.kind: is missing"},
+      {with("kind = \"giro\"\nbody = \"a\"\nrubbish = 1"),
+       "s.toml:9:8: sensor 's'.kind: 'giro' is none of 'gyro', 'accelerometer', 'point', "
+       "'attitude', 'joint' or 'reaction' (did you mean 'gyro'?)"},
+      {with("kind = \"gyro\""), "sensor 's'.body: is missing"},
+      {with("kind = \"gyro\"\nbody = 3"),
+       "s.toml:10:8: sensor 's'.body: must be a text, not a whole number"},
+      {with("kind = \"gyro\"\nbody = \"b\""),
+       "s.toml:10:8: sensor 's'.body: 'b' is no body; there are 'a'"},
+      {with("kind = \"gyro\"\nbody = \"a\"\naxes = [1, 1, 0, 0]"),
+       "s.toml:11:8: sensor 's'.axes: is a quaternion [w, x, y, z] of norm 1.414214, not of 1"},
+      {with("kind = \"gyro\"\nbody = \"a\"\nperiod = 0.1"),
+       "s.toml:11:1: sensor 's'.period: is no key here"},
+      {with("kind = \"accelerometer\"\nbody = \"a\"\nat = [0, 1]"),
+       "s.toml:11:6: sensor 's'.at: must be 3 numbers, not 2"},
+      {with("kind = \"accelerometer\"\nbody = \"a\"\nat = \"tipp\""),
+       "s.toml:11:6: sensor 's'.at: 'tipp' is no point of body 'a' (did you mean 'tip'?); there "
+       "are "
+       "'tip'"},
+      {body("a", hinge) + sensor("kind = \"point\"\nbody = \"a\"\nat = \"tip\"") + run,
+       "sensor 's'.at: 'tip' is no point of body 'a'; there are none"},
+      {with("kind = \"point\"\nbody = \"a\"\nagainst = \"inertia\""),
+       "s.toml:11:11: sensor 's'.against: 'inertia' is no frame (did you mean 'inertial'?); there "
+       "are "
+       "'guide', 'inertial', 'a'"},
+      {with("kind = \"point\"\nbody = \"a\"\naxes = [1, 0, 0, 0]"),
+       "s.toml:11:8: sensor 's'.axes: must be a text, not a list"},
+      {with("kind = \"point\"\nbody = \"a\"\nbias = 1"),
+       "s.toml:11:1: sensor 's'.bias: is no key here"},
+      {with("kind = \"attitude\"\nbody = \"a\"\nas = \"matrix\""),
+       "s.toml:11:6: sensor 's'.as: 'matrix' is none of 'quaternion' or 'yaw pitch roll'"},
+      {with("kind = \"joint\"\nbody = \"a\""), "sensor 's'.joint: is missing"},
+      {with("kind = \"joint\"\njoint = \"b\""), "s.toml:10:9: sensor 's'.joint: 'b' is no body"},
+      {body("a", "joint = { kind = \"fixed\" }") + sensor("kind = \"joint\"\njoint = \"a\"") + run,
+       "sensor 's'.joint: 'a' is fixed and has no coordinate"},
+      {with("kind = \"reaction\"\njoint = \"a\"\naxes = \"sky\""),
+       "s.toml:11:8: sensor 's'.axes: 'sky' is no frame; there are 'guide', 'inertial', 'a'"},
+      {with("kind = \"reaction\"\njoint = \"a\"\naxes = 1"),
+       "s.toml:11:8: sensor 's'.axes: must be a list of numbers, not a whole number"},
+      {"sensor = 1\n" + body("a", hinge) + run,
+       "s.toml:1:10: sensor: must be a list of tables, not a whole number"},
+  });
+}
+
+BOOST_AUTO_TEST_CASE(of_their_errors) {
+  const auto gyro = [](const std::string& key) {
+    return with("kind = \"gyro\"\nbody = \"a\"\n" + key);
+  };
+  check_told({
+      {gyro("bias = [1, 2]"), "s.toml:11:8: sensor 's'.bias: must be 3 numbers, not 2"},
+      {gyro("scale = true"), "s.toml:11:9: sensor 's'.scale: must be a number, not true or false"},
+      {gyro("misalignment = 0.1"),
+       "s.toml:11:16: sensor 's'.misalignment: must be a list of numbers, not a number"},
+      {gyro("noise = -1"), "s.toml:11:9: sensor 's'.noise: must not be below 0"},
+      {gyro("drift = [0, 0, -1]"), "s.toml:11:9: sensor 's'.drift: must not be below 0"},
+      {gyro("correlation = 1"), "s.toml:11:15: sensor 's'.correlation: must be a table"},
+      {gyro("correlation = { time = 1 }"), "sensor 's'.correlation.sigma: is missing"},
+      {gyro("correlation = { sigma = 1 }"), "sensor 's'.correlation.time: is missing"},
+      {gyro("correlation = { sigma = 1, time = 0 }"),
+       "s.toml:11:35: sensor 's'.correlation.time: 0 must be above 0"},
+      {gyro("correlation = { sigma = -1, time = 1 }"),
+       "s.toml:11:25: sensor 's'.correlation.sigma: must not be below 0"},
+      {gyro("correlation = { sigma = 1, time = 1, mean = 1 }"),
+       "sensor 's'.correlation.mean: is no key here"},
+      {gyro("resolution = 0"), "s.toml:11:14: sensor 's'.resolution: must be above 0"},
+      {gyro("range = -1"), "s.toml:11:9: sensor 's'.range: must be above 0"},
+      {gyro("seed = -1"), "s.toml:11:8: sensor 's'.seed: must be a whole number, not below 0"},
+      {gyro("seed = 1.5"), "s.toml:11:8: sensor 's'.seed: must be a whole number, not below 0"},
+  });
+}
+
+// A sensor may have the name of a body, unless a column of the body would be there twice.
+BOOST_AUTO_TEST_CASE(second_columns_are_refused) {
+  const auto named_as_body = [](const std::string& keys) {
+    return body("a", "joint = { kind = \"free\" }") + "[[sensor]]\nname = \"a\"\n" + keys + "\n" +
+           run;
+  };
+  check_told(
+      {{named_as_body("kind = \"gyro\"\nbody = \"a\""),
+        "s.toml:7:8: sensor 'a'.name: would make a second column 'a.x'; choose another name"},
+       {named_as_body("kind = \"reaction\"\njoint = \"a\""), "a second column 'a.force x'"},
+       {named_as_body("kind = \"point\"\nbody = \"a\""), "none"}});
+}
+
+BOOST_AUTO_TEST_CASE(are_told_once) {
+  const std::string wrong = body("a", "joint = { kind = \"hinge\" }");
+  BOOST_TEST(mistakes(wrong + sensor("kind = \"joint\"\njoint = \"a\"") + run).find("fixed and") ==
+             std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(without_bodies_are_not_looked_for) {
+  BOOST_TEST(mistakes(sensor("kind = \"gyro\"\nbody = \"a\"") + run) ==
+             "s.toml:1:1: no [[body]] is given");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(columns_of_a_run)
+
+const std::string all = with("kind = \"point\"\nbody = \"a\"");
+
+BOOST_AUTO_TEST_CASE(are_chosen_by_name_or_group) {
+  const auto chosen = [](const std::string& list) {
+    const SceneFile file = scene(all + "[output]\ncolumns = " + list + "\n");
+    Names names;
+    const Names known = columns(file);
+    for (const std::size_t i : chosen_columns(known, file.columns)) names.push_back(known[i]);
+    return names;
+  };
+  BOOST_TEST((chosen("[\"a.rate\"]") == Names{"t", "a.rate"}));
+  BOOST_TEST((chosen("[\"s.position\", \"a\"]") ==
+              Names{"t", "s.position x", "s.position y", "s.position z", "a.angle", "a.rate"}));
+  BOOST_TEST((chosen("[\"s.velocity y\", \"s.velocity\"]") ==
+              Names{"t", "s.velocity y", "s.velocity x", "s.velocity z"}));
+  BOOST_TEST(scene(all).columns.empty());
+}
+
+BOOST_AUTO_TEST_CASE(are_told_where_there_are_none) {
+  const auto output = [](const std::string& keys) { return all + "[output]\n" + keys + "\n"; };
+  check_told({
+      {output(""), "s.toml:14:1: output.columns: is missing"},
+      {output("columns = 3"), "s.toml:15:11: output.columns: must be a list of texts, not a whole"},
+      {output("columns = [\"a\", 3]"), "output.columns[1]: must be a text, not a whole number"},
+      {output("columns = [\"a.rat\"]"),
+       "s.toml:15:11: output.columns: 'a.rat' is no column (did you mean 'a.rate'?)"},
+      {output("columns = [\"a.force\"]"), "output.columns: 'a.force' is no column"},
+      {output("columns = [\"a\"]\nrows = 1"), "s.toml:16:1: output.rows: is no key here"},
+      {"output = 3\n" + all, "s.toml:1:10: output: must be a table, not a whole number"},
+  });
+  BOOST_TEST(mistakes(output("columns = [\"a.force\"]") + "[report]\nreactions = true\n") ==
+             "none");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(readings_of_a_scene)
+
+// "at" left out is the origin; a point is seen from the guide, on the axes of what it is seen from.
+BOOST_AUTO_TEST_CASE(of_points_without_further_keys) {
+  const std::string moving =
+      body("a", hinge + "initial = { angle_deg = 90, rate = 2 }\npoints = { tip = [0, 0, 1.5] }");
+  const auto check_near = [](const std::vector<double>& found, const std::vector<double>& wanted) {
+    BOOST_REQUIRE(found.size() >= wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      BOOST_TEST(std::abs(found[i] - wanted[i]) < 1e-14);
+  };
+  const std::string point = "kind = \"point\"\nbody = \"a\"\n";
+  check_near(at_start(moving + sensor(point) + run), {0, 0, 0, 0, 0, 0, 0, 0, 0});
+  // The tip lies at x and moves along -z; no moment acts, so that it is held back by w^2 r alone.
+  const std::string tip = point + "at = \"tip\"\n";
+  check_near(at_start(moving + sensor(tip) + run), {1.5, 0, 0, 0, 0, -3, -6, 0, 0});
+  check_near(at_start(moving + sensor(point + "at = [0, 0, 1.5]") + run), {1.5, 0, 0, 0, 0, -3});
+  check_near(at_start(moving + sensor(tip + "against = \"a\"") + run),
+             {0, 0, 1.5, 0, 0, 0, 0, 0, 0});
+  check_near(at_start(moving + sensor(tip + "axes = \"a\"") + run),
+             {0, 0, 1.5, 3, 0, 0, 0, 0, -6});
+}
+
+BOOST_AUTO_TEST_CASE(have_columns_of_their_kinds) {
+  BOOST_TEST(columns_of(body("a", hinge) + run).empty());
+  BOOST_TEST((columns_of(with("kind = \"gyro\"\nbody = \"a\"")) == Names{"s.x", "s.y", "s.z"}));
+  BOOST_TEST((columns_of(with("kind = \"accelerometer\"\nbody = \"a\"\nbias = 1")) ==
+              Names{"s.x", "s.y", "s.z", "s.true x", "s.true y", "s.true z"}));
+  BOOST_TEST((columns_of(with("kind = \"point\"\nbody = \"a\"")) ==
+              Names{"s.position x", "s.position y", "s.position z", "s.velocity x", "s.velocity y",
+                    "s.velocity z", "s.acceleration x", "s.acceleration y", "s.acceleration z"}));
+  BOOST_TEST((columns_of(with("kind = \"attitude\"\nbody = \"a\"")) ==
+              Names{"s.qw", "s.qx", "s.qy", "s.qz"}));
+  BOOST_TEST((columns_of(with("kind = \"attitude\"\nbody = \"a\"\nas = \"yaw pitch roll\"")) ==
+              Names{"s.yaw", "s.pitch", "s.roll"}));
+  BOOST_TEST((columns_of(with("kind = \"joint\"\njoint = \"a\"")) == Names{"s.angle", "s.rate"}));
+  BOOST_TEST(
+      (columns_of(with("kind = \"reaction\"\njoint = \"a\"")) ==
+       Names{"s.force x", "s.force y", "s.force z", "s.torque x", "s.torque y", "s.torque z"}));
+}
+
+// Upwards is -x; the centrifugal part comes from the motion of the guide, gravitation from the ellipsoid.
+BOOST_AUTO_TEST_CASE(at_rest_on_the_earth_are_gravity) {
+  const double g = normal_gravity({50, 30, 100}).magnitude;
+  const std::string fixed =
+      body("a", hinge + "hold = true") + sensor("kind = \"accelerometer\"\nbody = \"a\"") + run;
+  const auto check_upwards = [](const std::vector<double>& f, double wanted) {
+    BOOST_REQUIRE(f.size() == 3U);
+    BOOST_TEST(std::abs(f[0] + wanted) <= 1e-13 * wanted);
+    BOOST_TEST(std::hypot(f[1], f[2]) <= 1e-13 * wanted);
+  };
+  check_upwards(at_start("[guide]\n" + site + "gravity = \"normal\"\n" + fixed), g);
+  check_upwards(at_start("[guide]\n" + site + "[gravity]\nkind = \"earth\"\n" + fixed), g);
+  check_upwards(at_start("[guide]\n" + site + "gravity = 9.75\n" + fixed), 9.75);
+  const std::string chain = "[guide]\nkind = \"chain\"\n[[guide.links]]\n" + site;
+  const std::string level = "[[guide.links]]\nkind = \"inertial\"\n" + fixed;
+  check_upwards(at_start(chain + "gravity = \"normal\"\n" + level), g);
+  check_upwards(at_start(chain + "gravity = 9.75\n" + level), 9.75);
+  // On a body without mass too.
+  const std::string massless =
+      "[[body]]\nname = \"a\"\nmass = 0\ninertia = [0, 0, 0]\njoint = { kind = \"fixed\" }\n";
+  check_upwards(at_start("[guide]\n" + site + "gravity = \"normal\"\n" + massless +
+                         body("b", hinge) + sensor("kind = \"accelerometer\"\nbody = \"a\"") + run),
+                g);
+}
+
+// Without gravity on the earth what is left is the centripetal part at the site.
+BOOST_AUTO_TEST_CASE(without_gravity_are_centripetal) {
+  const NormalGravity gravity = normal_gravity({50, 30, 100});
+  const auto f = at_start("[guide]\n" + site + body("a", hinge + "hold = true") +
+                          sensor("kind = \"accelerometer\"\nbody = \"a\"") + run);
+  const double size = std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  BOOST_TEST(std::abs(size - gravity.centrifugal.norm()) <= 1e-14 * size);
+}
+
+BOOST_AUTO_TEST_CASE(of_uniform_gravity_on_either_axes) {
+  for (const std::string kind : {"uniform", "inertial"}) {
+    const auto f = at_start("[gravity]\nkind = \"" + kind + "\"\nvector = [0, 0, -9.75]\n" +
+                            body("a", hinge + "hold = true\ninitial = { angle_deg = 90 }") +
+                            sensor("kind = \"accelerometer\"\nbody = \"a\"") + run);
+    BOOST_TEST(std::abs(f[0] + 9.75) <= 1e-14);  // body x points down
+    BOOST_TEST(std::abs(f[2]) <= 1e-14);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_an_attitude) {
+  const std::string turned =
+      "joint = { kind = \"free\" }\ninitial = { attitude = [-0.6, 0, 0, 0.8] }";
+  const auto q = at_start(body("a", turned) + sensor("kind = \"attitude\"\nbody = \"a\"") + run);
+  const double wanted[] = {0.6, 0, 0, -0.8};
+  for (std::size_t i = 0; i < 4; ++i) BOOST_TEST(std::abs(q.at(i) - wanted[i]) <= 1e-15);
+  const auto angles =
+      at_start(body("a", turned) +
+               sensor("kind = \"attitude\"\nbody = \"a\"\nas = \"yaw pitch roll\"") + run);
+  BOOST_TEST(std::abs(angles.at(0) + 2 * std::atan2(0.8, 0.6)) <= 1e-15);
+}
+
+BOOST_AUTO_TEST_CASE(of_a_joint_are_its_columns) {
+  const auto numbers = at_start(body("a", hinge + "initial = { angle = 0.5, rate = -2 }") +
+                                sensor("kind = \"joint\"\njoint = \"a\"") + run);
+  BOOST_TEST(numbers == (std::vector<double>{0.5, -2}));
+}
+
+BOOST_AUTO_TEST_CASE(in_degrees_are_turned_into_radian) {
+  const double degree = 0.017453292519943295;
+  const SceneFile file =
+      scene(with("kind = \"gyro\"\nbody = \"a\"\nbias_deg = 1\nnoise_deg = [1, 2, 3]\n"
+                 "resolution_deg = 0.5\nrange_deg = 90\nseed = 12"));
+  const SensorErrors& errors = *file.sensors.at(0).errors;
+  BOOST_TEST((errors.bias == Vector3<double>::Constant(degree)));
+  BOOST_TEST((errors.noise == Vector3<double>(degree, 2 * degree, 3 * degree)));
+  BOOST_TEST(errors.resolution == 0.5 * degree);
+  BOOST_TEST(errors.range == 90 * degree);
+  BOOST_TEST(errors.seed == 12U);
+}
+
+// The noise of a row depends on the row, not on which rows were asked for before.
+BOOST_AUTO_TEST_CASE(noise_of_rows_in_any_order) {
+  const SceneFile file = scene(with("kind = \"gyro\"\nbody = \"a\"\nnoise = 1\ndrift = 1"));
+  const auto model = make_model(file);
+  const JointState state = start_of(file);
+  SensorReadings forwards(file);
+  std::vector<std::vector<double>> rows;
+  for (const double t : file.output_times) rows.push_back(forwards.row(*model, t, state));
+  BOOST_TEST(rows[0] != rows[1]);
+  SensorReadings other(file);
+  for (const std::size_t i : {5U, 9U, 2U, 2U}) {
+    BOOST_TEST(other.row(*model, file.output_times[i], state) == rows[i]);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

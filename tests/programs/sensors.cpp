@@ -1,0 +1,198 @@
+// Sensors in what simulate writes: columns of CSV, keys of JSON, text.
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <support/json.hpp>
+#include <support/program.hpp>
+
+using namespace kreisel;
+using nlohmann::json;
+using test::Outcome;
+using test::Scratch;
+
+namespace {
+
+const std::string simulate = KREISEL_SIMULATE;
+
+/// A wheel at constant rate with a gyro that has errors and a bearing that holds its weight.
+const std::string wheel = R"(
+[gravity]
+kind = "uniform"
+vector = [0, 0, -9.75]
+[[body]]
+name = "wheel"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 2
+inertia = [0.1, 0.1, 0.1]
+drive = "constant-rate"
+initial = { rate = 2 }
+points = { rim = [0.5, 0, 0] }
+[[sensor]]
+name = "gyro"
+kind = "gyro"
+body = "wheel"
+bias = [0, 0, 0.25]
+noise = 0.001
+seed = 3
+[[sensor]]
+name = "rim"
+kind = "accelerometer"
+body = "wheel"
+at = "rim"
+[[sensor]]
+name = "point"
+kind = "point"
+body = "wheel"
+at = "rim"
+against = "inertial"
+[[sensor]]
+name = "bearing"
+kind = "reaction"
+joint = "wheel"
+at = "rim"
+[[sensor]]
+name = "pickoff"
+kind = "joint"
+joint = "wheel"
+[[sensor]]
+name = "attitude"
+kind = "attitude"
+body = "wheel"
+[solve]
+t_end = 1
+output_step = 0.1
+)";
+
+struct Table {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> rows;
+};
+
+Table table(const std::string& csv) {
+  Table result;
+  std::istringstream all(csv);
+  for (std::string line; std::getline(all, line);) {
+    std::istringstream fields(line);
+    if (!result.names.empty()) result.rows.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');) {
+      if (result.rows.empty()) {
+        result.names.push_back(field);
+      } else {
+        result.rows.back().push_back(std::stod(field));
+      }
+    }
+  }
+  return result;
+}
+
+void check_near(const json& found, const std::vector<double>& wanted, double bound) {
+  BOOST_REQUIRE(found.size() == wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    BOOST_TEST(std::abs(found.at(i).get<double>() - wanted[i]) <= bound, found << " " << i);
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(sensors_of_simulate)
+
+BOOST_AUTO_TEST_CASE(end_of_a_run_in_json) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", wheel).string();
+  const Outcome outcome = test::run(simulate + " " + file + " --json");
+  BOOST_TEST_REQUIRE(outcome.status == 0, outcome.err);
+  const json sensors = test::parsed(outcome.out).at("final").at("sensors");
+  const double c = std::cos(2.0), s = std::sin(2.0);
+  check_near(sensors.at("gyro").at("true"), {0, 0, 2}, 1e-15);
+  // White noise of 0.001 per root of Hz over 0.1 s: 0.0032, here within five times of it.
+  check_near(sensors.at("gyro").at("value"), {0, 0, 2.25}, 0.016);
+  BOOST_TEST(sensors.at("gyro").at("value").at(0).get<double>() != 0);
+  check_near(sensors.at("rim").at("value"), {-2, 0, 9.75}, 1e-14);
+  BOOST_TEST(!sensors.at("rim").contains("true"));
+  check_near(sensors.at("point").at("position"), {c / 2, s / 2, 0}, 1e-10);
+  check_near(sensors.at("point").at("velocity"), {-s, c, 0}, 1e-10);
+  check_near(sensors.at("point").at("acceleration"), {-2 * c, -2 * s, 0}, 1e-10);
+  check_near(sensors.at("bearing").at("force"), {0, 0, 19.5}, 1e-13);
+  check_near(sensors.at("bearing").at("torque"), {0, 9.75, 0}, 1e-13);
+  check_near(sensors.at("pickoff").at("value"), {2, 2}, 1e-10);
+  check_near(sensors.at("attitude").at("value"), {std::cos(1.0), 0, 0, std::sin(1.0)}, 1e-10);
+}
+
+// The last row is what JSON has; a sensor that is called like a point or a body is one of its own.
+BOOST_AUTO_TEST_CASE(columns_of_csv) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", wheel).string();
+  const auto csv = (folder.path() / "s.csv").string();
+  const Outcome outcome = test::run(simulate + " " + file + " --json --reactions --csv " + csv);
+  BOOST_TEST_REQUIRE(outcome.status == 0, outcome.err);
+  const Table all = table(folder.read("s.csv"));
+  BOOST_REQUIRE(all.names.size() == 1U + 2 + 7 + 6 + 3 + 9 + 6 + 2 + 4);
+  BOOST_TEST(all.names.at(10) == "gyro.x");
+  BOOST_TEST(all.names.at(13) == "gyro.true x");
+  BOOST_TEST(all.names.at(16) == "rim.x");
+  BOOST_TEST(all.names.at(19) == "point.position x");
+  BOOST_TEST(all.names.back() == "attitude.qz");
+  BOOST_REQUIRE(all.rows.size() == 11U);
+  const json sensors = test::parsed(outcome.out).at("final").at("sensors");
+  std::size_t at = 10;
+  for (const auto& [sensor, part] : std::vector<std::pair<std::string, std::string>>{
+           {"gyro", "value"}, {"gyro", "true"}, {"rim", "value"}, {"point", "position"}}) {
+    for (const json& x : sensors.at(sensor).at(part)) {
+      BOOST_TEST(all.rows.back().at(at++) == x.get<double>());
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(columns_that_are_chosen) {
+  const Scratch folder;
+  const std::string file =
+      folder.write("s.toml", wheel + "[output]\ncolumns = [\"rim\", \"wheel.rate\"]\n").string();
+  const auto csv = (folder.path() / "s.csv").string();
+  const Outcome outcome = test::run(simulate + " " + file + " --csv " + csv);
+  BOOST_TEST_REQUIRE(outcome.status == 0, outcome.err);
+  const Table all = table(folder.read("s.csv"));
+  BOOST_TEST((all.names == std::vector<std::string>{"t", "rim.x", "rim.y", "rim.z", "wheel.rate"}));
+  BOOST_TEST(all.rows.back().at(4) == 2);
+  const Outcome again = test::run(simulate + " " + file + " --resume --csv " + csv);
+  BOOST_TEST(again.status == 2);
+  BOOST_TEST(again.err.find("--resume: the rows hold the columns of [output] alone") !=
+             std::string::npos);
+}
+
+// The noise of a row is that of its time, whether the run began there or at 0.
+BOOST_AUTO_TEST_CASE(noise_goes_on_after_a_resume) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", wheel).string();
+  const auto csv = (folder.path() / "s.csv").string();
+  BOOST_TEST(test::run(simulate + " " + file + " --csv " + csv).status == 0);
+  const std::string text = folder.read("s.csv");
+  std::size_t end = 0;
+  for (int line = 0; line < 6; ++line) end = text.find('\n', end) + 1;
+  folder.write("s.csv", text.substr(0, end));
+  const Outcome again = test::run(simulate + " " + file + " --resume --csv " + csv);
+  BOOST_TEST_REQUIRE(again.status == 0, again.err);
+  const Table before = table(text);
+  const Table after = table(folder.read("s.csv"));
+  BOOST_REQUIRE(after.rows.size() == before.rows.size());
+  for (std::size_t i = 0; i < after.rows.size(); ++i) {
+    for (std::size_t k = 3; k < 9; ++k) BOOST_TEST(after.rows[i].at(k) == before.rows[i].at(k));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(stand_in_the_text) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", wheel).string();
+  const Outcome outcome = test::run(simulate + " " + file);
+  BOOST_TEST(outcome.out.find("sensors, SI\n") != std::string::npos);
+  BOOST_TEST(outcome.out.find("  bearing              torque            (0, 9.75, 0)\n") !=
+                 std::string::npos,
+             outcome.out);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
