@@ -705,6 +705,33 @@ void add_approximation(Random& r, Scene& scene) {
   scene.t_end = r.pick({0.1, 0.5, 1.0});
 }
 
+/// Any frame that a sensor may name.
+int frame(Random& r, const Scene& scene) {
+  return r.below(static_cast<int>(scene.bodies.size()) + 2) - 2;
+}
+
+Sensor sensor(Random& r, const Scene& scene) {
+  Sensor result;
+  result.kind = r.pick({SensorKind::gyro, SensorKind::accelerometer, SensorKind::accelerometer,
+                        SensorKind::point, SensorKind::attitude, SensorKind::reaction});
+  result.body = r.below(static_cast<int>(scene.bodies.size()));
+  const bool is_point = result.kind == SensorKind::point;
+  const bool is_attitude = result.kind == SensorKind::attitude;
+  if (!is_attitude && r.chance(0.7)) result.at = vector(r, 0.1, 3);
+  result.at_by_name = !is_attitude && r.chance(0.3);
+  if (!is_point && !is_attitude && r.chance(0.3)) result.axes = attitude(r);
+  if (is_point || is_attitude) result.against = frame(r, scene);
+  result.on = is_point && r.chance(0.5) ? frame(r, scene) : result.against;
+  return result;
+}
+
+void add_sensors(Random& r, Scene& scene) {
+  if (r.chance(0.6)) return;
+  do {
+    scene.sensors.push_back(sensor(r, scene));
+  } while (r.chance(0.6));
+}
+
 void add_solve(Random& r, Scene& scene) {
   scene.tolerance = r.pick({1e-10, 1e-10, 1e-8, 1e-6, 1e-9, 1e-3, 1e-12});
   scene.t_end = r.chance(0.85) ? r.pick({0.1, 1.0, 2.0, 5.0, 10.0, 20.0})
@@ -746,6 +773,7 @@ Scene generate(Random r) {
     add_bodies(r, scene);
   }
   add_solve(r, scene);
+  add_sensors(r, scene);
   return scene;
 }
 

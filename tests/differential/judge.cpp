@@ -50,6 +50,7 @@ class Judge {
     }
     if (answers_.misread) add("reader: title, method or report differs from the file", "");
     judge_reactions();
+    judge_readings();
     for (const Answer& answer : answers_.by_method) {
       judge_failure(answer);
       if (!answer.answered) continue;
@@ -123,6 +124,67 @@ class Judge {
       add("reactions are wrong", fmt::format("number {} of body {}: {} instead of {}", i % 6, i / 6,
                                              answers_.reactions[i], right[i]));
       return;
+    }
+  }
+
+  /// Numbers of a reading that belong together.
+  struct Part {
+    SensorKind kind;
+    std::size_t begin;
+    std::size_t count;
+    bool is_place;  ///< or a velocity, which on the earth are great
+    bool is_force;  ///< or an acceleration
+  };
+
+  [[nodiscard]] std::vector<Part> parts_of_readings() const {
+    std::vector<Part> parts;
+    std::size_t begin = 0;
+    for (const Sensor& sensor : scene_.sensors) {
+      static constexpr int vectors[] = {1, 1, 3, 1, 2};
+      for (int k = 0; k < vectors[static_cast<std::size_t>(sensor.kind)]; ++k) {
+        const bool is_point = sensor.kind == SensorKind::point;
+        const bool is_force = sensor.kind == SensorKind::accelerometer ||
+                              sensor.kind == SensorKind::reaction || (is_point && k == 2);
+        parts.push_back({sensor.kind, begin, sensor.kind == SensorKind::attitude ? 4U : 3U,
+                         is_point && k < 2, is_force});
+        begin += parts.back().count;
+      }
+    }
+    return parts;
+  }
+
+  /// Forces of springs that are much stiffer cancel to more than what is judged.
+  [[nodiscard]] bool is_stiff() const {
+    return std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& body) {
+      return !body.stiffness.empty() && body.stiffness.front() > 1e6;
+    });
+  }
+
+  /// What sensors read at the start. A vector errs in proportion to its size and, as the terms of
+  /// accelerations may cancel, to that of all others but places.
+  void judge_readings() {
+    if (answers_.readings.empty()) return;
+    const std::vector<double> right = start_readings(scene_);
+    const std::vector<Part> parts = parts_of_readings();
+    const auto norm = [&right](const Part& part) {
+      return Eigen::Map<const Eigen::VectorXd>(right.data() + part.begin,
+                                               static_cast<Eigen::Index>(part.count))
+          .norm();
+    };
+    double size = 1;
+    for (const Part& part : parts) size = part.is_place ? size : std::max(size, norm(part));
+    for (const Part& part : parts) {
+      if (part.is_force && is_stiff()) continue;
+      double off = 0;
+      double turned = 0;  // the other quaternion of an attitude
+      for (std::size_t i = part.begin; i < part.begin + part.count; ++i) {
+        off = std::max(off, std::abs(answers_.readings[i] - right[i]));
+        turned = std::max(turned, std::abs(answers_.readings[i] + right[i]));
+      }
+      if (part.kind == SensorKind::attitude) off = std::min(off, turned);
+      if (off <= (1e-9 + unknown()) * (size + norm(part))) continue;
+      add("a sensor is wrong", fmt::format("number {}, kind {}, by {:.3g} of {:.3g}", part.begin,
+                                           static_cast<int>(part.kind), off, norm(part)));
     }
   }
 

@@ -197,6 +197,12 @@ std::vector<double> start_reactions(const Scene& scene) {
   return tree.reactions(0, start);
 }
 
+std::vector<double> start_readings(const Scene& scene) {
+  Tree tree(scene);
+  const State start = tree.start();
+  return tree.readings(0, start);
+}
+
 ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times, double work) {
   ReferenceMotion motion;
   std::vector<Step> taken;

@@ -38,6 +38,9 @@ struct ReferenceMotion {
 /// torque is about the body's origin, all on body axes.
 [[nodiscard]] std::vector<double> start_reactions(const Scene& scene);
 
+/// Readings of sensors at the start, in the order of Tree::readings().
+[[nodiscard]] std::vector<double> start_readings(const Scene& scene);
+
 /// `work` is the approximate limit of floating point operations.
 [[nodiscard]] ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times,
                                         double work);

@@ -31,6 +31,9 @@ class Tree {
   [[nodiscard]] std::vector<double> reactions(Real t, const State& y);
   /// Takes functions of time on the pieces that contain t: the middle of a step.
   void stay_within(Real t) { within_ = t; }
+  /// Readings of the scene's sensors: three numbers for each vector, for an attitude the quaternion
+  /// x, y, z, w.
+  [[nodiscard]] std::vector<double> readings(Real t, const State& y);
   /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
 
@@ -75,6 +78,19 @@ class Tree {
     Vec second_axis;
     Real near = 0;  ///< the state's first angle of the joint
   };
+
+  /// A frame at one time, on inertial axes; its origin against the guide's.
+  struct Frame {
+    Mat R = Mat::Identity();
+    Vec x = Vec::Zero();
+    Vec v = Vec::Zero();
+    Vec a = Vec::Zero();
+    Vec w = Vec::Zero();
+    Vec dw = Vec::Zero();
+  };
+
+  [[nodiscard]] Frame frame(int index, const Motion& guide, const State& accelerations) const;
+  [[nodiscard]] Frame at_point(int body, const Vec& at, const State& accelerations) const;
 
   void read(const State& y, const Motion& guide);
   [[nodiscard]] Pose pose(const State& y, int body) const;

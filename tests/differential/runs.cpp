@@ -9,6 +9,7 @@
 #include <set>
 
 #include <dynamics/file/model.hpp>
+#include <dynamics/file/readings.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <motor/error.hpp>
 
@@ -163,6 +164,23 @@ std::vector<double> reactions(const kreisel::SceneSolver& model, const kreisel::
   return result;
 }
 
+/// What the sensors read, quaternions as x, y, z, w.
+std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& model,
+                             const kreisel::SceneFile& file) {
+  std::vector<double> result = kreisel::SensorReadings(file).row(model, 0, start_of(file));
+  auto at = result.begin();
+  for (const Sensor& sensor : scene.sensors) {
+    switch (sensor.kind) {
+      case SensorKind::gyro:
+      case SensorKind::accelerometer: at += 3; break;
+      case SensorKind::point: at += 9; break;
+      case SensorKind::reaction: at += 6; break;
+      case SensorKind::attitude: std::rotate(at, at + 1, at + 4); at += 4;
+    }
+  }
+  return result;
+}
+
 bool misread(const Scene& scene, const kreisel::SceneFile& file) {
   const bool other_method =
       !scene.method.empty() && file.method != kreisel::method_named(scene.method);
@@ -215,6 +233,10 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
     if (file.reactions && answers.by_method.front().answered) {
       begin("reactions");
       answers.reactions = reactions(*model, file);
+    }
+    if (!scene.sensors.empty()) {
+      begin("sensors");
+      answers.readings = readings(scene, *model, file);
     }
     begin("sizes");
     answers.way = run_by(*model, scene, with_many_outputs(roughly(exact_file)), "auto", limits);

@@ -61,6 +61,7 @@ struct Answers {
   std::optional<Approximate> approximate = {};   ///< if the scene has a model
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
   std::vector<double> reactions = {};            ///< at the start, as in start_reactions()
+  std::vector<double> readings = {};             ///< at the start, as in start_readings()
   bool misread = false;                          ///< requests of the file besides the motion, read
                                                  ///< wrongly
 };

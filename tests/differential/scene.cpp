@@ -306,6 +306,43 @@ std::string loads(const Body& body) {
   return "load = " + (body.loads.size() == 1 ? all : "[" + all + "]") + "\n";
 }
 
+std::string points(const Scene& scene, int body) {
+  Inline table;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const Sensor& sensor = scene.sensors[i];
+    if (sensor.body == body && sensor.at_by_name) table.add(fmt::format("p{}", i), list(sensor.at));
+  }
+  return table.empty() ? "" : "points = " + table.text() + "\n";
+}
+
+std::string frame_name(int frame) {
+  const std::string name = frame == inertial_frame ? "inertial" : body_name(frame);
+  return "\"" + name + "\"";
+}
+
+std::string sensor(const Sensor& sensor, std::size_t index) {
+  static const char* const kinds[] = {"gyro", "accelerometer", "point", "attitude", "reaction"};
+  const bool is_point = sensor.kind == SensorKind::point;
+  Keys keys{{"name", fmt::format("\"s{}\"", index)},
+            {"kind", std::string("\"") + kinds[static_cast<int>(sensor.kind)] + "\""}};
+  keys.emplace_back(sensor.kind == SensorKind::reaction ? "joint" : "body",
+                    "\"" + body_name(sensor.body) + "\"");
+  if (sensor.at_by_name) {
+    keys.emplace_back("at", fmt::format("\"p{}\"", index));
+  } else if (!sensor.at.isZero(0)) {
+    keys.emplace_back("at", list(sensor.at));
+  }
+  if (sensor.axes) keys.emplace_back("axes", list(*sensor.axes));
+  const bool is_seen = is_point || sensor.kind == SensorKind::attitude;
+  if (is_seen && sensor.against != guide_frame) {
+    keys.emplace_back("against", frame_name(sensor.against));
+  }
+  if (is_point && sensor.on != sensor.against) keys.emplace_back("axes", frame_name(sensor.on));
+  std::string result = "[[sensor]]\n";
+  for (const auto& [key, value] : keys) result += key + " = " + value + "\n";
+  return result;
+}
+
 std::string body(const Scene& scene, int index) {
   const Body& b = scene.bodies[static_cast<std::size_t>(index)];
   std::string result = "[[body]]\nname = \"" + body_name(index) + "\"\n";
@@ -318,6 +355,7 @@ std::string body(const Scene& scene, int index) {
   if (b.rotor) result += rotor(*b.rotor);
   if (b.drive) result += "drive = \"constant-rate\"\n";
   if (b.hold) result += "hold = true\n";
+  result += points(scene, index);
   return result + loads(b);
 }
 
@@ -392,6 +430,7 @@ std::string to_toml(const Scene& scene) {
   std::string result = scene.title.empty() ? "" : "title = \"" + scene.title + "\"\n";
   result += guide(scene) + gravity(scene);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) result += body(scene, i);
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) result += sensor(scene.sensors[i], i);
   result +=
       "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) + "\n";
   if (!scene.model.empty()) result += "model = \"" + scene.model + "\"\n";

@@ -150,6 +150,22 @@ struct Body {
   std::vector<Load> loads = {};
 };
 
+enum class SensorKind { gyro, accelerometer, point, attitude, reaction };
+
+/// A frame that a sensor names: the index of a body, or one of these.
+inline constexpr int guide_frame = -1;
+inline constexpr int inertial_frame = -2;
+
+struct Sensor {
+  SensorKind kind = SensorKind::gyro;
+  int body = 0;
+  Vector at = Vector::Zero();
+  bool at_by_name = false;                   ///< as one of the body's points
+  std::optional<Eigen::Vector4d> axes = {};  ///< w, x, y, z
+  int against = guide_frame;
+  int on = guide_frame;  ///< axes of a point
+};
+
 struct Scene {
   std::string title = {};
   std::vector<Link> guide = {};  ///< more than one: a chain; none: not given
@@ -159,6 +175,7 @@ struct Scene {
   Vector pole = Vector::UnitZ();
   std::optional<bool> gradient = {};  ///< as in the file
   std::vector<Body> bodies = {};
+  std::vector<Sensor> sensors = {};
   double t_end = 1;
   double tolerance = 1e-10;
   std::string model = {};   ///< an approximation; empty: none

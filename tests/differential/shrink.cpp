@@ -59,6 +59,7 @@ void for_each_number(Scene& scene, const std::function<void(double&)>& f) {
   }
   for_each(scene.gravity_vector, f);
   for (Body& body : scene.bodies) for_each(body, f);
+  for (Sensor& sensor : scene.sensors) for_each(sensor.at, f);
   f(scene.t_end);
 }
 
@@ -75,8 +76,14 @@ void drop_body(Scene& scene, std::size_t index) {
   }
   if (scene.bodies.size() == 1) return;
   scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(index));
-  for (Body& body : scene.bodies) {
-    if (body.parent > static_cast<int>(index)) body.parent -= 1;
+  const int dropped = static_cast<int>(index);
+  const auto move_up = [dropped](int& body) { body -= body > dropped ? 1 : 0; };
+  for (Body& body : scene.bodies) move_up(body.parent);
+  std::erase_if(scene.sensors, [dropped](const Sensor& sensor) {
+    return sensor.body == dropped || sensor.against == dropped || sensor.on == dropped;
+  });
+  for (Sensor& sensor : scene.sensors) {
+    for (int* const body : {&sensor.body, &sensor.against, &sensor.on}) move_up(*body);
   }
 }
 
@@ -171,6 +178,12 @@ std::vector<Change> changes_of(const Scene& scene) {
   std::vector<Change> changes;
   add_guide_changes(scene, changes);
   for (std::size_t i = scene.bodies.size(); i-- > 0;) add_body_changes(i, changes);
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    changes.emplace_back(
+        [i](Scene& s) { s.sensors.erase(s.sensors.begin() + static_cast<std::ptrdiff_t>(i)); });
+    changes.emplace_back(
+        [i](Scene& s) { s.sensors[i].axes.reset(), s.sensors[i].at_by_name = false; });
+  }
   changes.emplace_back([](Scene& s) { s.outputs = 1; });
   changes.emplace_back([](Scene& s) { s.tolerance = 1e-10; });
   for (const double factor : {0.1, 0.5}) {
