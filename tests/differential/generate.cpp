@@ -721,6 +721,9 @@ Sensor sensor(Random& r, const Scene& scene) {
   result.at_by_name = !is_attitude && r.chance(0.3);
   if (!is_point && !is_attitude && r.chance(0.3)) result.axes = attitude(r);
   if (is_point || is_attitude) result.against = frame(r, scene);
+  // Logged rates leave open where the guide is in the inertial frame.
+  const bool is_lost = !scene.guide.empty() && scene.guide.front().kind == LinkKind::rates;
+  if (is_point && is_lost && result.against == inertial_frame) result.against = guide_frame;
   result.on = is_point && r.chance(0.5) ? frame(r, scene) : result.against;
   return result;
 }
