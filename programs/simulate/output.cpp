@@ -286,7 +286,8 @@ void print_summary(const Result& result) {
                parts.integration, parts.log);
   }
   for (const auto& [name, start, largest] : r.invariants) {
-    fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", name, start, largest);
+    fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", kreisel::printable(name, 120),
+               start, largest);
   }
   const ordered_json final = final_state(result, scale_of(result));
   joint_tables::print(fmt::format("joints at t = {:.15g} s", final["t"].get<double>()).c_str(),

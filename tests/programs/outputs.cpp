@@ -101,6 +101,22 @@ BOOST_AUTO_TEST_CASE(hostile_names_and_titles_are_only_shown) {
   }
 }
 
+// An invariant has the name of its body: no torque acts about the body's axis.
+BOOST_AUTO_TEST_CASE(hostile_names_of_invariants_are_shown) {
+  const std::string name = "a\nb: is no key\x1b]0;title\x07";
+  const Scratch folder;
+  const std::string file =
+      folder
+          .write("s.toml", "[[body]]\nname = " + toml(name) +
+                               "\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1\n"
+                               "inertia = [1, 1, 1]\n[solve]\nt_end = 1\n")
+          .string();
+  const Outcome text = test::run(simulate + " " + file);
+  BOOST_TEST(text.status == 0, text.err);
+  BOOST_TEST(text.out.find("angular momentum about the axis of 'a\\nb") != std::string::npos);
+  BOOST_TEST(text.out.find('\x1b') == std::string::npos);
+}
+
 // A name with a slash belongs to another folder; all others are names of files here.
 BOOST_AUTO_TEST_CASE(hostile_paths_are_names_of_files) {
   for (const std::string& name : hostile_names()) {
