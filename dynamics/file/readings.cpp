@@ -65,6 +65,9 @@ class TrueNumbers {
 
 SensorReadings::SensorReadings(const SceneFile& scene)
     : scene_(scene), times_(options_of(scene).output_times) {
+  if (std::holds_alternative<scene_gravity::OnOrbit>(scene.gravity)) {
+    inertial_guide_ = make_guide(scene);
+  }
   for (const SceneSensor& sensor : scene.sensors) {
     noises_.emplace_back(sensor.errors.value_or(SensorErrors{}), sensor.name);
     latest_.emplace_back(Vector3<double>::Zero());
@@ -74,7 +77,8 @@ SensorReadings::SensorReadings(const SceneFile& scene)
 std::vector<double> SensorReadings::row(const SceneSolver& model, double t,
                                         const JointState& state) {
   if (scene_.sensors.empty()) return {};
-  const SystemKinematics system = model.kinematics(t, state);
+  SystemKinematics system = model.kinematics(t, state);
+  if (inertial_guide_) system.inertial_guide = (*inertial_guide_)(t);
   const Now now{model.tree(), state, system};
   std::vector<double> numbers;
   for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {

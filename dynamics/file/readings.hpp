@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_sensor.hpp>
+#include <dynamics/file/scene_system.hpp>
 
 namespace kreisel {
 
@@ -28,6 +30,7 @@ class SensorReadings {
   [[nodiscard]] double length(std::size_t sample) const;
 
   const SceneFile& scene_;
+  std::optional<SceneGuide> inertial_guide_;  ///< if the equations are seen from a frame in free fall
   std::vector<double> times_;
   std::vector<SensorNoise> noises_;      ///< one for each sensor
   std::vector<Vector3<double>> latest_;  ///< noise of each sensor's latest sample

@@ -33,10 +33,14 @@ struct GravityField {
   const BodyLoad* load = nullptr;                     ///< per kg, of a point mass; null: none
 };
 
-/// How all bodies of a system move at one moment, and what their joints carry: what sensors read.
+/// Motion of all bodies of a system and reactions of its joints at one moment: the input of sensors.
+///
+/// `guide` and `gravity` belong together: the guide may be seen from a frame in free fall, and gravity
+/// is then what differs from that fall. `inertial_guide` is the same guide seen from the inertial frame.
 struct SystemKinematics {
   double t = 0;
   FrameMotion<Guide, Inertial> guide = {};
+  FrameMotion<Guide, Inertial> inertial_guide = {};
   GravityField gravity = {};
   std::vector<BodyKinematics> bodies = {};
   JointReactions reactions = {};

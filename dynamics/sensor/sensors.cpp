@@ -72,7 +72,7 @@ Vector Accelerometer::operator()(const SystemKinematics& system) const {
 
 PointReading PointSensor::operator()(const SystemKinematics& system) const {
   PointReading p = seen_from_guide(system.body(body), at);
-  if (against.kind == SensorFrame::Kind::inertial) p = seen_from_inertial(p, system.guide);
+  if (against.kind == SensorFrame::Kind::inertial) p = seen_from_inertial(p, system.inertial_guide);
   if (against.kind == SensorFrame::Kind::body) p = seen_from_body(p, system.body(against.body));
   const Matrix3<double> turn = from_guide(axes, system);
   return {turn * p.position, turn * p.velocity, turn * p.acceleration};

@@ -304,6 +304,30 @@ BOOST_AUTO_TEST_CASE(at_rest_on_the_earth_are_gravity) {
                 g);
 }
 
+// A body that is held 10 m above the origin of a circular orbit. What is left of gravity is the tide
+// 2 n^2 x, to the order x/a; the inertial frame still sees the motion about the planet.
+BOOST_AUTO_TEST_CASE(on_an_orbit) {
+  const double a = 7e6;
+  const double n2 = 3.986004418e14 / (a * a * a);
+  const std::string held =
+      "[guide]\nkind = \"orbit\"\nsemi_major_axis = 7e6\n[gravity]\nkind = \"orbit\"\n" +
+      body("a", "joint = { kind = \"fixed\", position = [10, 0, 0] }");
+  const auto f = at_start(held + sensor("kind = \"accelerometer\"\nbody = \"a\"") + run);
+  BOOST_TEST(std::abs(f[0] + 30 * n2) <= 6 * n2 * 100 / a);
+  BOOST_TEST(std::hypot(f[1], f[2]) <= 1e-20);
+  const auto p = at_start(
+      held +
+      sensor("kind = \"point\"\nbody = \"a\"\nagainst = \"inertial\"\naxes = \"inertial\"") + run);
+  const auto check = [&p](std::size_t at, const Vector3<double>& wanted) {
+    const Vector3<double> found(p.data() + at);
+    BOOST_TEST((found - wanted).norm() <= 1e-14 * wanted.norm(), found << "\nwanted " << wanted);
+  };
+  const double r = a + 10;
+  check(0, {r, 0, 0});
+  check(3, {0, std::sqrt(n2) * r, 0});
+  check(6, {-n2 * r, 0, 0});
+}
+
 // Without gravity on the earth what is left is the centripetal part at the site.
 BOOST_AUTO_TEST_CASE(without_gravity_are_centripetal) {
   const NormalGravity gravity = normal_gravity({50, 30, 100});
