@@ -82,7 +82,7 @@ void measure(const char* name, const Make& make) {
     way.processor.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
     way.wall.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    detail::ErrorMeasure<Scene> distance(options.absolute_scale);
+    ErrorMeasure<Scene> distance(options.absolute_scale);
     for (std::size_t i = 0; i < checked; ++i) {
       const auto y = Scene::to_vector(result.members[i].states.back());
       way.error = test::worst_of(way.error, distance(y, Scene::to_vector(truth[i])));

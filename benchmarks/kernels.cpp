@@ -63,7 +63,7 @@ void factors(benchmark::State& state) {
   const auto n = static_cast<Eigen::Index>(state.range(0));
   const Eigen::MatrixXcd A = Eigen::MatrixXcd::Random(n, n);
   const Eigen::VectorXcd b = Eigen::VectorXcd::Random(n);
-  detail::Factors<std::complex<double>> lu;
+  LuFactors<std::complex<double>> lu;
   Eigen::VectorXcd x;
   for (auto _ : state) {
     lu.matrix = A;

@@ -8,32 +8,29 @@
 
 #include <dynamics/decompositions.hpp>
 
-namespace kreisel::detail {
+namespace kreisel {
+
+namespace detail {
 
 inline void check_convergence(Eigen::ComputationInfo info) {
   if (info == Eigen::Success) return;
   throw ComputationFailed("the QR iteration for eigenvalues does not converge");
 }
 
-Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
-  if (A.size() == 0) return {};
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
-  check_convergence(solver.info());
-  return {solver.eigenvalues(), solver.eigenvectors()};
-}
+}  // namespace detail
 
 // As Eigen::EigenSolver has it, which takes the compiler twice as long: it also compiles what makes
 // vectors.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   if (A.size() == 0) return {};
-  if (!A.allFinite()) check_convergence(Eigen::NoConvergence);
+  if (!A.allFinite()) detail::check_convergence(Eigen::NoConvergence);
   const Eigen::Index n = A.rows();
   const double scale = A.isZero(0) ? 1 : A.cwiseAbs().maxCoeff();  // lest anything overflow
   const Eigen::MatrixXd hessenberg =
       Eigen::HessenbergDecomposition<Eigen::MatrixXd>(A / scale).matrixH();
   Eigen::RealSchur<Eigen::MatrixXd> schur(n);
   schur.computeFromHessenberg(hessenberg, Eigen::MatrixXd(), false);
-  check_convergence(schur.info());
+  detail::check_convergence(schur.info());
   const Eigen::MatrixXd& T = schur.matrixT();  // triangular but for a block of each complex pair
   Eigen::VectorXcd values(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -49,6 +46,15 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
     ++i;
   }
   return values;
+}
+
+namespace detail {
+
+Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
+  if (A.size() == 0) return {};
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  check_convergence(solver.info());
+  return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {
@@ -106,4 +112,6 @@ ShortestSolution shortest_solution(const Eigen::MatrixXd& A, const Eigen::Vector
   return {factors.solve(b), static_cast<int>(factors.rank())};
 }
 
-}  // namespace kreisel::detail
+}  // namespace detail
+
+}  // namespace kreisel

@@ -12,7 +12,14 @@
 /// libkreisel: they are the slowest of Eigen to compile and the same for every scene. A matrix
 /// without rows or columns has no eigenvalues.
 
-namespace kreisel::detail {
+namespace kreisel {
+
+/// The eigenvalues of a real square matrix, in no order.
+///
+/// Throws : ComputationFailed if the QR iteration does not converge
+KREISEL_API [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+
+namespace detail {
 
 /// Eigenvalues and eigenvectors: A x = value x. The columns of `vectors` have norm 1.
 struct Eigenpairs {
@@ -20,12 +27,8 @@ struct Eigenpairs {
   Eigen::MatrixXcd vectors;
 };
 
-/// Throws : ComputationFailed if the QR iteration does not converge; so do all functions below that
-///          compute eigenvalues
+/// Throws : as eigenvalues(); so do all functions below that compute eigenvalues
 KREISEL_API [[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& A);
-
-/// The values of eigenpairs(), without the vectors.
-KREISEL_API [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// Eigenpairs of a symmetric or Hermitian matrix: real values and orthonormal vectors.
 template <class Matrix>
@@ -72,4 +75,6 @@ KREISEL_API [[nodiscard]] ShortestSolution shortest_solution(const Eigen::Matrix
                                                              const Eigen::VectorXd& b,
                                                              double threshold);
 
-}  // namespace kreisel::detail
+}  // namespace detail
+
+}  // namespace kreisel

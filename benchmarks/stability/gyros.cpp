@@ -169,7 +169,7 @@ void near_gimbal_lock(const Recorder& out) {
       try {
         const auto a = Gyro::to_vector(in_long_double(gyro, start, end));
         const auto b = Gyro::to_vector(in_long_double(gyro, moved, end));
-        kreisel::detail::ErrorMeasure<Gyro> distance(1e-3);
+        kreisel::ErrorMeasure<Gyro> distance(1e-3);
         trial.truth_error = 1e-4 * distance(a, b) + 1e-14;
       } catch (const kreisel::Error&) {
         // Then there is no truth, and the trials below must refuse.

@@ -78,7 +78,7 @@ void heavy_end(const Recorder& out) {
       add_refusal(out, what, "verner98", a.report.message);
       continue;
     }
-    kreisel::detail::ErrorMeasure<System> distance(system, 1e-3);
+    kreisel::ErrorMeasure<System> distance(system, 1e-3);
     expect_below(out, what, "verner98",
                  distance(System::to_vector(a.states[0]), System::to_vector(b.states[0])),
                  a.report.error_estimate + b.report.error_estimate, "against a run at 1e-9");
@@ -225,7 +225,7 @@ void platform_motions(const Recorder& out) {
       add_refusal(out, what, "verner98", a.report.message + b.report.message);
       continue;
     }
-    kreisel::detail::ErrorMeasure<System> distance(free, 1e-3);
+    kreisel::ErrorMeasure<System> distance(free, 1e-3);
     distance.note_sizes(a.report.sizes);
     expect_below(out, what, "verner98",
                  distance(System::to_vector(a.states[0]), System::to_vector(b.states[0])),

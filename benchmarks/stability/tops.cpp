@@ -215,7 +215,7 @@ void backwards(const Recorder& out) {
   const auto back = kreisel::solve(
       top, there.states[0],
       {.begin = 50, .output_times = {0}, .tolerance = 1e-13, .method = Method::verner98});
-  kreisel::detail::ErrorMeasure<EulerTop> distance(1e-3);
+  kreisel::ErrorMeasure<EulerTop> distance(1e-3);
   expect_below(out, "there and back", "verner98",
                distance(EulerTop::to_vector(back.states[0]), EulerTop::to_vector(start)),
                // The error of the rate at the reversal makes the attitude wrong on the whole way

@@ -63,7 +63,7 @@ void weigh(const Recorder& out, const Trial<Scene>& trial,
   row.evaluations = report.all_evaluations;
   row.drift = drift(report);
   row.error = 0;
-  kreisel::detail::ErrorMeasure<Scene> distance(trial.scene, trial.options.absolute_scale);
+  kreisel::ErrorMeasure<Scene> distance(trial.scene, trial.options.absolute_scale);
   distance.note_sizes(report.sizes);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     const auto y = trial.scene.to_vector(found.states[i]);

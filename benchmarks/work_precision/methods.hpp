@@ -124,7 +124,7 @@ class Methods {
         if (report.status == kreisel::RunStatus::failed) throw std::runtime_error(report.message);
         double worst = 0;
         double promised = 0;
-        kreisel::detail::ErrorMeasure<Scene> distance(p.absolute_scale);
+        kreisel::ErrorMeasure<Scene> distance(p.absolute_scale);
         for (std::size_t i = 0; i < p.times.size(); ++i) {
           const Vector y = Scene::to_vector(result.states.at(i));
           worst = kreisel::test::worst_of(worst, p.distance(i, y));

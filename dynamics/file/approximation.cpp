@@ -90,7 +90,7 @@ class Approximation final : public SceneSolver {
         options, start, [&](double, const JointState&) { return !interrupted(); }, interrupted);
     if (result.report.status != RunStatus::complete) return result;
     const std::vector<VectorXd> states = motion_.states(joined(start), options.output_times);
-    detail::ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
+    ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
     // Relative to the sizes of the whole exact run: an approximation may begin with other rates.
     distance.note_sizes(result.report.sizes);
     if (result.report.sizes.empty()) note_way(distance, options, start);

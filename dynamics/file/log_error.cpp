@@ -103,7 +103,7 @@ class Beside {
 
   /// The distance of two ends.
   [[nodiscard]] LogError distance(const End& a, const End& b) const {
-    detail::ErrorMeasure<Measured> measure({model_.tree().blocks()}, 1e-3);
+    ErrorMeasure<Measured> measure({model_.tree().blocks()}, 1e-3);
     for (const JointState& passed : run_.states) (void)measure(joined(passed), joined(passed));
     LogError error;
     if (joined(a.state).size() > 0) error.worst = measure(joined(a.state), joined(b.state));

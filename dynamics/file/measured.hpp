@@ -15,7 +15,7 @@ namespace kreisel {
   return y;
 }
 
-/// The blocks of a system's state, for detail::ErrorMeasure.
+/// The blocks of a system's state, for ErrorMeasure.
 struct Measured {
   using Vector = Eigen::VectorXd;
   std::vector<int> blocks;

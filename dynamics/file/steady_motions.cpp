@@ -214,7 +214,7 @@ std::string driven_rotors(const StudySystem& system) {
 }
 
 double growth(const StudySystem& system, const VectorXd& state) {
-  return detail::eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
+  return eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
 }
 
 /// The equilibrium next to a state; null where there is none.

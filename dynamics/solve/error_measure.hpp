@@ -13,7 +13,9 @@
 #include <dynamics/step/integrator.hpp>
 #include <motor/api.hpp>
 
-namespace kreisel::detail {
+namespace kreisel {
+
+namespace detail {
 
 /// How much finer the run is beside which another is held.
 inline constexpr double times_finer = 30;
@@ -72,29 +74,37 @@ class BlockDistance {
   Eigen::VectorXd difference_;
 };
 
-/// The same of states of a scene.
+}  // namespace detail
+
+/// The distance of two states of a scene in the measure of RunReport::error_estimate: attitudes by the
+/// angle between them in radian, other blocks relative to the greatest size they have had in the states
+/// given so far.
+///
+/// absolute_scale : as SolveOptions::absolute_scale
 template <class Scene>
 class ErrorMeasure {
   using Vector = typename Scene::Vector;
 
  public:
-  ErrorMeasure(const Scene& scene, double smallest) : ErrorMeasure(blocks_of(scene), smallest) {}
+  ErrorMeasure(const Scene& scene, double absolute_scale)
+      : ErrorMeasure(detail::blocks_of(scene), absolute_scale) {}
 
   /// For scenes that all have the same blocks.
-  explicit ErrorMeasure(double smallest) : ErrorMeasure(Scene::blocks, smallest) {}
+  explicit ErrorMeasure(double absolute_scale) : ErrorMeasure(Scene::blocks, absolute_scale) {}
 
   double operator()(const Vector& a, const Vector& b) {
     return distance_({a.data(), std::size_t(a.size())}, {b.data(), std::size_t(b.size())});
   }
 
+  /// Takes the sizes that blocks have had between the states given.
   void note_sizes(std::span<const double> sizes) { distance_.note_sizes(sizes); }
 
  private:
   template <class Blocks>
-  ErrorMeasure(const Blocks& blocks, double smallest)
-      : distance_({blocks.begin(), blocks.end()}, smallest) {}
+  ErrorMeasure(const Blocks& blocks, double absolute_scale)
+      : distance_({blocks.begin(), blocks.end()}, absolute_scale) {}
 
-  BlockDistance distance_;
+  detail::BlockDistance distance_;
 };
 
-}  // namespace kreisel::detail
+}  // namespace kreisel

@@ -14,7 +14,7 @@ namespace kreisel::detail {
 
 /// Factors of shift - J.
 template <class Number>
-void factorise_shifted(const Eigen::MatrixXd& J, const Number& shift, Factors<Number>& factors) {
+void factorise_shifted(const Eigen::MatrixXd& J, const Number& shift, LuFactors<Number>& factors) {
   const Eigen::Index n = J.rows();
   factors.matrix.resize(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {

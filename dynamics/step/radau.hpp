@@ -64,7 +64,7 @@ class StiffFieldOf final : public StiffField {
   Vector rate_;  ///< a member, because a vector of dynamic size would allocate in each call
 };
 
-/// The stages Z of a Radau step and Newton's method for them. Plain loops, as in Factors: they
+/// The stages Z of a Radau step and Newton's method for them. Plain loops, as in LuFactors: they
 /// compile in a tenth of the time of Eigen's products.
 class RadauStages {
  public:
@@ -99,8 +99,8 @@ class RadauStages {
   Eigen::MatrixXd change_;
   Eigen::VectorXd mode_;
   Eigen::VectorXcd pair_;
-  Factors<double> real_;
-  std::vector<Factors<std::complex<double>>> complex_;
+  LuFactors<double> real_;
+  std::vector<LuFactors<std::complex<double>>> complex_;
 };
 
 /// The step control of RadauSteps. Sizes are run-time values and the field is an argument, so that

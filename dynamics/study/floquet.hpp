@@ -32,7 +32,7 @@ enum class Stability {
 template <int n>
 [[nodiscard]] Eigen::Matrix<std::complex<double>, n, 1> floquet_multipliers(
     const Transition<n>& period) {
-  return detail::eigenvalues(period.matrix);
+  return eigenvalues(period.matrix);
 }
 
 /// The multipliers of two degrees of freedom without damping, in pairs l and 1/l:

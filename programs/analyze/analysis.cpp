@@ -35,20 +35,35 @@ Verdict verdict(const Modes& modes, bool all_directions, const Growth& growth) {
   return result;
 }
 
+/// How many of a joint's rates, the first ones, turn the body.
+int turning_rates(kreisel::JointKind kind) {
+  using enum kreisel::JointKind;
+  switch (kind) {
+    case fixed:
+    case prismatic: return 0;
+    case revolute: return 1;
+    case universal: return 2;
+    case spherical:
+    case free: return 3;
+  }
+  return 0;
+}
+
 /// From where a mode about a steady motion is seen. Attitudes vary by angles on the body's own axes,
 /// which in a steady motion may turn; single coordinates vary against the parent.
 std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) {
   const kreisel::BodyTree& tree = system.tree();
   std::string carriers;
-  for (const auto& link : tree.links()) {
-    const int count = kreisel::detail::rate_count(link.kind);
-    if (count == 0 || link.kind == kreisel::detail::LinkKind::prismatic) continue;
-    const int turning = std::min(count, 3);
-    if (state.segment(tree.coordinates() + link.v, turning).cwiseAbs().maxCoeff() < 1e-9) continue;
-    const std::string& name = tree.body(link.body).name;
-    if (count >= 3) return "on body axes, which turn with '" + name + "'";
+  for (int body = 0; body < static_cast<int>(tree.bodies().size()); ++body) {
+    const kreisel::BodyDescription& description = tree.body(body);
+    const int turning = turning_rates(description.joint.kind);
+    const int v = tree.coordinates() + tree.place(body).v;
+    if (description.rotor || turning == 0) continue;
+    if (state.segment(v, turning).cwiseAbs().maxCoeff() < 1e-9) continue;
+    const std::string& name = description.name;
+    if (turning == 3) return "on body axes, which turn with '" + name + "'";
     const bool carries = std::any_of(tree.bodies().begin(), tree.bodies().end(),
-                                     [&name](const auto& body) { return body.parent == name; });
+                                     [&name](const auto& other) { return other.parent == name; });
     if (carries && carriers.empty()) carriers = name;
   }
   if (carriers.empty()) return "against the guide";
@@ -133,7 +148,7 @@ bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibriu
   }
   if (free.empty() || equilibrium.degenerate) return false;
   const MatrixXd J = there.A.bottomRows(directions.rates)(free, free);
-  const Eigen::VectorXd values = kreisel::detail::eigenvalues(J).real();
+  const Eigen::VectorXd values = kreisel::eigenvalues(J).real();
   const double zero = 1e-9 * values.cwiseAbs().maxCoeff();
   const auto falls = [zero](double value) { return value < -zero; };
   return values.maxCoeff() <= zero &&

@@ -30,7 +30,7 @@ BOOST_AUTO_TEST_CASE(eigenvalues_make_singular) {
     const double size = A.norm();
     const double bound = 20 * n * test::u<> * size;
     for (const double unit : {1.0, 0x1p-700, 0x1p700}) {
-      const Eigen::VectorXcd values = detail::eigenvalues(unit * A) / unit;
+      const Eigen::VectorXcd values = eigenvalues(unit * A) / unit;
       BOOST_REQUIRE_EQUAL(values.size(), n);
       for (const std::complex<double> value : values) {
         const Eigen::MatrixXcd shifted = A - value * Eigen::MatrixXcd::Identity(n, n);
@@ -49,20 +49,20 @@ BOOST_AUTO_TEST_CASE(eigenvalues_make_singular) {
 BOOST_AUTO_TEST_CASE(eigenvalues_of_special_matrices) {
   Eigen::MatrixXd cyclic = Eigen::MatrixXd::Zero(6, 6);
   for (int i = 0; i < 6; ++i) cyclic(i, (i + 5) % 6) = 1;
-  const Eigen::VectorXd sizes = detail::eigenvalues(cyclic).cwiseAbs();
+  const Eigen::VectorXd sizes = eigenvalues(cyclic).cwiseAbs();
   BOOST_TEST((sizes.array() - 1).abs().maxCoeff() <= 40 * test::u<>);
   Eigen::MatrixXd block = Eigen::MatrixXd::Zero(5, 5);
   for (int i = 0; i + 1 < 5; ++i) block(i, i + 1) = 1;
-  BOOST_TEST(detail::eigenvalues(block).cwiseAbs().maxCoeff() == 0);
+  BOOST_TEST(eigenvalues(block).cwiseAbs().maxCoeff() == 0);
 }
 
 BOOST_AUTO_TEST_CASE(empty_matrices_have_no_eigenvalues) {
-  BOOST_TEST(detail::eigenvalues(Eigen::MatrixXd(0, 0)).size() == 0);
-  BOOST_TEST(detail::eigenvalues(Eigen::MatrixXd::Zero(3, 3)).isZero(0));
+  BOOST_TEST(eigenvalues(Eigen::MatrixXd(0, 0)).size() == 0);
+  BOOST_TEST(eigenvalues(Eigen::MatrixXd::Zero(3, 3)).isZero(0));
   for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Identity(3, 3);
     A(1, 2) = wrong;
-    BOOST_CHECK_THROW((void)detail::eigenvalues(A), ComputationFailed);
+    BOOST_CHECK_THROW((void)eigenvalues(A), ComputationFailed);
   }
 }
 
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(empty_matrices_have_no_decomposition) {
     BOOST_TEST((shortest.x == Eigen::VectorXd::Zero(columns)));
   }
   const Eigen::MatrixXd none;
-  BOOST_TEST(detail::eigenvalues(none).size() == 0);
+  BOOST_TEST(eigenvalues(none).size() == 0);
   BOOST_TEST(detail::eigenpairs(none).values.size() == 0);
   BOOST_TEST(detail::symmetric_eigenpairs(none).values.size() == 0);
   BOOST_TEST(detail::hermitian_eigenpairs(none).values.size() == 0);

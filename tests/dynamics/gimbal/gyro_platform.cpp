@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(swings_at_the_frequencies_of_the_reference) {
       F.topRightCorner(8, 8).setIdentity();
       F.bottomLeftCorner(8, 8) = -A.ldlt().solve(K);
       F.bottomRightCorner(8, 8) = -A.ldlt().solve(Matrix8(D + p.gyroscopic(zero, as_printed)));
-      const Eigen::VectorXcd found = detail::eigenvalues(F);
+      const Eigen::VectorXcd found = eigenvalues(F);
       double worst = 0;
       for (const Json& root : c[as_printed ? "eig_printed26" : "eig_corrected_regulated"]) {
         const std::complex<double> truth(number(root[0]), number(root[1]));

@@ -47,7 +47,7 @@ std::vector<double> every(double step, double end) {
 /// The true error of a trajectory in the measure of solve()'s report.
 template <class Truth>
 double true_error(const Trajectory<EulerTop::State>& found, const Truth& truth) {
-  detail::ErrorMeasure<EulerTop> distance(1e-3);
+  ErrorMeasure<EulerTop> distance(1e-3);
   double worst = 0;
   for (std::size_t i = 0; i < found.times.size(); ++i) {
     const exact::TopMotion exact = truth.at(found.times[i]);
@@ -132,7 +132,7 @@ BOOST_AUTO_TEST_CASE(uses_the_series_if_the_scene_has_one) {
     const auto found = solve(body, start, {.output_times = times, .tolerance = tolerance});
     BOOST_TEST(found.report.method == "taylor");
     BOOST_TEST(found.report.tolerance_kept);
-    detail::ErrorMeasure<Scene> distance(1e-3);
+    ErrorMeasure<Scene> distance(1e-3);
     double off = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
       off = test::worst_of(
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(solves_bodies_on_moving_guides) {
       solve(body, {tilted, {1, 0, 2}}, {.output_times = every(0.5, 10), .tolerance = 1e-6});
   const auto tight =
       solve(body, {tilted, {1, 0, 2}}, {.output_times = every(0.5, 10), .tolerance = 1e-12});
-  detail::ErrorMeasure<std::remove_const_t<decltype(body)>> distance(1e-3);
+  ErrorMeasure<std::remove_const_t<decltype(body)>> distance(1e-3);
   double off = 0;
   for (std::size_t i = 0; i < loose.states.size(); ++i) {
     off = test::worst_of(
@@ -353,7 +353,7 @@ BOOST_AUTO_TEST_CASE(splits_fast_tops) {
     BOOST_TEST(found.report.method == "splitting");
     BOOST_TEST(found.report.tolerance_kept);
     double off = 0;
-    detail::ErrorMeasure<EulerTop> distance(1e-3);
+    ErrorMeasure<EulerTop> distance(1e-3);
     for (std::size_t i = 0; i < times.size(); ++i) {
       off = test::worst_of(off, distance(EulerTop::to_vector(found.states[i]),
                                          EulerTop::to_vector(by_steps.states[i])));
@@ -581,7 +581,7 @@ BOOST_AUTO_TEST_CASE(detects_chance_agreement_near_gimbal_lock) {
         const auto found =
             solve(gyro, start, {.output_times = {end}, .tolerance = tolerance, .method = method});
         if (!found.report.tolerance_kept) continue;
-        detail::ErrorMeasure<Gyro> distance(1e-3);
+        ErrorMeasure<Gyro> distance(1e-3);
         for (const Gyro::Vector& y : way) (void)distance(y, y);
         const double error = distance(Gyro::to_vector(found.states.at(0)), truth);
         kept += 1;
@@ -635,7 +635,7 @@ BOOST_AUTO_TEST_CASE(reports_its_error_in_chaotic_motion) {
       for (const double tolerance : {1e-9, 1e-11}) {
         const auto found =
             solve(top, start, {.output_times = times, .tolerance = tolerance, .method = method});
-        detail::ErrorMeasure<EulerTop> distance(1e-3);
+        ErrorMeasure<EulerTop> distance(1e-3);
         double error = 0;
         for (std::size_t k = 0; k < times.size(); ++k) {
           error =
@@ -842,7 +842,7 @@ BOOST_AUTO_TEST_CASE(keeps_the_limit_of_evaluations) {
 
 // A start whose squares exceed the range of double.
 BOOST_AUTO_TEST_CASE(normalises_attitudes_of_extreme_norm) {
-  detail::ErrorMeasure<EulerTop> distance(1e-3);
+  ErrorMeasure<EulerTop> distance(1e-3);
   const EulerTop::State a{Eigen::Quaterniond(1, 0, 0, 0), {1, 2, 3}};
   const EulerTop::State b{Eigen::Quaterniond(std::cos(0.5), std::sin(0.5), 0, 0), {1, 2, 3}};
   for (const double size : {1e-300, 1e-170, 1.0, 1e170, 1e300}) {

@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
       options.tolerance = tolerance;
       options.method = Method::taylor;
       const auto found = solve(system, start, options);
-      detail::ErrorMeasure<Scene> distance(system, options.absolute_scale);
+      ErrorMeasure<Scene> distance(system, options.absolute_scale);
       double error = 0;
       for (std::size_t i = 0; i < options.output_times.size(); ++i) {
         error = test::worst_of(

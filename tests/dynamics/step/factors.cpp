@@ -14,7 +14,7 @@ BOOST_AUTO_TEST_SUITE(factors)
 // Solutions against Eigen's with complete pivoting, of systems whose first pivot is 0.
 template <class Number>
 void solve_systems() {
-  using Factors = detail::Factors<Number>;
+  using Factors = LuFactors<Number>;
   for (const int n : {1, 2, 3, 7, 20, 60}) {
     for (int system = 0; system < 20; ++system) {
       typename Factors::Matrix A = Factors::Matrix::Random(n, n);
@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(solve_real_systems) { solve_systems<double>(); }
 BOOST_AUTO_TEST_CASE(solve_complex_systems) { solve_systems<std::complex<double>>(); }
 
 BOOST_AUTO_TEST_CASE(give_no_solution_of_singular_systems) {
-  detail::Factors<double> f;
+  LuFactors<double> f;
   f.matrix = Eigen::MatrixXd::Ones(3, 3);
   f.compute();
   Eigen::VectorXd x(3);

@@ -76,7 +76,7 @@ Eigen::VectorXd at_rest(const BodySystem<RestingFrame<>>& system, const Eigen::V
 
 /// The greatest distance of a root, except zero roots, from the nearest computed one.
 double worst(const Eigen::MatrixXd& A, const Json& roots) {
-  const Eigen::VectorXcd found = detail::eigenvalues(A);
+  const Eigen::VectorXcd found = eigenvalues(A);
   double off = 0;
   for (const Json& root : roots) {
     const std::complex<double> truth(number(root[0]), number(root[1]));
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(sleeping_top_has_its_stability_limit) {
         linearize<Guide, Body>(top, 0, top.to_vector({.angular_velocity = {0, 0, w}}));
     BOOST_TEST(linear.names[5] == "w_z");
     BOOST_TEST(linear.unsteadiness.norm() == 0);
-    const Eigen::VectorXcd roots = detail::eigenvalues(linear.A);
+    const Eigen::VectorXcd roots = eigenvalues(linear.A);
     const std::complex<double> D = std::sqrt(std::complex<double>(C * C * w * w - 4 * A * k));
     const std::complex<double> nu = (C * w + D) / (2 * A);
     const double off = (roots.array() - std::complex<double>(0, 1) * (nu - w))

@@ -65,7 +65,7 @@ double distance(const Scene& scene, const Rates<typename Scene::Vector>& reduced
                 const typename Scene::State& start, double horizon) {
   Motion whole(scene, rates_of(scene), start);
   Motion less(scene, reduced, start);
-  detail::ErrorMeasure<Scene> measure(scene, 1e-3);
+  ErrorMeasure<Scene> measure(scene, 1e-3);
   constexpr int times = 50;
   double worst = measure(less.at(0), whole.at(0));
   for (int i = 1; i <= times; ++i) {
@@ -297,7 +297,7 @@ BOOST_AUTO_TEST_CASE(is_solved_and_lists_dropped_terms) {
   const auto run = std::visit(solved, pruned.scene);
   const auto whole = solved(gyro);
   BOOST_TEST(run.report.tolerance_kept);
-  detail::ErrorMeasure<decltype(gyro)> measure(gyro, 1e-3);
+  ErrorMeasure<decltype(gyro)> measure(gyro, 1e-3);
   double off = measure(gyro.to_vector(start), gyro.to_vector(start));
   for (std::size_t i = 0; i < 5; ++i) {
     off = test::worst_of(off,
