@@ -175,9 +175,10 @@ std::vector<std::string> compute(const Request& request, const MemberRange& rang
     report(share);
     return interrupted == 0;
   };
-  SolveOptions options{.output_times = {}, .tolerance = request.tolerance};
   constexpr int outputs = 128;
-  for (int i = 1; i <= outputs; ++i) options.output_times.push_back(request.t_end * i / outputs);
+  const SolveOptions options{.t_end = request.t_end,
+                             .output_step = request.t_end / outputs,
+                             .tolerance = request.tolerance};
   const auto result = ensemble(
       sampling, [&](std::size_t /*index*/, MemberRandom& random) { return make(request, random); },
       options);

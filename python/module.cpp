@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iomanip>
 #include <iterator>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 #include <sstream>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -143,30 +145,31 @@ Scene scene_of_keywords(const py::kwargs& keywords) {
   return scene_of_text(std::move(text), "keywords");
 }
 
-/// Checks Python's signals ten times a second, because taking Python's lock costs more than an
-/// evaluation.
-class SignalWatch {
-  using Clock = std::chrono::steady_clock;
-
- public:
-  /// True if a signal has arrived. Called without Python's lock.
-  [[nodiscard]] bool stop() {
-    if (stop_ || Clock::now() < next_) return stop_;
-    next_ = Clock::now() + std::chrono::milliseconds(100);
-    const py::gil_scoped_acquire lock;
-    stop_ = PyErr_CheckSignals() != 0;
-    return stop_;
+/// Calls `work(stop)` in a thread of its own, without Python's lock. Checks Python's signals ten times a
+/// second; a signal requests the stop.
+///
+/// Throws : the exceptions of the work; the exception of the signal
+template <class Work>
+void run_interruptibly(const Work& work) {
+  std::stop_source source;
+  bool interrupted = false;
+  {
+    const py::gil_scoped_release released;
+    auto done = std::async(std::launch::async, [&] { work(source.get_token()); });
+    while (!interrupted &&
+           done.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) {
+      const py::gil_scoped_acquire lock;
+      interrupted = PyErr_CheckSignals() != 0;
+    }
+    if (interrupted) {
+      source.request_stop();
+      done.wait();
+    } else {
+      done.get();
+    }
   }
-
-  /// Throws the signal's exception. Called with Python's lock.
-  void rethrow() const {
-    if (stop_) throw py::error_already_set();
-  }
-
- private:
-  bool stop_ = false;
-  Clock::time_point next_ = Clock::now();
-};
+  if (interrupted) throw py::error_already_set();
+}
 
 kreisel::SceneFile requested(const Scene& scene, std::optional<double> t_end,
                              const std::optional<double>& tolerance,
@@ -219,23 +222,18 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
   kreisel::SolveOptions options = options_of(file);
   options.output_times = file.output_times;
-  SignalWatch watch;
   kreisel::Trajectory<kreisel::JointState> run;
   std::vector<std::vector<double>> numbers;
   kreisel::SensorReadings readings(file);
-  {
-    const py::gil_scoped_release released;
-    run = model->solve(
-        options, start_of(file),
-        [&watch](double /*t*/, const kreisel::JointState& /*state*/) { return !watch.stop(); },
-        [&watch] { return watch.stop(); });
-    for (std::size_t i = 0; i < run.states.size() && !watch.stop(); ++i) {
+  run_interruptibly([&](const std::stop_token& stop) {
+    options.stop = stop;
+    run = model->solve(options, start_of(file));
+    for (std::size_t i = 0; i < run.states.size() && !stop.stop_requested(); ++i) {
       numbers.push_back(row(*model, run.times[i], run.states[i], reactions));
       const std::vector<double> own = readings.row(*model, run.times[i], run.states[i]);
       numbers.back().insert(numbers.back().end(), own.begin(), own.end());
     }
-  }
-  watch.rethrow();
+  });
   if (run.report.status == kreisel::RunStatus::failed) {
     throw kreisel::ComputationFailed(run.report.message);
   }

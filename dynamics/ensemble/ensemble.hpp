@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +11,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -69,9 +69,9 @@ namespace detail {
 
 /// Continues until the last step covers t; returns false if a stop was requested.
 template <class Run>
-[[nodiscard]] bool go_on(Run& run, double t, double end, const std::atomic<bool>& stop) {
+[[nodiscard]] bool go_on(Run& run, double t, double end, const std::stop_token& stop) {
   while (!run.covers(t)) {
-    if (stop) return false;
+    if (stop.stop_requested()) return false;
     run.step_towards(end);
   }
   return true;
@@ -93,7 +93,7 @@ class RoundingGrowthOfMembers {
 
   /// The growth at t; times must be given in order. 0 if the coarse steps fail or a stop is
   /// requested.
-  [[nodiscard]] Values at(double t, double end, const std::atomic<bool>& stop) {
+  [[nodiscard]] Values at(double t, double end, const std::stop_token& stop) {
     Values grown{};
     if (gave_up_) return grown;
     try {
@@ -129,7 +129,7 @@ class RoundingGrowthOfMembers {
 /// Throws : ComputationFailed if one of the members stops; earlier outputs are kept
 template <class N, class Scene>
 void follow(const Scene& scene, const typename PackedIntegrator<Scene, N>::States& starts,
-            const SolveOptions& options, bool estimates_errors, const std::atomic<bool>& stop,
+            const SolveOptions& options, bool estimates_errors, const std::stop_token& stop,
             const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
   const AdaptiveRuns runs(options);
   const double end = options.output_times.back();
@@ -330,7 +330,7 @@ void fail(Trajectory<State>& member, const std::exception& error) {
 /// Members of an ensemble from `index` on: at most one for each lane of N.
 template <class N, class Group, class Make>
 void run_group(Group group, const Make& make, std::size_t index, const SolveOptions& options,
-               const Sampling& sampling, const std::atomic<bool>& stop,
+               const Sampling& sampling, const std::stop_token& stop,
                std::span<Trajectory<typename Group::State>> members) {
   using State = typename Group::State;
   constexpr std::size_t lanes{lanes_of<N>};
@@ -383,8 +383,6 @@ inline void check(const Sampling& sampling, const SolveOptions& options, int lan
   if (options.method != Method::automatic && options.method != Method::verner98) {
     refuse_task("options.method = ", name(options.method), ": an ensemble needs verner98");
   }
-  if (options.progress)
-    refuse_task("options.progress is not used by an ensemble: set sampling.progress");
   if (sampling.threads < 0)
     refuse_task("sampling.threads = ", sampling.threads, " must be 0 or above");
   if (sampling.first % static_cast<std::size_t>(lanes) != 0) {
@@ -394,22 +392,23 @@ inline void check(const Sampling& sampling, const SolveOptions& options, int lan
 
 template <class N, class Group, class Make>
 [[nodiscard]] Ensemble<typename Group::State> run_ensemble(const Group& group, const Make& make,
-                                                           const SolveOptions& options,
+                                                           const SolveOptions& given,
                                                            const Sampling& sampling) {
   constexpr std::size_t lanes{lanes_of<N>};
+  const SolveOptions options = with_output_times(given);
   check(sampling, options, lanes_of<N>);
   const auto begin = std::chrono::steady_clock::now();
   Ensemble<typename Group::State> result;
   result.members.resize(sampling.count);
   for (auto& member : result.members) member.report.status = RunStatus::cancelled;
-  const bool all_done =
-      parallel_for((sampling.count + lanes - 1) / lanes, sampling.threads, sampling.progress,
-                   [&](std::size_t i, const std::atomic<bool>& stop) {
-                     const std::size_t from = i * lanes;
-                     const std::size_t count = std::min(lanes, sampling.count - from);
-                     run_group<N>(group, make, sampling.first + from, options, sampling, stop,
-                                  std::span(result.members).subspan(from, count));
-                   });
+  const bool all_done = parallel_for(
+      (sampling.count + lanes - 1) / lanes, {sampling.threads, sampling.progress, options.stop},
+      [&](std::size_t i, const std::stop_token& stop) {
+        const std::size_t from = i * lanes;
+        const std::size_t count = std::min(lanes, sampling.count - from);
+        run_group<N>(group, make, sampling.first + from, options, sampling, stop,
+                     std::span(result.members).subspan(from, count));
+      });
   if (!all_done) result.status = RunStatus::cancelled;
   for (const auto& member : result.members) {
     if (member.report.status == RunStatus::failed) ++result.failed;

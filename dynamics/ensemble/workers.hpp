@@ -6,48 +6,60 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <system_error>
 #include <thread>
 #include <vector>
 
-namespace kreisel::detail {
+namespace kreisel {
 
-/// Calls `work(i, stop)` for i from 0 to count - 1 on the given number of threads, including the
-/// caller's. 0 threads: as many as the hardware runs at once. A free thread takes the next i.
-/// Returns true if all calls were made.
+/// Options of parallel_for().
+struct Workers {
+  int threads = 0;  ///< including the caller's; 0: as many as the hardware runs at once
+
+  /// Called with the completed share, never by two threads at once. If it returns false, all stop.
+  std::function<bool(double share)> progress = nullptr;
+
+  std::stop_token stop = {};  ///< stops all threads
+};
+
+/// Calls `work(i, stop)` for i from 0 to count - 1. A free thread takes the next i. Returns true if all
+/// calls were made.
 ///
-/// progress : called with the completed share, never by two threads at once. If it returns false,
-///            or if work or progress throws, `stop` becomes true and no further call begins
-/// Throws   : the first exception of work or progress, after all threads have ended
+/// stop   : token of a stop that `workers` requests, or that follows an exception of work or progress;
+///          no further call begins then
+/// Throws : the first exception of work or progress, after all threads have ended
 template <class Work>
-bool parallel_for(std::size_t count, int threads, const std::function<bool(double)>& progress,
-                  const Work& work) {
+bool parallel_for(std::size_t count, const Workers& workers, const Work& work) {
   std::atomic<std::size_t> next = 0;
-  std::atomic<bool> stop = false;
+  std::stop_source source;
+  const std::stop_callback pass_on(workers.stop, [&source] { source.request_stop(); });
+  const std::stop_token stop = source.get_token();
   std::mutex reporting;
   std::size_t done = 0;
   std::exception_ptr failure;
   const auto take_turns = [&] {
     try {
-      while (!stop) {
+      while (!stop.stop_requested()) {
         const std::size_t i = next++;
         if (i >= count) return;
         work(i, stop);
         const std::lock_guard lock(reporting);
-        if (stop) return;
+        if (stop.stop_requested()) return;
         ++done;
         const double share = static_cast<double>(done) / static_cast<double>(count);
-        if (progress && !progress(share)) stop = true;
+        if (workers.progress && !workers.progress(share)) source.request_stop();
       }
     } catch (...) {
       const std::lock_guard lock(reporting);
       if (!failure) failure = std::current_exception();
-      stop = true;
+      source.request_stop();
     }
   };
   {
-    const std::size_t wanted = threads > 0 ? static_cast<std::size_t>(threads)
-                                           : std::max(1U, std::thread::hardware_concurrency());
+    const std::size_t wanted = workers.threads > 0
+                                   ? static_cast<std::size_t>(workers.threads)
+                                   : std::max(1U, std::thread::hardware_concurrency());
     std::vector<std::jthread> others;
     try {
       while (others.size() + 1 < std::min(wanted, count)) others.emplace_back(take_turns);
@@ -60,4 +72,4 @@ bool parallel_for(std::size_t count, int threads, const std::function<bool(doubl
   return done == count;
 }
 
-}  // namespace kreisel::detail
+}  // namespace kreisel

@@ -82,14 +82,12 @@ class Approximation final : public SceneSolver {
   Approximation(const SceneFile& scene, std::unique_ptr<SceneSolver> exact)
       : exact_(std::move(exact)), motion_(scene) {}
 
-  [[nodiscard]] Trajectory<JointState> solve(
-      const SolveOptions& options, const JointState& start, const Listener& listener,
-      const std::function<bool()>& interrupted) const override {
+  [[nodiscard]] Trajectory<JointState> solve(const SolveOptions& options, const JointState& start,
+                                             const OnOutput& on_output) const override {
     const auto clock = std::chrono::steady_clock::now();
-    Trajectory<JointState> result = exact_->solve(
-        options, start, [&](double, const JointState&) { return !interrupted(); }, interrupted);
+    Trajectory<JointState> result = exact_->solve(options, start);
     if (result.report.status != RunStatus::complete) return result;
-    const std::vector<VectorXd> states = motion_.states(joined(start), options.output_times);
+    const std::vector<VectorXd> states = motion_.states(joined(start), result.times);
     ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
     // Relative to the sizes of the whole exact run: an approximation may begin with other rates.
     distance.note_sizes(result.report.sizes);
@@ -117,9 +115,12 @@ class Approximation final : public SceneSolver {
         double& largest = report.invariants[k].largest;
         largest = std::max(largest, std::abs(now[k].second - at_start[k].second));
       }
-      if (!listener(t, state)) report.status = RunStatus::cancelled;
+      if (on_output && on_output(t, state) == OutputAction::stop) {
+        report.status = RunStatus::cancelled;
+        report.message = "stopped by on_output";
+      }
     }
-    if (done < options.output_times.size() && report.status == RunStatus::complete) {
+    if (done < result.times.size() && report.status == RunStatus::complete) {
       report.status = RunStatus::failed;
       report.message =
           "the motion is no longer slow against the nutations, which the precession "

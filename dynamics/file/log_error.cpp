@@ -3,12 +3,15 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <stop_token>
+#include <utility>
 #include <variant>
 
 #include <dynamics/file/log_error.hpp>
 #include <dynamics/file/measured.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/solve/error_measure.hpp>
+#include <dynamics/step/stop.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -16,9 +19,6 @@ namespace kreisel {
 using Eigen::VectorXd;
 
 namespace {
-
-/// Thrown where a signal wants the program to end.
-struct Interrupted {};
 
 /// The end of a run.
 struct End {
@@ -76,11 +76,10 @@ void set_numbers(LogError& error, const VectorXd& numbers) {
 /// Runs along other logs, held against one.
 class Beside {
  public:
-  Beside(const SceneSolver& model, const Trajectory<JointState>& run,
-         const std::function<bool()>& interrupted)
+  Beside(const SceneSolver& model, const Trajectory<JointState>& run, std::stop_token stop)
       : model_(model),
         run_(run),
-        interrupted_(interrupted),
+        stop_(std::move(stop)),
         end_{run.states.back(), model.reactions(run.times.back(), run.states.back())} {}
 
   /// The end of a run along another guide.
@@ -91,9 +90,9 @@ class Beside {
     options.tolerance = tolerance;
     options.discontinuities = scene.discontinuities;
     options.method = method_named(run_.report.method).value_or(Method::automatic);
-    const auto beside = other->solve(
-        options, start_of(scene), [](double, const JointState&) { return true; }, interrupted_);
-    if (interrupted_()) throw Interrupted{};
+    options.stop = stop_;
+    const auto beside = other->solve(options, start_of(scene));
+    if (stop_.stop_requested()) throw StopRequested{};
     if (beside.report.status != RunStatus::complete) {
       throw ComputationFailed("error of the log: a run beside failed: " + beside.report.message);
     }
@@ -118,7 +117,7 @@ class Beside {
  private:
   const SceneSolver& model_;
   const Trajectory<JointState>& run_;
-  const std::function<bool()>& interrupted_;
+  std::stop_token stop_;
   End end_;
 };
 
@@ -150,9 +149,9 @@ std::optional<VectorXd> squares_of_link(const SceneFile& scene, std::size_t i, c
 
 std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver& model,
                                       const Trajectory<JointState>& run,
-                                      const std::function<bool()>& interrupted) {
+                                      const std::stop_token& stop) {
   if (!scene.follows_log()) return LogError{};
-  const Beside beside(model, run, interrupted);
+  const Beside beside(model, run, stop);
   LogError error = beside.distance(beside.end(), beside.end());
   // A run to a coarse tolerance tells a great error as well as a fine one does.
   constexpr double coarse = 1e-6;
@@ -169,7 +168,7 @@ std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver&
       if (!moves || error.worst > 30 * tolerance || tolerance == scene.tolerance) return error;
       tolerance = scene.tolerance;
     }
-  } catch (const Interrupted&) {
+  } catch (const StopRequested&) {
     return std::nullopt;
   }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include <dynamics/file/model.hpp>
@@ -23,7 +23,7 @@ struct LogError {
 };
 
 /// The error of a run that its guide's logs make, by runs along these logs taken in other ways; see
-/// error_of_log. Nothing where it was interrupted.
+/// error_of_log. Nothing if the token was asked to stop.
 ///
 /// Cost   : thirteen runs for each log, to 1e-6, or to the options' tolerance where the error is as
 ///          small
@@ -31,6 +31,6 @@ struct LogError {
 [[nodiscard]] std::optional<LogError> error_of_logs(const SceneFile& scene,
                                                     const SceneSolver& model,
                                                     const Trajectory<JointState>& run,
-                                                    const std::function<bool()>& interrupted);
+                                                    const std::stop_token& stop);
 
 }  // namespace kreisel

@@ -49,9 +49,7 @@ SolveOptions options_of(const SceneFile& scene) {
 }
 
 Trajectory<JointState> run_scene(const SceneFile& scene) {
-  return make_model(scene)->solve(
-      options_of(scene), start_of(scene), [](double, const JointState&) { return true; },
-      [] { return false; });
+  return make_model(scene)->solve(options_of(scene), start_of(scene));
 }
 
 }  // namespace kreisel

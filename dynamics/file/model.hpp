@@ -18,16 +18,14 @@ namespace kreisel {
 /// evaluation.
 class SceneSolver {
  public:
-  /// Told of every state at an output time; says whether to go on. Where solve() begins again with
-  /// shorter steps, the times begin again too.
-  using Listener = std::function<bool(double t, const JointState& state)>;
+  using OnOutput = std::function<OutputAction(double t, const JointState& state)>;
 
   virtual ~SceneSolver() = default;
 
-  /// Every evaluation calls `interrupted`; the run ends where it returns true.
-  [[nodiscard]] virtual Trajectory<JointState> solve(
-      const SolveOptions& options, const JointState& start, const Listener& listener,
-      const std::function<bool()>& interrupted) const = 0;
+  /// As kreisel::solve(), which calls a function at outputs, unless that is empty.
+  [[nodiscard]] virtual Trajectory<JointState> solve(const SolveOptions& options,
+                                                     const JointState& start,
+                                                     const OnOutput& on_output = nullptr) const = 0;
 
   /// How far its equations themselves were off in the latest run; 0 for the exact ones.
   [[nodiscard]] virtual double model_error() const { return 0; }

@@ -142,17 +142,7 @@ class SceneReader {
                    [end](double t) { return t <= end; });
       return;
     }
-    const double step = given_step.value_or(end / 500);
-    const auto whole = static_cast<std::size_t>(end / step * (1 + 1e-12));
-    for (std::size_t i = 0; i <= whole; ++i) {
-      scene_.output_times.push_back(std::min(static_cast<double>(i) * step, end));
-    }
-    const bool reached = end - scene_.output_times.back() <= 1e-9 * step;
-    if (reached) {
-      scene_.output_times.back() = end;
-    } else {
-      scene_.output_times.push_back(end);
-    }
+    scene_.output_times = detail::output_grid(0, end, given_step.value_or(end / 500));
   }
 
   /// What of a signal concerns the run.

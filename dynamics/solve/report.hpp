@@ -7,6 +7,9 @@
 
 namespace kreisel {
 
+/// The answer of a function that solve() calls at outputs.
+enum class OutputAction { proceed, stop };
+
 /// A number that should not change during a run, and how much it did.
 struct InvariantDrift {
   std::string name;
@@ -17,7 +20,7 @@ struct InvariantDrift {
 /// How a run ended.
 enum class RunStatus {
   complete,
-  cancelled,  ///< by the progress callback
+  cancelled,  ///< by on_output or SolveOptions::stop; RunReport::message says by which and where
   failed      ///< RunReport::message says where and why
 };
 

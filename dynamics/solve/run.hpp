@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +21,7 @@
 #include <dynamics/step/accuracy.hpp>
 #include <dynamics/step/checkpoint.hpp>
 #include <dynamics/step/radau.hpp>
+#include <dynamics/step/stop.hpp>
 #include <motor/api.hpp>
 
 /// Scenes and their integrators as solve() sees them: by the components of states, so that what runs
@@ -57,11 +60,14 @@ class Run {
 /// An integration by steps of its own length, whose states within the last step can be read.
 class SteppedRun : public Run {
  public:
-  SteppedRun(std::vector<int> blocks, double smallest)
-      : blocks_(std::move(blocks)), sizes_(blocks_.size(), smallest) {}
+  SteppedRun(std::vector<int> blocks, const SolveOptions& options)
+      : blocks_(std::move(blocks)),
+        sizes_(blocks_.size(), options.absolute_scale),
+        stop_(options.stop) {}
 
   void on_the_way(double t, double end, double* y) override {
     while (!covers(t)) {
+      stop_if_requested(stop_);
       note_sizes();
       step_towards(end, t);
     }
@@ -116,6 +122,7 @@ class SteppedRun : public Run {
 
   std::vector<int> blocks_;
   std::vector<double> sizes_;
+  std::stop_token stop_;
 };
 
 /// The length of equal steps, all of which end at the output times.
@@ -186,15 +193,21 @@ class SteppedScene {
 KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start,
                        const SolveOptions& options);
 
+/// The function that solve() calls at outputs, on components; empty if nobody watches.
+using OnComponents = std::function<OutputAction(double t, std::span<const double> state)>;
+
 /// The motion of a scene by steps; its states are their components, one after another.
 KREISEL_API [[nodiscard]] Trajectory<double> solve_by_steps(const SteppedScene& scene,
                                                             const Eigen::VectorXd& start,
-                                                            const SolveOptions& options);
+                                                            const SolveOptions& options,
+                                                            const OnComponents& on_output);
 
 /// The same by the closed form.
-KREISEL_API [[nodiscard]] Trajectory<double> solve_closed(
-    const SteppedScene& scene, const Eigen::VectorXd& start, const SolveOptions& options,
-    const ClosedForm<Eigen::VectorXd>& motion);
+KREISEL_API [[nodiscard]] Trajectory<double> solve_closed(const SteppedScene& scene,
+                                                          const Eigen::VectorXd& start,
+                                                          const SolveOptions& options,
+                                                          const ClosedForm<Eigen::VectorXd>& motion,
+                                                          const OnComponents& on_output);
 
 KREISEL_API [[noreturn]] void refuse_closed_form();
 

@@ -29,8 +29,8 @@ void write(double* y, const Vector& from) {
 template <class Steps>
 class RunOfSteps final : public SteppedRun {
  public:
-  RunOfSteps(std::vector<int> blocks, double smallest, Steps steps)
-      : SteppedRun(std::move(blocks), smallest), steps_(std::move(steps)) {}
+  RunOfSteps(std::vector<int> blocks, const SolveOptions& options, Steps steps)
+      : SteppedRun(std::move(blocks), options), steps_(std::move(steps)) {}
 
   void step_towards(double end, double /*output*/) override {
     from_ = steps_.t();
@@ -113,8 +113,7 @@ template <class Vector, class Field>
   using Steps = ExplicitRungeKutta<Vector, Field>;
   Steps steps(std::move(field), options.begin, vector_of<Vector>(start), accuracy, scene.blocks());
   steps.stop_at(options.discontinuities);
-  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options.absolute_scale,
-                                             std::move(steps));
+  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options, std::move(steps));
 }
 
 template <class Vector, class Field>
@@ -126,6 +125,7 @@ template <class Vector, class Field>
   Steps steps(std::move(field), options.begin, vector_of<Vector>(start), length.longest,
               scene.blocks(), options.absolute_scale);
   steps.give_up_after(options.max_evaluations);
+  steps.stop_by(options.stop);
   return std::make_unique<RunOfGaussIRK<Steps>>(length, std::move(steps));
 }
 
@@ -137,8 +137,7 @@ template <class Vector, class Series>
   using Steps = TaylorSteps<Vector, Series>;
   Steps steps(std::move(series), options.begin, vector_of<Vector>(start), accuracy, scene.blocks());
   steps.stop_at(options.discontinuities);
-  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options.absolute_scale,
-                                             std::move(steps));
+  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options, std::move(steps));
 }
 
 }  // namespace kreisel::detail

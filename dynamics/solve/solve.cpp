@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <sstream>
+#include <stop_token>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -43,6 +44,7 @@ namespace kreisel::detail {
     const double from = t;
     const double before = steps->effort().steps;
     for (int i = 0; i < 20 && t != end; ++i) {
+      stop_if_requested(options.stop);
       steps->step_towards(end, end);
       t = steps->t();
     }
@@ -160,32 +162,68 @@ using Clock = std::chrono::steady_clock;
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+void cancel(RunReport& report, const char* who, double last_output) {
+  report.status = RunStatus::cancelled;
+  std::ostringstream text;
+  text.precision(17);
+  text << "stopped by " << who << "; the last output is that of t = " << last_output << " s";
+  report.message = text.str();
+}
+
+/// Shows a state to who watches; returns whether the run is to go on.
+[[nodiscard]] bool show(const OnComponents& on_output, double t, std::span<const double> state,
+                        RunReport& report) {
+  if (!on_output || on_output(t, state) == OutputAction::proceed) return true;
+  cancel(report, "on_output", t);
+  return false;
+}
+
 /// Notes a state and its error for the output time t; says whether the run is to go on.
 [[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch,
-                          const SolveOptions& options, double t, std::span<const double> state,
+                          const OnComponents& on_output, double t, std::span<const double> state,
                           double error) {
   result.times.push_back(t);
   result.states.insert(result.states.end(), state.begin(), state.end());
   result.errors.push_back(error);
   watch.note(t, state);
-  if (!options.progress || options.progress(t)) return true;
-  result.report.status = RunStatus::cancelled;
-  return false;
+  return show(on_output, t, state, result.report);
+}
+
+/// Shows the outputs of a run that nobody has watched, up to where the watcher stops it.
+void show_all(Trajectory<double>& run, const OnComponents& on_output) {
+  if (run.times.empty()) return;
+  const std::size_t components = run.states.size() / run.times.size();
+  const std::span<const double> all = run.states;
+  for (std::size_t i = 0; i < run.times.size(); ++i) {
+    if (show(on_output, run.times[i], all.subspan(i * components, components), run.report)) {
+      continue;
+    }
+    run.times.resize(i + 1);
+    run.states.resize((i + 1) * components);
+    run.errors.resize(i + 1);
+  }
 }
 
 Trajectory<double> solve_closed(const SteppedScene& scene, const Eigen::VectorXd& start,
                                 const SolveOptions& options,
-                                const ClosedForm<Eigen::VectorXd>& motion) {
+                                const ClosedForm<Eigen::VectorXd>& motion,
+                                const OnComponents& on_output) {
   const Clock::time_point clock = Clock::now();
   Trajectory<double> result;
   RunReport& report = result.report;
   InvariantWatch watch(scene);
   watch.note(options.begin, components_of(start));
+  double last_output = options.begin;
   for (const double t : options.output_times) {
+    if (options.stop.stop_requested()) {
+      cancel(report, "request", last_output);
+      break;
+    }
     const double error = motion.error(t, options.absolute_scale);
     report.error_estimate = max_or_nan(report.error_estimate, error);
     const Eigen::VectorXd state = motion.at(t);
-    if (!output(result, watch, options, t, components_of(state), error)) break;
+    if (!output(result, watch, on_output, t, components_of(state), error)) break;
+    last_output = t;
   }
   report.method = motion.name;
   report.tolerance = options.tolerance;
@@ -279,6 +317,7 @@ class RoundingGrowth {
   RoundingGrowth(const AdaptiveRuns& runs, double accuracy, const SteppedScene& scene,
                  const SolveOptions& options, const Eigen::VectorXd& start)
       : runs_(runs),
+        stop_(options.stop),
         calm_(run(runs, accuracy, scene, options, start, false)),
         calm_state_(start),
         shaken_state_(start),
@@ -296,6 +335,7 @@ class RoundingGrowth {
     if (gave_up_) return 0;
     try {
       while (!calm_->covers(t)) {
+        stop_if_requested(stop_);
         calm_->step_towards(end, t);
         for (const auto& shaken : shaken_) shaken->follow(*calm_);
       }
@@ -307,6 +347,8 @@ class RoundingGrowth {
       }
       gave_up_ = !std::isfinite(off);
       return gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
+    } catch (const StopRequested&) {
+      throw;
     } catch (...) {  // what a load or a guide throws there is no fault of the answer
       gave_up_ = true;
       return 0;
@@ -331,6 +373,7 @@ class RoundingGrowth {
 
  private:
   const AdaptiveRuns& runs_;
+  std::stop_token stop_;
   std::unique_ptr<SteppedRun> calm_;
   std::array<std::unique_ptr<SteppedRun>, 2> shaken_;
   Eigen::VectorXd calm_state_;
@@ -415,7 +458,7 @@ template <class Runs>
                                                 const Eigen::VectorXd& start,
                                                 const SolveOptions& options,
                                                 const std::vector<double>& checkpoint,
-                                                Account& account) {
+                                                Account& account, const OnComponents& on_output) {
   const Clock::time_point clock = Clock::now();
 
   Trajectory<double> result;
@@ -561,12 +604,14 @@ template <class Runs>
                      (report.error_estimate > enough || expected > 4 * enough || rounds_too_much);
         if (too_coarse) break;
         const bool is_output = times.is_output(done);
-        if (is_output && !output(result, watch, options, t, state, error)) break;
+        if (is_output && !output(result, watch, on_output, t, state, error)) break;
         ++done;
         const bool offers =
             is_output && has_checkpoints && options.offer_checkpoint && done < times.size();
         if (offers) options.offer_checkpoint(std::cref(checkpoint_here));
       }
+    } catch (const StopRequested&) {
+      cancel(report, "request", times.last_output(done, options.begin));
     } catch (const ComputationFailed& error) {
       report.status = RunStatus::failed;
       // What a load or a guide throws knows no time.
@@ -705,14 +750,16 @@ template <class Runs>
 }
 
 Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::VectorXd& given,
-                                  const SolveOptions& options) {
+                                  const SolveOptions& options, const OnComponents& on_output) try {
   const Clock::time_point clock = Clock::now();
   const Eigen::VectorXd start = start_of_steps(scene, given, options.absolute_scale);
   const bool automatic = options.method == Method::automatic;
   Account account;
+  const OnComponents nobody;
+  const OnComponents* watcher = &on_output;
   const auto go_on = [&](const auto& runs, const SolveOptions& asked,
                          const std::vector<double>& checkpoint) {
-    auto result = solve_in_pairs(scene, runs, start, asked, checkpoint, account);
+    auto result = solve_in_pairs(scene, runs, start, asked, checkpoint, account, *watcher);
     result.report.run_time = seconds_since(clock);
     return result;
   };
@@ -755,10 +802,12 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
     SolveOptions alone = options;  // a checkpoint would not know the other trajectory
     alone.offer_checkpoint = nullptr;
     alone.method = method;
+    watcher = &nobody;  // until the other run has proved better
     auto other = run(alone);
     if (other.report.status == RunStatus::complete &&
         other.report.error_estimate < result.report.error_estimate) {
       result = std::move(other);
+      show_all(result, on_output);
     }
   };
   const auto by_steps = [&](const SolveOptions& asked) { return explicitly(asked, {}); };
@@ -778,6 +827,12 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
     or_by(Method::gauss16, [&](const SolveOptions& asked) { return by_gauss(asked, {}); });
   }
   return result;
+} catch (const StopRequested&) {  // before the first step of a run
+  Trajectory<double> none;
+  none.report.method = name(options.method);
+  none.report.tolerance = options.tolerance;
+  cancel(none.report, "request", options.begin);
+  return none;
 }
 
 /// Throws where a quaternion of the start turns nothing, which no step would mend or tell.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include <dynamics/model/closed_form.hpp>
@@ -13,6 +15,63 @@
 #include <dynamics/solve/solve_options.hpp>
 
 namespace kreisel {
+
+/// A function that solve() calls at every output: on_output(t, state). It returns whether to proceed or
+/// to stop, or nothing, where it only watches.
+template <class F, class State>
+concept OutputFunction = std::invocable<F&, double, const State&> &&
+    (std::same_as<std::invoke_result_t<F&, double, const State&>, OutputAction> ||
+     std::is_void_v<std::invoke_result_t<F&, double, const State&>>);
+
+namespace detail {
+
+/// A run as users have it, of one by components.
+template <class Scene>
+[[nodiscard]] Trajectory<typename Scene::State> with_states(const SceneRuns<Scene>& runs,
+                                                            std::size_t components,
+                                                            Trajectory<double> by_components) {
+  Trajectory<typename Scene::State> result;
+  const std::span<const double> all = by_components.states;
+  result.states.reserve(by_components.times.size());
+  for (std::size_t i = 0; i < by_components.times.size(); ++i) {
+    result.states.push_back(runs.from_components(all.subspan(i * components, components)));
+  }
+  result.times = std::move(by_components.times);
+  result.report = std::move(by_components.report);
+  result.errors = std::move(by_components.errors);
+  return result;
+}
+
+/// solve() with its observer as a function of components.
+template <class Scene>
+[[nodiscard]] Trajectory<typename Scene::State> solve_watched(const SceneRuns<Scene>& runs,
+                                                              const Scene& scene,
+                                                              const typename Scene::State& start,
+                                                              const SolveOptions& given,
+                                                              const OnComponents& on_output) {
+  KREISEL_SAME_MARCH();
+  const SolveOptions options = with_output_times(given);
+  const Eigen::VectorXd y = runs.to_vector(start);
+  const auto components = static_cast<std::size_t>(y.size());
+  check(runs, y, options);
+  const bool closed_wanted =
+      options.method == Method::closed_form || options.method == Method::automatic;
+  if constexpr (requires { closed_form(scene, options.begin, start); }) {
+    if (closed_wanted) {
+      const auto motion = closed_form(scene, options.begin, start);
+      if (motion) {
+        const auto at = [&](double t) { return runs.to_vector(motion->at(t)); };
+        return with_states(
+            runs, components,
+            solve_closed(runs, y, options, {motion->name, at, motion->error}, on_output));
+      }
+    }
+  }
+  if (options.method == Method::closed_form) refuse_closed_form();
+  return with_states(runs, components, solve_by_steps(runs, y, options, on_output));
+}
+
+}  // namespace detail
 
 /// Solves a scene to a tolerance of the GLOBAL error, and says how far the result is off.
 ///
@@ -34,37 +93,36 @@ template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
                                                       const typename Scene::State& start,
                                                       const SolveOptions& options) {
-  detail::KREISEL_SAME_MARCH();
+  return detail::solve_watched(detail::SceneRuns<Scene>(scene), scene, start, options, nullptr);
+}
+
+/// The same with a function that watches the states as they are computed, and may end the run.
+///
+///   const auto run = solve(top, start, {.t_end = 60, .output_step = 0.1},
+///                          [](double t, const EulerTop::State& state) {
+///     return state.attitude.z() > 0.5 ? OutputAction::stop : OutputAction::proceed;
+///   });
+///
+/// A time not after the one before says that the run has begun again, in shorter steps or by another
+/// method: states seen before are then worth nothing. Those seen last are those returned.
+///
+/// Throws : besides, what on_output throws
+template <class Scene, OutputFunction<typename Scene::State> OnOutput>
+[[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
+                                                      const typename Scene::State& start,
+                                                      const SolveOptions& options,
+                                                      OnOutput&& on_output) {
   const detail::SceneRuns<Scene> runs(scene);
-  const Eigen::VectorXd y = runs.to_vector(start);
-  detail::check(runs, y, options);
-  const auto with_states = [&](Trajectory<double> by_components) {
-    Trajectory<typename Scene::State> result;
-    const auto components = static_cast<std::size_t>(y.size());
-    const std::span<const double> all = by_components.states;
-    result.states.reserve(by_components.times.size());
-    for (std::size_t i = 0; i < by_components.times.size(); ++i) {
-      result.states.push_back(runs.from_components(all.subspan(i * components, components)));
-    }
-    result.times = std::move(by_components.times);
-    result.report = std::move(by_components.report);
-    result.errors = std::move(by_components.errors);
-    return result;
-  };
-  const bool closed_wanted =
-      options.method == Method::closed_form || options.method == Method::automatic;
-  if constexpr (requires { closed_form(scene, options.begin, start); }) {
-    if (closed_wanted) {
-      const auto motion = closed_form(scene, options.begin, start);
-      if (motion) {
-        const auto at = [&](double t) { return runs.to_vector(motion->at(t)); };
-        return with_states(
-            detail::solve_closed(runs, y, options, {motion->name, at, motion->error}));
-      }
-    }
-  }
-  if (options.method == Method::closed_form) detail::refuse_closed_form();
-  return with_states(detail::solve_by_steps(runs, y, options));
+  return detail::solve_watched(
+      runs, scene, start, options, [&](double t, std::span<const double> components) {
+        const typename Scene::State state = runs.from_components(components);
+        if constexpr (std::is_void_v<decltype(on_output(t, state))>) {
+          on_output(t, state);
+          return OutputAction::proceed;
+        } else {
+          return on_output(t, state);
+        }
+      });
 }
 
 }  // namespace kreisel

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <sstream>
+#include <stop_token>
 #include <vector>
 
 #include <motor/api.hpp>
@@ -36,11 +38,19 @@ enum class Method {
   return "none";
 }
 
-/// What is asked of a run.
+/// What is asked of a run. Options are of one type for all scenes; what depends on the scene's state,
+/// the function that watches the outputs, is an argument of solve().
 struct SolveOptions {
   double begin = 0;
-  std::vector<double>
-      output_times;  ///< of output, in order, forwards or backwards; the last is the end
+
+  /// Times of output in order, forwards or backwards; the last is the end.
+  std::vector<double> output_times = {};
+
+  /// The end, in place of output_times. Output times are then begin, begin + output_step, ... and
+  /// t_end; without an output_step t_end alone. The step is positive also for runs backwards.
+  std::optional<double> t_end = std::nullopt;
+  std::optional<double> output_step = std::nullopt;
+
   std::vector<double> discontinuities = {};  ///< when guide or loads jump: steps end there
   double tolerance = 1e-10;                  ///< of the global error; see RunReport::error_estimate
 
@@ -52,8 +62,9 @@ struct SolveOptions {
   /// Evaluations of the field after which each run of adaptive steps gives up.
   double max_evaluations = 1e8;
 
-  /// Called at every output with the time; false cancels the run. What was computed is kept.
-  std::function<bool(double t)> progress = nullptr;
+  /// Ends the run when another thread asks its source to stop: before the next step, with
+  /// RunStatus::cancelled. Outputs up to there are kept.
+  std::stop_token stop = {};
 
   /// Called after every output but the last with what gives a checkpoint, for whoever wants to keep
   /// one. Verner98, taylor, gauss16 and radau13 have them, closed forms and splitting need none.
@@ -83,6 +94,15 @@ template <class... Words>
 }
 
 KREISEL_API void check(const SolveOptions& options);
+
+/// The options with output_times in place of t_end and output_step.
+///
+/// Throws : InvalidInput if both output_times and t_end are given, or none, or no grid of output times
+KREISEL_API [[nodiscard]] SolveOptions with_output_times(const SolveOptions& options);
+
+/// begin, begin + step, ... and end, forwards or backwards. A last step shorter than a billionth of the
+/// others is rounding and makes no output.
+KREISEL_API [[nodiscard]] std::vector<double> output_grid(double begin, double end, double step);
 
 }  // namespace detail
 

@@ -45,6 +45,7 @@ class SplittingRun final : public Run {
         steps_(SymmetricFreeFlow(top.moments().x(), top.moments().z()), {&top}, options.begin,
                start.attitude, start.angular_velocity, length.longest) {
     steps_.give_up_after(options.max_evaluations);
+    steps_.stop_by(options.stop);
   }
 
   void on_the_way(double t, double /*end*/, double* y) override {

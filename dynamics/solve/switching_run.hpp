@@ -43,7 +43,7 @@ class RadauRun final : public SteppedRun {
  public:
   RadauRun(const SteppedScene& scene, bool other, const SolveOptions& options,
            const Eigen::VectorXd& start, const Accuracy& accuracy)
-      : SteppedRun(scene.blocks(), options.absolute_scale),
+      : SteppedRun(scene.blocks(), options),
         field_(scene.stiff_field(other)),
         steps_(radau_coefficients<7>(), options.begin, start, accuracy, scene.blocks()),
         from_(options.begin) {
@@ -104,7 +104,7 @@ class SwitchingRun final : public SteppedRun {
  public:
   SwitchingRun(const SteppedScene& scene, bool other, const SolveOptions& options, Method first,
                const Eigen::VectorXd& start, const Accuracy& accuracy)
-      : SteppedRun(scene.blocks(), options.absolute_scale),
+      : SteppedRun(scene.blocks(), options),
         scene_(scene),
         other_(other),
         accuracy_(accuracy),

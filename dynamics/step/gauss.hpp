@@ -8,11 +8,13 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/shared.hpp>
+#include <dynamics/step/stop.hpp>
 
 namespace kreisel {
 
@@ -164,6 +166,9 @@ class GaussIRK {
   /// Limit of the evaluations, after which the integration gives up.
   void give_up_after(double evaluations) { max_evaluations_ = evaluations; }
 
+  /// advance_to() throws StopRequested before its next step once this token requests a stop.
+  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+
   /// Upper limit of the step length from here on.
   void take_steps_of(double step) {
     detail::require_step(step);
@@ -177,6 +182,7 @@ class GaussIRK {
     take_length(steps.length);
     double done = 0;
     while (done < steps.count) {
+      detail::stop_if_requested(stop_);
       if (effort_.evaluations > max_evaluations_) {
         detail::stop_integration(t(), max_evaluations_, " evaluations are spent");
       }
@@ -319,6 +325,7 @@ class GaussIRK {
   Scalar squares_{0};         ///< of step lengths, since the last rounding sample
   unsigned steps_taken_ = 0;  ///< modulo its range
   double max_evaluations_ = std::numeric_limits<double>::infinity();
+  std::stop_token stop_;
   IntegrationStatistics effort_;
 };
 

@@ -7,11 +7,13 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <stop_token>
 #include <utility>
 
 #include <dynamics/step/explicit.hpp>
 #include <dynamics/step/free_top_flow.hpp>
 #include <dynamics/step/shared.hpp>
+#include <dynamics/step/stop.hpp>
 
 namespace kreisel {
 
@@ -129,6 +131,9 @@ class SplittingSteps {
   /// Limit of the evaluations, after which the integration gives up.
   void give_up_after(double evaluations) { max_evaluations_ = evaluations; }
 
+  /// advance_to() throws StopRequested before its next step once this token requests a stop.
+  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+
   /// Upper limit of the step length from here on.
   void take_steps_of(double step) {
     detail::require_step(step);
@@ -143,8 +148,10 @@ class SplittingSteps {
     const long double outer = Scheme::drift[0] * h;
     double done = 0;
     while (done < steps.count) {
-      if (effort_.evaluations > max_evaluations_) {
+      const bool spent = effort_.evaluations > max_evaluations_;
+      if (spent || stop_.stop_requested()) {
         if (done > 0) flow_.drift(state_, outer);
+        if (!spent) throw StopRequested{};
         detail::stop_integration(t(), max_evaluations_, " evaluations are spent");
       }
       const auto before = state_;
@@ -184,6 +191,7 @@ class SplittingSteps {
   detail::Compensated<double> time_;
   typename Flow::State state_;
   double max_evaluations_ = std::numeric_limits<double>::infinity();
+  std::stop_token stop_;
   IntegrationStatistics effort_;
 };
 

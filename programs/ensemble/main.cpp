@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <limits>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -64,7 +64,7 @@ Scene read(const Request& request) {
 }
 
 /// As simulate runs a file in which the numbers that were drawn stand.
-Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& stop) {
+Member compute(const Scene& scene, std::size_t index, const std::stop_token& stop) {
   const Request& request = scene.request;
   Member member;
   kreisel::MemberRandom random(request.seed, index);
@@ -82,10 +82,9 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
     const kreisel::SceneFile file =
         kreisel::parse_scene(scene.numbers.with(member.varied), request.scene, request.solve);
     const auto model = make_model(file);
-    const auto ends = [&stop] { return stop || signals::caught() != 0; };
-    const auto run = model->solve(
-        options_of(file), start_of(file), [&](double, const kreisel::JointState&) { return !ends(); }, ends);
-    if (ends() && run.report.status != RunStatus::complete) return member;
+    kreisel::SolveOptions options = options_of(file);
+    options.stop = stop;
+    const auto run = model->solve(options, start_of(file));
     member.status = run.report.status;
     member.message = run.report.message;
     if (run.report.status != RunStatus::complete) return member;
@@ -99,7 +98,7 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
       member.message = "the end of the motion or its error is not finite";
     }
   } catch (const std::exception& error) {
-    if (stop || signals::caught() != 0) return member;  // cancelled
+    if (stop.stop_requested()) return member;  // cancelled
     member.status = RunStatus::failed;
     member.message = error.what();  // of a scene several lines
     std::replace(member.message.begin(), member.message.end(), '\n', ';');
@@ -110,13 +109,13 @@ Member compute(const Scene& scene, std::size_t index, const std::atomic<bool>& s
 std::vector<Member> compute(const Scene& scene) {
   std::vector<Member> members(scene.request.members);
   Progress progress;
-  [[maybe_unused]] const bool all = kreisel::detail::parallel_for(
-      members.size(), scene.request.threads,
-      [&](double share) {
-        progress.report(share, [&] { return fmt::format("of {} members", members.size()); });
-        return signals::caught() == 0;
-      },
-      [&](std::size_t i, const std::atomic<bool>& stop) { members[i] = compute(scene, i, stop); });
+  const auto report = [&](double share) {
+    progress.report(share, [&] { return fmt::format("of {} members", members.size()); });
+    return signals::caught() == 0;
+  };
+  [[maybe_unused]] const bool all = kreisel::parallel_for(
+      members.size(), {scene.request.threads, report, signals::token()},
+      [&](std::size_t i, const std::stop_token& stop) { members[i] = compute(scene, i, stop); });
   return members;
 }
 

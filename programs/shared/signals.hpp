@@ -1,28 +1,61 @@
 #pragma once
 
 #include <csignal>
+#include <semaphore.h>
+#include <stop_token>
+#include <thread>
 
 /// SIGINT and SIGTERM, which end a program early with what has been computed so far.
 namespace signals {
 
-namespace detail {
+namespace internal {
 
 inline volatile std::sig_atomic_t caught = 0;
+inline sem_t arrived = {};
 
-extern "C" inline void on_signal(int signal) { caught = signal; }
+extern "C" inline void on_signal(int signal) {
+  caught = signal;
+  ::sem_post(&arrived);  // all that POSIX allows here; a stop_source is not among it
+}
 
-}  // namespace detail
+/// Never destroyed: its thread waits for signals until the program ends.
+inline std::stop_source& source() {
+  static auto* const one = new std::stop_source;
+  return *one;
+}
 
-/// Has SIGINT and SIGTERM noted instead of ending the program. A wait in the kernel then ends with
-/// EINTR.
+}  // namespace internal
+
+/// Has SIGINT and SIGTERM noted instead of ending the program. A wait of the calling thread in the
+/// kernel then ends with EINTR.
 inline void watch() {
+  ::sem_init(&internal::arrived, 0, 0);
   struct sigaction action = {};
-  action.sa_handler = detail::on_signal;  // and no SA_RESTART
+  action.sa_handler = internal::on_signal;  // and no SA_RESTART
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
 /// The signal that came last; 0 if none did.
-[[nodiscard]] inline int caught() { return detail::caught; }
+[[nodiscard]] inline int caught() { return internal::caught; }
+
+/// A token that SIGINT and SIGTERM ask to stop. The first call starts the thread that does so; it takes
+/// no signals itself.
+[[nodiscard]] inline std::stop_token token() {
+  [[maybe_unused]] static const bool started = [] {
+    sigset_t all;
+    sigset_t before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
+    std::thread([] {
+      while (::sem_wait(&internal::arrived) != 0) {
+      }
+      internal::source().request_stop();
+    }).detach();
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    return true;
+  }();
+  return internal::source().get_token();
+}
 
 }  // namespace signals

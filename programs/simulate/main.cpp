@@ -214,6 +214,7 @@ kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene
                                                  const kreisel::SceneSolver& model, Begin& begin,
                                                  std::optional<Record>& record, double& latest) {
   kreisel::SolveOptions& options = begin.options;
+  options.stop = signals::token();
   const bool end_is_a_row = !scene.output_times.empty() && scene.output_times.back() == scene.t_end;
   if (record) {
     options.offer_checkpoint = [&](const auto& take) {
@@ -221,7 +222,7 @@ kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene
     };
   }
   Progress progress;
-  const auto listener = [&](double t, const kreisel::JointState& state) {
+  const auto on_output = [&](double t, const kreisel::JointState& state) {
     if (record && t <= latest) record->begin_again(options.begin);
     latest = t;
     const bool is_there =
@@ -231,10 +232,10 @@ kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene
     }
     progress.report(t / scene.t_end,
                     [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
-    return signals::caught() == 0;
+    return signals::caught() == 0 ? OutputAction::proceed : OutputAction::stop;
   };
   try {
-    auto run = model.solve(options, begin.state, listener, [] { return signals::caught() != 0; });
+    auto run = model.solve(options, begin.state, on_output);
     if (record) record->rows.close();
     return run;
   } catch (const std::exception&) {
@@ -293,8 +294,7 @@ int run(const Request& request) {
         fmt::format("failed after t = {:.9g} s: {}", reached, report.message));
   }
   put_before(trajectory, *model, begin.rows);
-  const auto log_error =
-      error_of_logs(scene, *model, trajectory, [] { return signals::caught() != 0; });
+  const auto log_error = error_of_logs(scene, *model, trajectory, signals::token());
   if (!log_error) {
     fmt::print(stderr, "simulate: interrupted while the error of the log was estimated\n");
     return exit_status::of_signal();

@@ -247,6 +247,23 @@ BOOST_AUTO_TEST_CASE(a_cancelled_run_keeps_its_results) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(stops_when_its_token_requests_it) {
+  for (const int threads : {1, 3}) {
+    std::stop_source source;
+    const auto make = [&](std::size_t i, MemberRandom& random) {
+      if (i == 100) source.request_stop();
+      return scattered(i, random);
+    };
+    SolveOptions asked = options;
+    asked.stop = source.get_token();
+    const auto result = ensemble(top, {.count = 400, .threads = threads}, make, asked);
+    BOOST_TEST((result.status == RunStatus::cancelled));
+    BOOST_TEST((result.members.front().report.status == RunStatus::complete));
+    BOOST_TEST((result.members[100].report.status == RunStatus::cancelled));
+    BOOST_TEST((result.members.back().report.status == RunStatus::cancelled));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(progress_is_reported_up_to_the_end) {
   Sampling sampling{.count = 50, .threads = 2};
   std::vector<double> shares;
@@ -351,9 +368,6 @@ BOOST_AUTO_TEST_CASE(invalid_options_are_refused) {
   BOOST_CHECK_THROW(run({.count = 2, .threads = -1}, options), InvalidInput);
   BOOST_CHECK_THROW(run({.count = 2}, {.output_times = {1}, .method = Method::radau13}),
                     InvalidInput);
-  BOOST_CHECK_THROW(
-      run({.count = 2}, {.output_times = {1}, .progress = [](double) { return true; }}),
-      InvalidInput);
   BOOST_TEST(ensemble(top, {.count = 0}, scattered, options).members.empty());
 }
 

@@ -316,16 +316,6 @@ BOOST_AUTO_TEST_CASE(runs_backwards_too) {
   BOOST_TEST((back.states.back().angular_velocity - Vector3<double>(1, 2, 3)).norm() < 1e-11);
 }
 
-BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_cancelled) {
-  const EulerTop top({1, 2, 2.5});
-  SolveOptions options{.output_times = every(1, 100)};
-  options.progress = [](double t) { return t < 30; };
-  const auto run = solve(top, {tilted, {1, 2, 3}}, options);
-  BOOST_TEST((run.report.status == RunStatus::cancelled));
-  BOOST_TEST(run.times.back() == 30);
-  BOOST_TEST(run.states.size() == 30U);
-}
-
 // A load without a value after 3 s.
 BOOST_AUTO_TEST_CASE(keeps_its_outputs_when_it_fails) {
   const auto broken = [](const LoadContext<>& s) {
