@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <exception>
+#include <iostream>
 #include <type_traits>
 
 #include <dynamics/guide/chain.hpp>
@@ -54,8 +55,7 @@ void swing() {
     print("loads", r.applied.value);
     fmt::print("  the joint bears {:.6f} N\n", force.norm());
   }
-  fmt::print("error below {:.0e} rad, {:.0f} evaluations\n", run.report.error_estimate,
-             run.report.all_evaluations);
+  std::cout << run.report;
 }
 
 }  // namespace

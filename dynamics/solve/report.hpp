@@ -1,9 +1,11 @@
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include <dynamics/step/accuracy.hpp>
+#include <motor/api.hpp>
 
 namespace kreisel {
 
@@ -45,6 +47,10 @@ struct RunReport {
   /// the order of the scene's blocks: error_estimate is relative to it. Empty for closed forms.
   std::vector<double> sizes = {};
 };
+
+/// One line each: method, status, steps, evaluations, error, tolerance and, if there is one, the
+/// message. No line depends on the machine or its load.
+KREISEL_API std::ostream& operator<<(std::ostream& out, const RunReport& report);
 
 /// States at the output times, up to where the run came, and the report.
 template <class State>

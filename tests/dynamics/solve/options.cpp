@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <sstream>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -201,6 +202,40 @@ BOOST_AUTO_TEST_CASE(refuses_output_times_that_are_none) {
   for (const auto& [options, words] : refused) {
     const std::string told = refusal(options);
     BOOST_TEST(told.find(words) != std::string::npos, told << " has not: " << words);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(report_prints_a_line_for_each_fact) {
+  RunReport report;
+  report.method = "radau13";
+  report.effort = {.steps = 1234567, .rejected = 2, .evaluations = 8901};
+  report.all_evaluations = 20469;
+  report.tolerance = 1e-10;
+  report.error_estimate = 3.14e-11;
+  report.tolerance_kept = true;
+  const auto printed = [&] {
+    std::ostringstream out;
+    out.precision(3);
+    out << report << 1.23456;  // what was set for other numbers stays
+    return out.str();
+  };
+  BOOST_TEST(printed() ==
+             "method       radau13\n"
+             "status       complete\n"
+             "steps        1234567, 2 more rejected\n"
+             "evaluations  8901, 20469 with those for the error\n"
+             "error        3.1e-11, estimated\n"
+             "tolerance    1.0e-10, reached\n"
+             "1.23");
+  report.changes = "taylor to t = 0.5 s, then radau13";
+  report.status = RunStatus::failed;
+  report.tolerance_kept = false;
+  report.message = "no more";
+  const std::string text = printed();
+  for (const char* const words :
+       {"method       taylor to t = 0.5 s, then radau13\n", "status       failed\n",
+        "tolerance    1.0e-10, not reached\n", "message      no more\n"}) {
+    BOOST_TEST(text.find(words) != std::string::npos, text << " has not: " << words);
   }
 }
 
