@@ -20,7 +20,6 @@
 
 namespace {
 
-namespace detail = kreisel::detail;
 
 /// The greatest difference, relative to the greatest number.
 double difference(const std::vector<double>& found, const std::vector<double>& expected) {
@@ -63,7 +62,7 @@ void factors(benchmark::State& state) {
   const auto n = static_cast<Eigen::Index>(state.range(0));
   const Eigen::MatrixXcd A = Eigen::MatrixXcd::Random(n, n);
   const Eigen::VectorXcd b = Eigen::VectorXcd::Random(n);
-  LuFactors<std::complex<double>> lu;
+  kreisel::LuFactors<std::complex<double>> lu;
   Eigen::VectorXcd x;
   for (auto _ : state) {
     lu.matrix = A;

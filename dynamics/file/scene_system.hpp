@@ -1,41 +1,37 @@
 #pragma once
 
-#include <functional>
+#include <concepts>
 #include <optional>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/guide/any_guide.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 
 namespace kreisel {
 
-/// A guide motion whose kind a file has named.
-class SceneGuide {
+/// A guide motion whose kind a file has named: a steady one too has its series.
+class SceneGuide : public AnyGuide {
  public:
   template <GuideMotion M>
-  requires(!std::is_same_v<M, SceneGuide>)
+  requires(!std::derived_from<M, AnyGuide>)
       SceneGuide(M motion)  // NOLINT: any kind is meant where one is taken
-      : motion_(motion) {
-    if constexpr (AnalyticGuide<M> || SteadyGuide<M>) {
-      series_ = [motion](double t, double h, int order, const detail::Components<double>& g) {
-        return detail::series_of(motion, t, h, order, g);
-      };
-    }
-  }
-
-  [[nodiscard]] FrameMotion<Guide, Inertial> operator()(double t) const { return motion_(t); }
-
-  /// Whether its kind is analytic: then series() is as AnalyticGuide asks for.
-  [[nodiscard]] bool knows_series() const { return static_cast<bool>(series_); }
-  [[nodiscard]] GuideSeries series(double t, double h, int order,
-                                   const detail::Components<double>& g) const {
-    return series_(t, h, order, g);
-  }
+      : AnyGuide(with_series(std::move(motion))) {}
 
  private:
-  std::function<FrameMotion<Guide, Inertial>(double)> motion_;
-  std::function<GuideSeries(double, double, int, const detail::Components<double>&)> series_;
+  template <class M>
+  [[nodiscard]] static AnyGuide with_series(M motion) {
+    if constexpr (SteadyGuide<M> && !AnalyticGuide<M>) {
+      const auto series = [motion](double t, double h, int order,
+                                   const detail::Components<double>& g) {
+        return detail::series_of(motion, t, h, order, g);
+      };
+      return {motion, series};
+    } else {
+      return motion;
+    }
+  }
 };
 
 /// The guide motion of a scene, for times in [0, t_end].

@@ -235,6 +235,7 @@ class CardanGyro {
                                        detail::ZeroVector{}));
     }
   }
+  [[nodiscard]] bool knows_series() const { return detail::has_series(guide_); }
 
   /// True if friction or damping can make the equations stiff.
   [[nodiscard]] bool may_be_stiff() const {

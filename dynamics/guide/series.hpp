@@ -37,6 +37,16 @@ concept AnalyticGuide = requires(const M& guide, double t, const detail::Compone
 
 namespace detail {
 
+/// True if a guide has series; some kinds decide at run time.
+template <class M>
+[[nodiscard]] bool has_series(const M& guide) {
+  if constexpr (requires { guide.knows_series(); }) {
+    return guide.knows_series();
+  } else {
+    return true;
+  }
+}
+
 /// The reach of a series of order n, in units of its time: the time at which its last two terms are
 /// 1e-17 of the first.
 [[nodiscard]] inline double reached(const GuideSeries::Coefficients& c, int n) {

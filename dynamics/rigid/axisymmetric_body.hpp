@@ -79,6 +79,9 @@ class AxisymmetricBody {
     const auto body = body_.template series_on<detail::RateAxes::resal>();
     return Series<std::remove_const_t<decltype(body)>>{body};
   }
+  [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M, Loads...>) {
+    return body_.knows_series();
+  }
 
   /// The terms of FixedPointBody, on axes that do not spin. See kreisel::terms.
   [[nodiscard]] Terms terms() const {

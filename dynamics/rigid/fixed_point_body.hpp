@@ -152,6 +152,9 @@ class FixedPointBody {
   [[nodiscard]] auto series() const requires(detail::feels_analytically<M, Loads...>) {
     return series_on<detail::RateAxes::body>();
   }
+  [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M, Loads...>) {
+    return detail::has_series(guide_);
+  }
 
   [[nodiscard]] BodyOutputs<S> body_outputs(const S& t, const State& state) const {
     const LoadContext<S> s = situation(t, state);

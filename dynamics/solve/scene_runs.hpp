@@ -69,7 +69,7 @@ class SceneRuns final : public SteppedScene {
   }
   [[nodiscard]] bool has_other() const override { return other_.has_value(); }
   [[nodiscard]] bool knows_series() const override {
-    if constexpr (requires { scene_.knows_series(); }) {
+    if constexpr (HasSeries<Scene> && requires { scene_.knows_series(); }) {
       return scene_.knows_series();
     } else {
       return HasSeries<Scene>;

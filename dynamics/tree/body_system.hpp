@@ -175,10 +175,7 @@ class BodySystem {
   /// Whether series() has one for what is in this system: no loads, no rates that rotors are asked
   /// for, nothing that floats against another body, and a guide that moves analytically.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
-    if constexpr (requires { guide_.knows_series(); }) {
-      if (!guide_.knows_series()) return false;
-    }
-    return detail::knows_series(tree_);
+    return detail::has_series(guide_) && detail::knows_series(tree_);
   }
 
   /// The Taylor series of the motion, for TaylorSteps; this system has to outlive it. Formulas:
