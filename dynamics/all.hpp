@@ -1,0 +1,54 @@
+#pragma once
+
+/// All that kreisel::dynamics has for a motion: laws, guides, loads, scenes and solve(). Studies are in
+/// <dynamics/study/all.hpp>. A program that is compiled often includes the few headers that it needs.
+
+#include <dynamics/ensemble/ensemble.hpp>
+#include <dynamics/exact/free_top.hpp>
+#include <dynamics/exact/gyrostat.hpp>
+#include <dynamics/exact/lagrange_top.hpp>
+#include <dynamics/exact/pendulum_motion.hpp>
+#include <dynamics/gimbal/cardan_gyro.hpp>
+#include <dynamics/gimbal/cardan_gyro_laws.hpp>
+#include <dynamics/gimbal/foeppl.hpp>
+#include <dynamics/gimbal/gyro_platform.hpp>
+#include <dynamics/gimbal/gyro_small_oscillations.hpp>
+#include <dynamics/gimbal/unsymmetric_rotor.hpp>
+#include <dynamics/guide/analytic.hpp>
+#include <dynamics/guide/any_guide.hpp>
+#include <dynamics/guide/chain.hpp>
+#include <dynamics/guide/earth.hpp>
+#include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/posed.hpp>
+#include <dynamics/guide/rates.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/guide/steady.hpp>
+#include <dynamics/guide/tabulated.hpp>
+#include <dynamics/guide/translating.hpp>
+#include <dynamics/inertia.hpp>
+#include <dynamics/law/momentum.hpp>
+#include <dynamics/law/relative.hpp>
+#include <dynamics/law/vector_form.hpp>
+#include <dynamics/load/load.hpp>
+#include <dynamics/load/oblate_gravitation.hpp>
+#include <dynamics/model/scene.hpp>
+#include <dynamics/model/terms.hpp>
+#include <dynamics/pendulum/pendulum.hpp>
+#include <dynamics/pendulum/pendulum_deviation.hpp>
+#include <dynamics/pendulum/pendulum_equilibria.hpp>
+#include <dynamics/pendulum/pendulum_period.hpp>
+#include <dynamics/pendulum/physical_pendulum.hpp>
+#include <dynamics/rigid/axisymmetric_body.hpp>
+#include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/rigid/fixed_point_body.hpp>
+#include <dynamics/rigid/free_body.hpp>
+#include <dynamics/rigid/small_oscillations.hpp>
+#include <dynamics/solve/error_measure.hpp>
+#include <dynamics/solve/output_times.hpp>
+#include <dynamics/solve/solve.hpp>
+#include <dynamics/step/events.hpp>
+#include <dynamics/step/integrator.hpp>
+#include <dynamics/tree/body_system.hpp>
+#include <dynamics/tree/rotor_matrices.hpp>
+#include <motor/all.hpp>
