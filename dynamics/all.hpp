@@ -51,4 +51,5 @@
 #include <dynamics/step/integrator.hpp>
 #include <dynamics/tree/body_system.hpp>
 #include <dynamics/tree/rotor_matrices.hpp>
+#include <dynamics/tree/state_by_name.hpp>
 #include <motor/all.hpp>
