@@ -1,12 +1,17 @@
 #include "runs.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <ctime>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <set>
+#include <stop_token>
+#include <thread>
 
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/readings.hpp>
@@ -22,6 +27,32 @@ namespace {
 double processor_seconds() {
   return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
+
+/// Asks a run to stop when the process has computed for so many seconds more.
+class Deadline {
+ public:
+  explicit Deadline(double seconds)
+      : end_(processor_seconds() + seconds),
+        watch_([this](const std::stop_token& over) { wait(over); }) {}
+
+  [[nodiscard]] std::stop_token token() const { return late_.get_token(); }
+  [[nodiscard]] bool has_passed() const { return late_.stop_requested(); }
+
+ private:
+  void wait(const std::stop_token& over) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any never;
+    while (!over.stop_requested() && processor_seconds() < end_) {
+      never.wait_for(lock, over, std::chrono::milliseconds(10), [] { return false; });
+    }
+    if (!over.stop_requested()) late_.request_stop();
+  }
+
+  double end_;
+  std::stop_source late_;
+  std::jthread watch_;
+};
 
 /// The joints' values in the order of JointValues.
 JointValues values(const kreisel::BodyTree& tree, const Scene& scene,
@@ -47,16 +78,10 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
   options.discontinuities = file.discontinuities;
   options.method = *kreisel::method_named(method);
   options.max_evaluations = limits.evaluations;
-  const double end = processor_seconds() + limits.seconds;
-  unsigned calls = 0;
-  bool late = false;
-  const auto too_long = [&] {
-    if (++calls % 64 == 0) late = processor_seconds() > end;
-    return late;
-  };
+  const Deadline deadline(limits.seconds);
+  options.stop = deadline.token();
   try {
-    const auto run = model.solve(
-        options, start_of(file), [](double, const kreisel::JointState&) { return true; }, too_long);
+    const auto run = model.solve(options, start_of(file));
     const kreisel::RunReport& report = run.report;
     answer.answered = report.status == kreisel::RunStatus::complete;
     answer.message = report.message;
@@ -81,7 +106,7 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
   }
   answer.out_of_budget =
       !answer.answered &&
-      (late || answer.message.find("evaluations are spent") != std::string::npos);
+      (deadline.has_passed() || answer.message.find("evaluations are spent") != std::string::npos);
   return answer;
 }
 
