@@ -17,14 +17,14 @@ using Six = SpatialVector<double>;
 BOOST_AUTO_TEST_SUITE(spatial_vector_order)
 
 BOOST_AUTO_TEST_CASE(agrees_with_other_libraries) {
-  BOOST_TEST((velocity_numbers(V, Halves::angular_first) == Six(1, 2, 3, 4, 5, 6)));
-  BOOST_TEST((velocity_numbers(V, Halves::linear_first) == Six(4, 5, 6, 1, 2, 3)));
-  BOOST_TEST((force_numbers(F, Halves::angular_first) == Six(10, -11, 12, -7, 8, 9)));
-  BOOST_TEST((force_numbers(F, Halves::linear_first) == Six(-7, 8, 9, 10, -11, 12)));
+  BOOST_TEST((velocity_numbers(V, SpatialVectorOrder::angular_first) == Six(1, 2, 3, 4, 5, 6)));
+  BOOST_TEST((velocity_numbers(V, SpatialVectorOrder::linear_first) == Six(4, 5, 6, 1, 2, 3)));
+  BOOST_TEST((force_numbers(F, SpatialVectorOrder::angular_first) == Six(10, -11, 12, -7, 8, 9)));
+  BOOST_TEST((force_numbers(F, SpatialVectorOrder::linear_first) == Six(-7, 8, 9, 10, -11, 12)));
 }
 
 BOOST_AUTO_TEST_CASE(preserves_numbers_and_power) {
-  for (const Halves order : {Halves::angular_first, Halves::linear_first}) {
+  for (const SpatialVectorOrder order : {SpatialVectorOrder::angular_first, SpatialVectorOrder::linear_first}) {
     const Six v = velocity_numbers(V, order);
     const Six f = force_numbers(F, order);
     const Motor<> again = velocity_of(v, order);
