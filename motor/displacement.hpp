@@ -16,9 +16,9 @@ namespace kreisel {
 /// A displacement without frame tags: rotation R and translation x,  p -> R p + x. Robotics: a
 /// pose, an element of SE(3).
 ///
-/// As a change of coordinates it takes components in a frame B to components in a frame A. R
-/// rotates B axes into A axes, and x is the origin of B written in A. The rotation is a matrix:
-/// applying it costs less than applying a quaternion (benchmarks/kernels.cpp).
+/// As a change of coordinates it takes components in a frame B to components in a frame A: R
+/// rotates B axes into A axes, x is B's origin on A axes. The rotation is a matrix: applying it
+/// costs less than applying a quaternion (benchmarks/kernels.cpp).
 ///
 /// Units  : [translation] = metre
 template <class S = double>

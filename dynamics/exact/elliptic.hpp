@@ -30,7 +30,8 @@ namespace detail {
 /// R_F(x, y, z) = 1/2 int_0^inf dt / sqrt((t + x)(t + y)(t + z)),  at most one of them 0.
 ///
 /// Source : B. C. Carlson, Numerical computation of real or complex elliptic integrals (1995); the
-///          series of R_F and R_J to the seventh power: NIST Handbook of Mathematical Functions, 19.36(i)
+///          series of R_F and R_J to the seventh power: NIST Handbook of Mathematical Functions,
+///          19.36(i)
 /// Error  : some units of long double, relative
 [[nodiscard]] inline Real rf(Real x, Real y, Real z) {
   while (true) {

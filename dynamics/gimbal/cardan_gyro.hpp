@@ -310,13 +310,13 @@ class CardanGyro {
 
   /// The conserved quantities of the balance, by name.
   ///
-  ///   energy             guide at rest, free rotor, no friction
-  ///   energy of rings    guide at rest, regulated symmetric rotor, no friction in the rings:
-  ///                      kinetic energy without what phi' adds to it, and springs
-  ///   alpha momentum     guide at rest, outer bearing without spring and friction
-  ///   rotor momentum     free symmetric rotor without friction, any guide
-  ///   Jacobi integral    guide in steady motion, no friction in the rings, rotor free without
-  ///                      friction or symmetric and regulated:  T_2 - T_0 + potential
+  ///     energy             guide at rest, free rotor, no friction
+  ///     energy of rings    guide at rest, regulated symmetric rotor, no friction in the rings:
+  ///                        kinetic energy without what phi' adds to it, and springs
+  ///     alpha momentum     guide at rest, outer bearing without spring and friction
+  ///     rotor momentum     free symmetric rotor without friction, any guide
+  ///     Jacobi integral    guide in steady motion, no friction in the rings, rotor free without
+  ///                        friction or symmetric and regulated:  T_2 - T_0 + potential
   [[nodiscard]] std::vector<std::pair<const char*, double>> conserved(double t,
                                                                       const State& state) const {
     const CardanBalance all = balance(t, state);

@@ -207,8 +207,8 @@ template <class S>
     if (kinetic == S(0)) fail_at_separatrix(barrier);  // the rest is rounding
     return {};
   }
-  // Starts at the turning point of a spring with the stiffness at 0. From far away Newton's
-  // method would need a step for each factor 2 of the distance.
+  // Starts at the turning point of a spring with the stiffness at equilibrium. From far away
+  // Newton's method would need a step for each factor 2 of the distance.
   const S stiffness = moment.e + S(2) * moment.k;
   const S spring =
       kinetic == S(0) ? S(-abs(start)) : S(-sqrt(S(start * start + S(2) * kinetic / stiffness)));

@@ -8,42 +8,45 @@
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/accuracy.hpp>
 
-/// Runs as solve() sets them, AdaptiveRuns and FixedRuns (fixed_runs.hpp): each kind has one setting,
-/// an accuracy or a step, which can be made finer by ten or thirty times in the error, and
-///   method()
-///   round_less()           goes over to a method that rounds less, if there is one
-///   first()                the setting to begin with
-///   finer(x)               of the run beside
-///   between(x, part)       of more runs, where rounding is all that is left: other steps than of both
-///   tightened(x, ratio)    a setting whose error is `ratio` < 1 of this one's
-///   finest(), last(x)      the setting beyond which rounding leaves nothing to gain; whether x is it
-///   falls(x, y)            what the error of steps at y is of that at x
-///   may_be_rounding(x)     whether what steps at x err by, after others that erred by too much, may be
-///                          rounding that has grown
-///   is_fine(x)             whether an error that does not fall as the steps do may be rounding
-///   begins_near_rounding() whether the first setting errs by little more than rounding
-///   shakes()               whether one of a pair is shaken, by pair_digits()
-///   of_pair(r)             what it is off by for that, where rounding grows to r
-///   can_look_for_rounding(x, missed)  whether RoundingGrowth can tell r
-///   rounding()             of one step where nothing grows, in units of 2^-53
-///   finer_by(x)            how many times finer that is
-///   goes_on(x)             whether the finer run may become the coarser one of the next pair
-///   digits_lost(x, n)      what rounding in n steps does to the state, in units of its last digit: a
-///                          random walk; 0 where the method errs by more
+/// The two kinds of runs of solve() are AdaptiveRuns and FixedRuns (fixed_runs.hpp). A run has one
+/// setting, an accuracy or a step length. The finer run of a pair has a setting with ten or thirty
+/// times less error. Both kinds have these members:
+///
+///   method()               current method
+///   round_less()           changes to a method with less rounding, if there is one
+///   first()                first setting
+///   finer(x)               setting of the finer run beside a run with x
+///   tightened(x, ratio)    setting whose error is `ratio` < 1 times the error at x
+///   between(x, part)       settings of additional runs where only rounding is left: their steps
+///                          differ from the steps of both runs
+///   finest(), last(x)      setting beyond which rounding leaves nothing to gain; true if x is it
+///   falls(x, y)            expected error at y over error at x
+///   may_be_rounding(x)     true if the error at x may be amplified rounding, after a setting with
+///                          too great an error
+///   is_fine(x)             true if an error that does not decrease with the steps may be rounding
+///   begins_near_rounding() true if the error of the first setting is little more than rounding
+///   shakes()               true if one run of a pair is perturbed, by pair_digits()
+///   of_pair(r)             effect of this perturbation where rounding grows to r
+///   can_look_for_rounding(x, missed)  true if RoundingGrowth can estimate r
+///   rounding()             rounding error of one step without growth, in units of 2^-53
+///   finer_by(x)            factor by which finer(x) is finer than x
+///   goes_on(x)             true if the finer run may become the coarser one of the next pair
+///   digits_lost(x, n)      effect of rounding in n steps on the state, in units of its last digit:
+///                          a random walk; 0 where the error of the method is greater
 
 namespace kreisel::detail {
 
-/// The settings of steps that adapt themselves: an accuracy.
+/// The runs with adaptive steps; their setting is an accuracy.
 class AdaptiveRuns {
  public:
-  /// Of verner98, taylor or radau13.
+  /// `method` is verner98, taylor or radau13.
   explicit AdaptiveRuns(const SolveOptions& options, Method method = Method::verner98)
       : task_(options), method_(method) {}
 
   [[nodiscard]] Method method() const { return method_; }
 
-  /// Goes over from taylor to verner98, if the method is free; says whether it did. Many
-  /// stages average the rounding of the field, and the terms of a series may enlarge it.
+  /// Changes from taylor to verner98 if the choice of the method is free; true if it changed. Many
+  /// stages average the rounding of the field; the terms of a series may amplify it.
   [[nodiscard]] bool round_less() {
     if (method_ != Method::taylor || task_.method != Method::automatic) return false;
     method_ = Method::verner98;
@@ -52,8 +55,9 @@ class AdaptiveRuns {
 
   static constexpr double rounding_of_radau = 24;
 
-  /// Of radau13 also where Newton's iterations stop, and of stiff springs. Of verner98 half as much
-  /// where nothing but the last digits is asked for; over 1e5 periods to 1e-9 that would be too little.
+  /// The rounding error of a step, for radau13 with the end of Newton's iterations and stiff
+  /// springs. For verner98 it is halved at tolerances of 1e-13 and finer; over 1e5 periods at 1e-9
+  /// half would be too little.
   [[nodiscard]] double rounding() const {
     const bool last_digits = method_ == Method::verner98 && task_.tolerance <= 1e-13;
     return method_ == Method::radau13 ? rounding_of_radau : last_digits ? 1.25 : 2.5;
@@ -61,7 +65,8 @@ class AdaptiveRuns {
 
   [[nodiscard]] static bool begins_near_rounding() { return false; }
 
-  /// Of taylor finer than of the others: a tenth more of steps, where a second try would double them.
+  /// The first accuracy is finer for taylor: this costs a tenth more steps, while a second try
+  /// would double them.
   [[nodiscard]] double first() const {
     const double first = allowed(task_.tolerance / 10);
     return method_ == Method::taylor ? allowed(first / 3) : first;
@@ -81,22 +86,22 @@ class AdaptiveRuns {
     return accuracy <= 1e-13 ? more * (0.02 * std::sqrt(steps)) : 0;
   }
 
-  /// Beyond which rounding leaves nothing to gain, even over a long way. To go down to 1e-18 costs
-  /// taylor a tenth more than 4e-16, and over 1e5 s it errs by up to 200 times less.
+  /// The accuracy beyond which rounding leaves nothing to gain, even in a long run. For taylor
+  /// 1e-18 costs a tenth more than 4e-16, and its error over 1e5 s is up to 200 times smaller.
   [[nodiscard]] double finest() const {
     return method_ == Method::radau13 ? 4e-16 : method_ == Method::taylor ? 1e-18 : 1e-16;
   }
   [[nodiscard]] bool last(double accuracy) const { return accuracy <= finest(); }
 
-  /// Where steps have to be so much finer than the tolerance, the motion makes much of what they err
-  /// by, and as much of rounding. Of radau13 a third run to finer tolerances would tell ten times too
-  /// great an error of stiff bearings.
+  /// If steps have to be so much finer than the tolerance, the motion amplifies their errors, and
+  /// rounding as much. With radau13 at finer tolerances a third run would estimate ten times too
+  /// great an error for stiff bearings.
   [[nodiscard]] bool may_be_rounding(double accuracy) const {
     if (method_ == Method::radau13 && digits_off(task_) == 0) return false;
     return accuracy <= 5e-14 && accuracy < task_.tolerance / 50;
   }
 
-  /// The error of coarser steps may fall slower than their accuracy without rounding.
+  /// The error of coarser steps may decrease more slowly than their accuracy, without rounding.
   [[nodiscard]] static bool is_fine(double accuracy) { return accuracy <= 1e-9; }
 
   [[nodiscard]] static double falls(double from, double to) { return to / from; }
@@ -104,15 +109,15 @@ class AdaptiveRuns {
     return allowed(accuracy * std::clamp(ratio, 1e-4, 0.2));
   }
 
-  /// Whether pairs are shaken, and by how many digits: more than steps are rounded, so that two runs
-  /// hardly ever agree by chance where rounding grows to the tolerance; and so few that it does not
-  /// count where nothing grows.
+  /// True if one run of a pair is perturbed; pair_digits() is the size. It exceeds the rounding of
+  /// steps, so that two runs hardly ever agree by chance where rounding grows to the tolerance. It
+  /// is small enough to have no effect where nothing grows.
   [[nodiscard]] bool shakes() const { return method_ != Method::radau13 && digits_off(task_) > 0; }
   [[nodiscard]] double pair_digits() const { return std::min(100.0, task_.tolerance / 1e-11); }
 
-  /// True if three more runs, two of them shaken, can tell how far rounding grows. They err by some
-  /// 1e-2, so that they cost little and take about the same way. Who asks for less than 1e-7 would pay
-  /// most, and is hardly ever led astray.
+  /// True if three more runs, two of them perturbed, can estimate how far rounding grows. Their
+  /// errors are some 1e-2, so they cost little and take about the same path. At tolerances above
+  /// 1e-7 they would cost most, and the error estimate is hardly ever wrong without them.
   [[nodiscard]] bool can_look_for_rounding(double accuracy, bool missed) const {
     const bool pays = method_ != Method::radau13 && task_.tolerance <= 1e-7;
     return pays && (missed || !last(accuracy));
@@ -121,19 +126,21 @@ class AdaptiveRuns {
     return std::min(1e-2 / task_.tolerance * accuracy, 1e-3);
   }
 
-  /// By far more digits than steps are rounded, and far less than they err by.
+  /// A perturbation in last digits, far above the rounding of steps and far below their error.
   static constexpr double shaken_digits = 1000;
 
-  /// What rounding, which makes a step wrong by 0.2 to 0.7 digits, grows to, of what those grow to; and
-  /// what a pair that is shaken is off by, of what rounding grows to.
+  /// The amplified rounding, from the difference `off` to which shaken_digits have grown. Rounding
+  /// changes a step by 0.2 to 0.7 digits.
   [[nodiscard]] static double rounding_of(double off) {
     return rounding_digits / shaken_digits * off;
   }
+  /// The difference to which pair_digits() grow, from what rounding grows to.
   [[nodiscard]] double of_pair(double rounding) const {
     return pair_digits() / rounding_digits * rounding;
   }
 
-  /// Whether that says too little of it: both are random, and one may be so many times the other.
+  /// True if rounding may exceed the tolerance. The estimate and rounding are both random: one may
+  /// be 12 times the other.
   [[nodiscard]] bool may_round_too_much(double grown_to) const {
     constexpr double not_at_all = 1e-13;
     return grown_to > not_at_all && 12 * grown_to > task_.tolerance;
@@ -144,12 +151,13 @@ class AdaptiveRuns {
 
   static constexpr double near_rounding = 4e-16;
 
-  /// Of an explicit method of order 9 ten times, for 1.29 times the steps. What the coarser errs by is
-  /// 10/9 of what the two are apart, times 0.84 to 1.23 in 95 % of 835 runs at 1e-6 to 1e-2, and 0.94
-  /// to 1.07 at finer ones.
+  /// The ratio of the accuracies of a pair. For an explicit method of order 9 it is ten, at 1.29
+  /// times the steps. The coarser run's error is 10/9 of the difference, times 0.84 to 1.23 in 95 %
+  /// of 835 runs at 1e-6 to 1e-2, and 0.94 to 1.07 at finer ones.
   [[nodiscard]] double beside() const { return method_ == Method::verner98 ? 10 : times_finer; }
 
-  /// Where a pair of runs would differ by little more than rounding, the finest is taken at once.
+  /// The accuracy, or the finest at once if a pair of runs would differ by little more than
+  /// rounding.
   [[nodiscard]] double allowed(double accuracy) const {
     return accuracy > near_rounding ? accuracy : finest();
   }
@@ -158,19 +166,20 @@ class AdaptiveRuns {
   Method method_;
 };
 
-/// The cheap steps that tell what rounding grows to, from one try to the next.
+/// The accuracy of the cheap runs that estimate the growth of rounding, from one try to the next.
 ///
-/// Coarse steps that stability keeps short go ways of their own when shaken, and that is no growth:
-/// where rounding seems to grow too much finer ones are asked, as long as those find much less.
+/// Coarse steps limited by stability diverge when perturbed, without any growth of rounding. If
+/// rounding seems to grow too much, finer steps are tried, as long as they find much less.
 class CheapSteps {
  public:
-  /// Their accuracy beside runs at `setting`; it does not become coarser again.
+  /// The accuracy beside runs at `setting`; it never becomes coarser again.
   [[nodiscard]] double beside(const AdaptiveRuns& runs, double setting) {
     accuracy_ = std::min(accuracy_, runs.cheap(setting));
     return accuracy_;
   }
 
-  /// Makes them finer where rounding seems to grow to `suspected`; says whether that may find less.
+  /// Makes the steps finer if rounding seems to grow to `suspected`; true if finer steps may find
+  /// less.
   [[nodiscard]] bool refine(double suspected, double setting) {
     const bool falls = suspected_ == 0 || suspected < suspected_ / 100;
     if (!falls || accuracy_ <= setting) return false;
@@ -186,7 +195,7 @@ class CheapSteps {
 
  private:
   double accuracy_ = std::numeric_limits<double>::max();
-  double suspected_ = 0;  ///< by coarser ones
+  double suspected_ = 0;  ///< by coarser steps
 };
 
 }  // namespace kreisel::detail

@@ -15,12 +15,13 @@
 #include <dynamics/step/shared.hpp>
 #include <motor/api.hpp>
 
-/// Scenes that know only at run time how many components they have: trees of bodies, and what users
-/// write. Their evaluations do not feel a call by pointer, so that one integrator serves them all.
+/// Scenes whose number of components is fixed only at run time: trees of bodies and users' scenes.
+/// The cost of a call by pointer is negligible beside their evaluations, so one integrator serves
+/// all of them.
 
 namespace kreisel::detail {
 
-/// The field of such a scene, whatever its type.
+/// The field of a scene of any type.
 using AnyField =
     std::function<void(const double& t, const Eigen::VectorXd& y, Eigen::VectorXd& rate)>;
 
@@ -30,11 +31,11 @@ template <class Field>
                                     Eigen::VectorXd& rate) mutable { call(field, t, y, rate); };
 }
 
-/// The Taylor series of such a scene.
+/// The Taylor series of a scene of any type.
 class AnySeries {
  public:
   static constexpr int most_order = most_series_order;
-  static constexpr double relative_order = 1.15;  ///< as of trees
+  static constexpr double relative_order = 1.15;  ///< as for trees
 
   template <class Series>
   requires(!std::is_same_v<Series, AnySeries>) explicit AnySeries(Series series)
@@ -49,7 +50,7 @@ class AnySeries {
   std::function<void(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c)> fill_;
 };
 
-/// As the functions of the same names in runs_of_steps.hpp.
+/// The functions of runs_of_steps.hpp, for scenes of any type.
 KREISEL_API [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(
     const SteppedScene& scene, const AnyField& field, const SolveOptions& options,
     const Eigen::VectorXd& start, const Accuracy& accuracy);
@@ -64,7 +65,7 @@ KREISEL_API [[nodiscard]] std::unique_ptr<SteppedRun> run_taylor_steps(const Ste
                                                                        const Eigen::VectorXd& start,
                                                                        const Accuracy& accuracy);
 
-/// With a Jacobian by differences.
+/// The field with a Jacobian by differences.
 KREISEL_API [[nodiscard]] std::unique_ptr<StiffField> stiff_field(const AnyField& field);
 
 }  // namespace kreisel::detail

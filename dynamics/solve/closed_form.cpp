@@ -22,7 +22,7 @@ std::optional<ClosedForm<EulerTop::State>> closed_form(const EulerTop& top, doub
   const auto along_z = [](const Vector3<double>& v) { return v.x() == 0 && v.y() == 0; };
 
   const auto made = [&](const char* name, const auto& motion, double taken_off = 0) {
-    // The angle of the momentum's turn: rate times time, in the inertia's least direction.
+    // The angle of rotation is rate times time, with the least moment of inertia.
     const double rate =
         (I.cwiseProduct(w) + h).norm() / I.minCoeff() + std::sqrt(k.norm() / I.minCoeff());
     return ClosedForm<EulerTop::State>{

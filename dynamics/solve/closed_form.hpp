@@ -15,30 +15,31 @@ class BodyTree;
 template <class M>
 class BodySystem;
 
-/// The closed form of a top, where it has one: free of torque, Lagrange's, or a
-/// gyrostat whose rotor lies on a principal axis.
+/// The closed form of a top, if it has one: free of torque, Lagrange's, or a gyrostat whose rotor
+/// lies on a principal axis.
 ///
-/// Error  : the estimate is the rounding of two quaternions, the answer and what it is compared with,
-///          2^-63 of each radian turned through, and 2^-60 of those that Lagrange's top takes off
-///                               (tests/dynamics/solve/solve, tests/dynamics/exact/lagrange_top)
+/// Error  : the estimate is the rounding of two quaternions (result and reference), 2^-63 of the
+///          angle of rotation, and 2^-60 of LagrangeTop::starting_angle()
+///          (tests/dynamics/solve/solve, tests/dynamics/exact/lagrange_top)
 KREISEL_API [[nodiscard]] std::optional<ClosedForm<EulerTop::State>> closed_form(
     const EulerTop& top, double begin, const EulerTop::State& start);
 
 namespace detail {
 
-/// Of a tree on a guide at rest under a uniform gravity, on guide axes; y = (coordinates; rates).
+/// The closed form of a tree on a guide at rest under uniform gravity, on guide axes, with y =
+/// (coordinates; rates).
 KREISEL_API [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> closed_form(
     const BodyTree& tree, const Vector3<double>& gravity, double begin, const Eigen::VectorXd& y);
 
 }  // namespace detail
 
-/// The closed form of a system that is no more than a pendulum or a top: one body on a guide at rest,
-/// in a revolute joint, held at a point, or free with the centre of mass at its origin, on which nothing
-/// acts but a uniform gravity. Of what turns about a point the body's axes have to be principal axes,
-/// and under weight its start has to be exact on axes with the vertical along z.
+/// The closed form of a system that is only a pendulum or a top: one body on a guide at rest, under
+/// uniform gravity alone. The body is in a revolute joint, held at a point, or free with its centre
+/// of mass at its origin. The axes of a body that rotates about a point must be principal axes.
+/// Under weight its start must be exact on axes with the vertical along z.
 ///
-/// Error  : as of PhysicalPendulum and of a top; besides 2^-52 of each radian, but for the spin of a
-///          heavy top, for the last digits of the description, and 2^-51 of an attitude
+/// Error  : the error of PhysicalPendulum or of the top; for the last digits of the description
+///          2^-52 of each radian more, without the spin of a heavy top; and 2^-51 of an attitude
 template <class M>
 requires detail::is_resting<M>
 [[nodiscard]] std::optional<ClosedForm<typename BodySystem<M>::State>> closed_form(

@@ -11,11 +11,11 @@
 #include <dynamics/solve/closed_form.hpp>
 #include <dynamics/tree/tree.hpp>
 
-/// Systems of bodies that are no more than a pendulum or a top.
+/// The closed form of systems that are only a pendulum or a top.
 
 namespace kreisel::detail {
 
-/// The only body of a tree, where no joint force and no load acts on it.
+/// The only body of a tree, if no joint force and no load acts on it.
 [[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
   const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && tree.loaded().empty();
   if (!alone || !tree.links().back().moved_by_forces()) return nullptr;
@@ -26,19 +26,21 @@ namespace kreisel::detail {
   return &tree.body(0);
 }
 
-/// What a last digit of the description, of which mass, arm, weight and tensor are products, makes each
-/// radian wrong by.
+/// The error per radian from the last digits of the description. Mass, arm, weight and tensor are
+/// products of its numbers.
 inline constexpr double of_inputs = std::numeric_limits<double>::epsilon();
 
-/// In long double, so that what the description is turned into is off by nothing else.
+/// The orientation of a joint in long double, so that the conversion adds no error.
 [[nodiscard]] Eigen::Quaternion<exact::Real> orientation(const kreisel::Joint& joint) {
   return joint.orientation.cast<exact::Real>().normalized();
 }
 
-/// Of a body in a revolute joint, with its axis a, the moment of inertia Theta about it, and the part p
-/// of its first moment that is across it, at q = 0:
+/// The motion of a body in a revolute joint:
 ///
 ///   Theta q'' + E sin q + F cos q = 0,   E = p.g,   F = -a.(p x g)
+///
+/// a is the axis and Theta the moment of inertia about it; p is the part of the first moment across
+/// a, at q = 0.
 [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> pendulum_motion(
     const BodyDescription& body, const Vector3<double>& gravity, double begin,
     const Eigen::VectorXd& y) {
@@ -72,14 +74,15 @@ inline constexpr double of_inputs = std::numeric_limits<double>::epsilon();
   }
 }
 
-/// A body that turns about a point, as an EulerTop.
+/// A body that rotates about a point, as an EulerTop.
 struct TurningBody {
   EulerTop top;
-  Eigen::Quaternion<exact::Real> from_guide;  ///< to axes on which the vertical is z
-  Matrix3<double> axes;                       ///< of the top, on the body's: the weight lies on +z
+  Eigen::Quaternion<exact::Real> from_guide;  ///< to axes with the vertical along z
+  Matrix3<double> axes;                       ///< of the top, on body axes: centre of mass on +z
 };
 
-/// Nothing where the axes are no principal axes, or the weight lies on none.
+/// The body as a top. Nothing if its axes are not principal axes, or its centre of mass lies on
+/// none of them.
 [[nodiscard]] std::optional<TurningBody> turning_body(const BodyDescription& body,
                                                       const Vector3<double>& gravity) {
   using exact::Real;
@@ -107,7 +110,7 @@ struct TurningBody {
                      Eigen::Quaternion<Real>::FromTwoVectors(up, Vector3<Real>::UnitZ()), axes};
 }
 
-/// The flight of a free body's centre of mass; of one that is held nothing moves.
+/// The flight of a free body's centre of mass; all 0 for a held body.
 template <class Real>
 struct Flight {
   Vector3<Real> start, velocity, gravity;
@@ -118,7 +121,8 @@ struct Flight {
   [[nodiscard]] Vector3<Real> velocity_after(Real time) const { return velocity + time * gravity; }
 };
 
-/// By the measure of RunReport::error_estimate; in long double little is lost by cancellation.
+/// The error of a Flight, in the measure of RunReport::error_estimate. In long double cancellation
+/// costs little.
 template <class Real>
 class FlightError {
  public:
@@ -143,7 +147,7 @@ class FlightError {
     velocity_ = std::max(velocity_, double(flight_.velocity_after(time).cwiseAbs().maxCoeff()));
   }
 
-  /// A component is greatest at the start, at the time or where it turns back between.
+  /// Each component is greatest at the start, at `time` or where its velocity reverses in between.
   void note_way(Real time) {
     note(0);
     note(time);
@@ -172,8 +176,8 @@ class FlightError {
   const Quaternion start =
       before * Quaternion(Eigen::Matrix<Real, 4, 1>(y.head<4>().cast<Real>())) * to_body;
   const Eigen::Quaterniond rounded = start.cast<double>();
-  // Without weight the start's rounding stays what it is; with weight the motion makes of it what it
-  // will, and near the one that ends upright anything.
+  // Without weight the rounding of the start stays as it is. With weight the motion amplifies it,
+  // without bound near the motion that ends upright.
   const bool is_exact = rounded.coeffs().cast<Real>() == start.coeffs();
   const double k = turning->top.weight_moment().z();
   if (k > 0 && !is_exact) return std::nullopt;
@@ -182,8 +186,8 @@ class FlightError {
   const Vector3<double> w = axes.transpose() * y.segment<3>(rates);
   const auto motion = kreisel::closed_form(turning->top, begin, {rounded, w});
   if (!motion) return std::nullopt;
-  // How fast it turns, but for the spin about an axis of symmetry, which is given and no result: with a
-  // weight that a pendulum's rate at the lowest point may be added to it.
+  // The rate of rotation. With weight the spin about the axis of symmetry is omitted, because it is
+  // given. A pendulum's rate at the lowest point is added.
   const double fall = 2 * std::sqrt(k / turning->top.moments().minCoeff());
   const double rate = k > 0 ? std::hypot(w.x(), w.y()) + fall : w.norm();
 
@@ -206,7 +210,7 @@ class FlightError {
   };
   const auto error = [=, of_top = motion->error, of_flight = FlightError(flight)](
                          double t, double smallest) mutable {
-    // Attitudes are turned there and back.
+    // Attitudes are rotated there and back.
     constexpr double of_turns = 2 * std::numeric_limits<double>::epsilon();
     const double turned = of_top(t, smallest) + of_turns + of_inputs * rate * std::abs(t - begin);
     return free ? std::max(turned, of_flight(Real(t) - begin, smallest)) : turned;

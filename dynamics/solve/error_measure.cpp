@@ -27,7 +27,7 @@ double BlockDistance::operator()(std::span<const double> a, std::span<const doub
     if (attitude) {
       const Eigen::Vector4d p = attitude_at(a, begin);
       const Eigen::Vector4d q = attitude_at(b, begin);
-      // |p -+ q| / 2 of unit quaternions is the sine of a quarter of the angle between.
+      // For unit quaternions |p -+ q| / 2 is the sine of a quarter of the angle between them.
       const Eigen::Vector4d unit_p = p.stableNormalized();
       Eigen::Vector4d unit_q = q.stableNormalized();
       if (unit_p.dot(unit_q) < 0) unit_q = -unit_q;

@@ -17,17 +17,18 @@ namespace kreisel {
 
 namespace detail {
 
-/// How much finer the run is beside which another is held.
+/// The ratio of the errors of the two runs of a pair.
 inline constexpr double times_finer = 30;
 
-/// The greater of two errors; a NaN stays, which std::max may forget.
+/// The greater of two errors; keeps a NaN, which std::max may drop.
 [[nodiscard]] inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
 
-/// The global error of a run after so many steps, `off` from one beside it whose error is so many
-/// times finer: what the coarser errs by, less that part of it, and half as much again for what is
-/// not so much finer, as where stability keeps explicit steps short; and a random walk of rounding,
-/// in units of 2^-53 a step, where nothing grows, or what `noise` the steps know of: two runs in which
-/// it outweighs all else agree by chance.
+/// The global error of a run, from its difference `off` to a run with `finer_by` times less error.
+///
+/// The finer run's own error is part of the difference, hence 1 - 1/finer_by. The factor 1.5 covers
+/// runs that are not so much finer, as where stability limits explicit steps. Rounding is added,
+/// because two runs dominated by it agree by chance. Without growth it is a random walk, `rounding`
+/// units of 2^-53 a step; the estimate `noise` of the steps counts if it is greater.
 [[nodiscard]] inline double error_of_pair(double off, double finer_by, double rounding,
                                           double steps, double noise = 0) {
   const double caution = 1.5 / (1 - 1 / finer_by);
@@ -35,7 +36,7 @@ inline constexpr double times_finer = 30;
   return caution * off + std::max(rounding * unit_roundoff * std::sqrt(steps), noise);
 }
 
-/// The state with its components moved by so much in the last digit.
+/// The state with its components changed by so many units in the last digit.
 template <class Scene>
 [[nodiscard]] typename Scene::State perturbed_by_ulps(const Scene& scene,
                                                       const typename Scene::State& state,
@@ -47,7 +48,8 @@ template <class Scene>
 
 /// The distance of two states in the measure of RunReport::error_estimate.
 ///
-/// Attitudes (blocks of four) by the angle between them, whatever their norms; q and -q are one.
+/// Attitudes (blocks of four) are compared by the angle between them, whatever their norms; q and
+/// -q are equal.
 class BlockDistance {
  public:
   BlockDistance(std::vector<int> blocks, double smallest)
@@ -60,7 +62,7 @@ class BlockDistance {
 
   KREISEL_API double operator()(std::span<const double> a, std::span<const double> b);
 
-  /// Takes the sizes that blocks have had between the states it is given.
+  /// Takes over the sizes of blocks between the compared states.
   void note_sizes(std::span<const double> sizes) {
     const std::size_t count = std::min(sizes.size(), size_.size());
     for (std::size_t i = 0; i < count; ++i) size_[i] = std::max(size_[i], sizes[i]);
@@ -77,8 +79,7 @@ class BlockDistance {
 }  // namespace detail
 
 /// The distance of two states of a scene in the measure of RunReport::error_estimate: attitudes by the
-/// angle between them in radian, other blocks relative to the greatest size they have had in the states
-/// given so far.
+/// angle between them in radian, other blocks relative to their greatest size in the states given so far.
 ///
 /// absolute_scale : as SolveOptions::absolute_scale
 template <class Scene>
@@ -89,7 +90,7 @@ class ErrorMeasure {
   ErrorMeasure(const Scene& scene, double absolute_scale)
       : ErrorMeasure(detail::blocks_of(scene), absolute_scale) {}
 
-  /// For scenes that all have the same blocks.
+  /// For a type of scene whose blocks are constant.
   explicit ErrorMeasure(double absolute_scale) : ErrorMeasure(Scene::blocks, absolute_scale) {}
 
   double operator()(const Vector& a, const Vector& b) {

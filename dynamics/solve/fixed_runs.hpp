@@ -9,7 +9,8 @@
 
 namespace kreisel::detail {
 
-/// The settings of fixed steps, of gauss16 or splitting, of the order given: their length.
+/// The runs with fixed steps, of gauss16 or splitting; their setting is the step length. `order` is
+/// the order of the method.
 class FixedRuns {
  public:
   FixedRuns(Method method, int order, double first, double shortest)
@@ -28,8 +29,8 @@ class FixedRuns {
     return {step.longest * std::pow(times_finer, -root_ * part), step.longest};
   }
 
-  /// Where the shortest steps still err, it is by rounding or by a jump that nobody declared: neither
-  /// falls with the method's order.
+  /// If the shortest steps still have an error, its cause is rounding or an undeclared jump:
+  /// neither decreases with the method's order.
   [[nodiscard]] double finer_by(const EqualLength& step) const {
     return last(step) ? 2 : times_finer;
   }

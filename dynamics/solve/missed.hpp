@@ -4,9 +4,9 @@
 
 namespace kreisel::detail {
 
-/// The first try that erred by too much, and what has become of its error at that output since.
+/// The first try with too great an error, and the error of later tries at the same output.
 ///
-/// Setting : of the steps, as the kinds of runs have it (runs.hpp)
+/// Setting : the setting of the runs (adaptive_runs.hpp)
 template <class Setting>
 struct Missed {
   Setting setting;
@@ -18,14 +18,15 @@ struct Missed {
     if (done <= output) now = error_there;
   }
 
-  /// Whether finer steps err by much more than their share of it: then by rounding, of which even
-  /// finer ones make no less. An error as great as the motion tells nothing.
+  /// True if the error at finer steps is more than ten times the expected one. It is then rounding,
+  /// which even finer steps do not reduce. An error as great as the motion proves nothing.
   template <class Runs>
   [[nodiscard]] bool stays(const Runs& runs, const Setting& at) const {
     return error > 0 && now < 0.1 && now > 10 * error * runs.falls(setting, at);
   }
 
-  /// Whether they seem to err by much less: then it was rounding too, and two runs agree by chance.
+  /// True if the error at finer steps is less than a tenth of the expected one. It was rounding
+  /// then, and two runs agree by chance.
   template <class Runs>
   [[nodiscard]] bool falls_by_chance(const Runs& runs, const Setting& at) const {
     return error > 0 && now < 0.1 * error * runs.falls(setting, at);

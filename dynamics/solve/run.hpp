@@ -24,40 +24,40 @@
 #include <dynamics/step/stop.hpp>
 #include <motor/api.hpp>
 
-/// Scenes and their integrators as solve() sees them: by the components of states, so that what runs
-/// them and holds one against the other is the same for all, and compiled once. It asks at outputs,
-/// never at steps.
+/// The interface between solve() and the integrators of a scene. States are arrays of components,
+/// so that running and comparing integrations is compiled once for all scenes. solve() reads states
+/// at outputs, never at steps.
 
 namespace kreisel::detail {
 
-/// An integration of a scene that is on its way.
+/// An integration of a scene in progress.
 class Run {
  public:
   virtual ~Run() = default;
 
-  /// Writes the state at t to y; times are asked for in turn, steps lead to `end`.
+  /// Writes the state at t to y. Times must be given in order; steps lead to `end`.
   virtual void on_the_way(double t, double end, double* y) = 0;
 
-  /// The greatest size of each block at the start and at every step before the time asked for last;
-  /// nothing, where the run keeps no sizes.
+  /// The greatest size of each block at the start and at every step before the last time read;
+  /// empty if the run keeps no sizes.
   [[nodiscard]] virtual std::span<const double> sizes() const { return {}; }
 
   [[nodiscard]] virtual IntegrationStatistics effort() const = 0;
 
-  /// What rounding in the field has made by now, where the run knows that; else 0.
+  /// The effect of rounding in the field so far, if the run estimates it; else 0.
   [[nodiscard]] virtual double noise() const { return 0; }
 
-  /// Changes of the method, as "taylor to t = 0.5 s, then radau13"; empty where there was none.
+  /// The changes of the method, as "taylor to t = 0.5 s, then radau13"; empty if there was none.
   [[nodiscard]] virtual std::string changes() const { return {}; }
 
-  /// The method of the last step, where it may differ from the one the run was made for.
+  /// The method of the last step, if the method has changed.
   [[nodiscard]] virtual std::optional<Method> changed_to() const { return std::nullopt; }
 
-  /// What it goes on from; nothing, where it cannot.
+  /// Passes all numbers from which the run continues; none if it cannot.
   virtual void pass(Checkpoint& checkpoint) = 0;
 };
 
-/// An integration by steps of its own length, whose states within the last step can be read.
+/// An integration with steps of its own length. States within the last step can be read.
 class SteppedRun : public Run {
  public:
   SteppedRun(std::vector<int> blocks, const SolveOptions& options)
@@ -74,23 +74,23 @@ class SteppedRun : public Run {
     read(t, y);
   }
 
-  /// One step towards `end`; `output` is the next time at which the state is wanted.
+  /// Takes one step towards `end`; `output` is the next time at which the state is read.
   virtual void step_towards(double end, double output) = 0;
 
   [[nodiscard]] virtual double t() const = 0;
   [[nodiscard]] virtual std::span<const double> state() const = 0;
 
-  /// Of the last step.
+  /// The length of the last step.
   [[nodiscard]] virtual double length() const = 0;
 
-  /// Whether a time lies within the last step.
+  /// True if t lies within the last step.
   [[nodiscard]] virtual bool covers(double t) const = 0;
 
   /// Writes the state at a time within the last step.
   virtual void read(double t, double* y) = 0;
 
-  /// A first step of length h, or to `end` if that is nearer; false, and no step, where it does not
-  /// stand.
+  /// Tries a first step of length h, or to `end` if that is nearer. False, without a step, if the
+  /// step is rejected.
   [[nodiscard]] virtual bool try_first_step(double /*h*/, double /*end*/, double /*output*/) {
     return false;
   }
@@ -98,10 +98,10 @@ class SteppedRun : public Run {
   /// As TaylorSteps::is_short_for_little().
   [[nodiscard]] virtual bool is_short_for_little() const { return false; }
 
-  /// Makes the step that another run of the same kind has made last, whatever this one errs by in it.
+  /// Repeats the last step of another run of the same kind, whatever its error in this run.
   virtual void follow(const SteppedRun& leader) = 0;
 
-  /// Takes over the sizes that blocks have had before it began, which errors are measured by.
+  /// Takes over the sizes of blocks before this run began; errors are relative to them.
   virtual void know_sizes(std::span<const double> sizes) = 0;
 
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
@@ -125,12 +125,12 @@ class SteppedRun : public Run {
   std::stop_token stop_;
 };
 
-/// The length of equal steps, all of which end at the output times.
+/// The length of equal steps. A step ends at every output time.
 struct EqualLength {
   double longest;
 
-  /// Of the run beside which this one goes on, with at least one step more between any two outputs:
-  /// else the two would be the same, and tell nothing of their error.
+  /// The step length of the coarser run of a pair. This run takes at least one step more between
+  /// two outputs: equal runs would give no error estimate.
   double beside = std::numeric_limits<double>::infinity();
 
   template <class Checkpoint>
@@ -150,10 +150,10 @@ struct EqualLength {
   }
 };
 
-/// A scene with the runs that there are of it.
+/// A scene and its runs.
 ///
-/// other : of the scene that runs are held against, off by the last digits of parameters of which so
-///         little makes much, where there is one
+/// other : true for the comparison scene, if there is one: a copy whose sensitive parameters are
+///         perturbed by their last digits
 class SteppedScene {
  public:
   virtual ~SteppedScene() = default;
@@ -162,13 +162,13 @@ class SteppedScene {
   [[nodiscard]] virtual bool has_other() const = 0;
   [[nodiscard]] virtual bool knows_series() const = 0;
 
-  /// Whether something in the scene may make it stiff, as far as it can say.
+  /// True if a part of the scene may make it stiff, or if the scene does not declare this.
   [[nodiscard]] virtual bool may_be_stiff() const = 0;
 
   /// The scene itself, if it is a top: some have a method of their own.
   [[nodiscard]] virtual const EulerTop* top() const = 0;
 
-  /// Keeps the largest drift of what the scene says is conserved.
+  /// Records the largest drift of each conserved quantity of the scene.
   virtual void note_invariants(double t, std::span<const double> y,
                                std::vector<InvariantDrift>& drifts) const = 0;
 
@@ -193,16 +193,16 @@ class SteppedScene {
 KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start,
                        const SolveOptions& options);
 
-/// The function that solve() calls at outputs, on components; empty if nobody watches.
+/// The function that solve() calls at outputs, on components; may be empty.
 using OnComponents = std::function<OutputAction(double t, std::span<const double> state)>;
 
-/// The motion of a scene by steps; its states are their components, one after another.
+/// The motion of a scene, by steps. Its states are stored as their components, one after another.
 KREISEL_API [[nodiscard]] Trajectory<double> solve_by_steps(const SteppedScene& scene,
                                                             const Eigen::VectorXd& start,
                                                             const SolveOptions& options,
                                                             const OnComponents& on_output);
 
-/// The same by the closed form.
+/// The motion of a scene, by its closed form, stored as by solve_by_steps().
 KREISEL_API [[nodiscard]] Trajectory<double> solve_closed(const SteppedScene& scene,
                                                           const Eigen::VectorXd& start,
                                                           const SolveOptions& options,

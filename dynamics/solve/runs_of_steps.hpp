@@ -16,7 +16,7 @@
 #include <dynamics/step/gauss.hpp>
 #include <dynamics/step/taylor.hpp>
 
-/// Integrators as runs, and how they are set out.
+/// Integrators as runs.
 
 namespace kreisel::detail {
 
@@ -77,7 +77,7 @@ class RunOfSteps final : public SteppedRun {
 
  private:
   Steps steps_;
-  double from_ = 0;  ///< begin of the last step
+  double from_ = 0;  ///< start of the last step
 };
 
 template <class Steps>
@@ -104,7 +104,7 @@ class RunOfGaussIRK final : public Run {
   std::vector<double> sizes_;
 };
 
-/// Of a scene's field; states are of the kind Vector.
+/// A run of a scene's field by ExplicitRungeKutta; its states have the type Vector.
 template <class Vector, class Field>
 [[nodiscard]] std::unique_ptr<SteppedRun> run_explicit_steps(const SteppedScene& scene, Field field,
                                                              const SolveOptions& options,

@@ -24,7 +24,7 @@
 
 namespace kreisel::detail {
 
-/// The Jacobian of a scene's field: exact, where the field takes dual numbers.
+/// The Jacobian of a scene's field, exact if the field accepts dual numbers.
 template <class Scene>
 [[nodiscard]] auto jacobian_of(const Scene& scene) {
   constexpr int n = int(Scene::Vector::RowsAtCompileTime);
@@ -37,7 +37,7 @@ template <class Scene>
   }
 }
 
-/// The scene off by last digits, if it has such.
+/// The scene with parameters perturbed by last digits; none if it has no perturbed_by_ulps().
 template <class Scene>
 [[nodiscard]] std::optional<Scene> perturbed_by_ulps(const Scene& scene) {
   if constexpr (HasPerturbation<Scene>) {

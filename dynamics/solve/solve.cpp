@@ -34,7 +34,7 @@ namespace kreisel::detail {
   return {y.data(), static_cast<std::size_t>(y.size())};
 }
 
-/// The mean of 20 steps of Verner98 at accuracy 1e-14, once they have stopped to grow.
+/// The mean length of 20 steps of Verner98 at accuracy 1e-14, once the steps no longer grow.
 [[nodiscard]] double pace(const SteppedScene& scene, const SolveOptions& options,
                           const Eigen::VectorXd& start) {
   const auto steps = scene.explicit_run(options, start, {1e-14, options.absolute_scale}, false);
@@ -60,7 +60,8 @@ namespace kreisel::detail {
   return std::max(pace, std::numeric_limits<double>::min());
 }
 
-/// once : the length of a step of Verner98 at 1e-14; 16 Gauss points carry about twice as far
+/// The runs of gauss16. `once` is the length of a step of Verner98 at 1e-14; steps with 16 Gauss
+/// points can be about twice as long.
 [[nodiscard]] FixedRuns gauss_runs(double once) {
   return {Method::gauss16, 16, 2 * once, once / 2};
 }
@@ -92,15 +93,16 @@ namespace kreisel::detail {
       *scene.top(), options, EulerTop::from_vector(vector_of<EulerTop::Vector>(start)), length);
 }
 
-/// Keeps the largest drift of what a scene says is conserved.
+/// Records the largest drift of each conserved quantity of a scene.
 class InvariantWatch {
  public:
   explicit InvariantWatch(const SteppedScene& scene) : scene_(scene) {}
 
   void note(double t, std::span<const double> y) { scene_.note_invariants(t, y, drifts_); }
 
-  /// The least error of a state that makes the drifts: |drift| / sum of |change of the invariant| by
-  /// the sizes of the state's components. 0 where that is what rounding makes.
+  /// The least error of the state that explains the drifts: |drift| / sum of |change of the
+  /// invariant| for changes of the state's components by their sizes. 0 if rounding explains the
+  /// drifts.
   ///
   /// sizes : of blocks
   [[nodiscard]] double least_error(double t, std::span<const double> y,
@@ -134,7 +136,8 @@ inline double InvariantWatch::least_error(double t, std::span<const double> y,
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const double size = blocks[k] == 4 ? 1 : sizes[k];  // quaternions
     for (const std::size_t end = i + static_cast<std::size_t>(blocks[k]); i < end; ++i) {
-      // A part of the size says what small errors do, all of it where small ones do nothing.
+      // A change by a part of the size gives the effect of small errors. Where they have no effect,
+      // the change by the whole size counts.
       moved[i] = y[i] + size;
       const std::vector<InvariantDrift> far = invariants_at(moved);
       constexpr double part = 1e-6;
@@ -170,7 +173,7 @@ void cancel(RunReport& report, const char* who, double last_output) {
   report.message = text.str();
 }
 
-/// Shows a state to who watches; returns whether the run is to go on.
+/// Passes a state to on_output; true if the run continues.
 [[nodiscard]] bool show(const OnComponents& on_output, double t, std::span<const double> state,
                         RunReport& report) {
   if (!on_output || on_output(t, state) == OutputAction::proceed) return true;
@@ -178,7 +181,7 @@ void cancel(RunReport& report, const char* who, double last_output) {
   return false;
 }
 
-/// Notes a state and its error for the output time t; says whether the run is to go on.
+/// Records a state and its error for the output time t; true if the run continues.
 [[nodiscard]] bool output(Trajectory<double>& result, InvariantWatch& watch,
                           const OnComponents& on_output, double t, std::span<const double> state,
                           double error) {
@@ -233,31 +236,31 @@ Trajectory<double> solve_closed(const SteppedScene& scene, const Eigen::VectorXd
   return result;
 }
 
-/// A run with what it has given so far, so that it can be asked again.
+/// A run with its outputs so far, which can be read again.
 class RunSoFar {
  public:
   /// stop  : a time before the end at which a step ends, whatever the outputs are; or the end
   RunSoFar(std::unique_ptr<Run> run, Eigen::Index components, double stop)
       : run_(std::move(run)), components_(static_cast<std::size_t>(components)), stop_(stop) {}
 
-  /// The state at the i-th output, to be read before the next one is asked for; they are asked for in
-  /// turn, each time from the first one on.
+  /// The state at the i-th output, valid until the next call. Outputs must be read in order, each
+  /// time from the first one on.
   [[nodiscard]] std::span<const double> at_output(std::size_t i, double t, double end) {
     if (i == first_ + known_) advance_to(t, end);
     return {states_.data() + (i - first_) * components_, components_};
   }
 
-  /// True if the run has its outputs from the first one on: not if a checkpoint began it.
+  /// True if the run has its outputs from the first one on; false if a checkpoint began it.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
-  /// Puts another run in the place of this one, with the cost and the stop of this one.
+  /// Replaces this run by another, which takes over cost and stop.
   void replace_by(RunSoFar other) {
     other.spent_before_ = spent();
     other.stop_ = stop_;
     *this = std::move(other);
   }
 
-  /// Evaluations.
+  /// The number of evaluations so far.
   [[nodiscard]] double spent() const { return std::max(spent_before_, effort().evaluations); }
 
   [[nodiscard]] IntegrationStatistics effort() const { return run_->effort(); }
@@ -266,7 +269,7 @@ class RunSoFar {
   [[nodiscard]] std::string changes() const { return run_->changes(); }
   [[nodiscard]] std::optional<Method> changed_to() const { return run_->changed_to(); }
 
-  /// What it goes on from behind the first `done` outputs.
+  /// Passes all numbers from which the run continues after the first `done` outputs.
   void pass(std::size_t done, Checkpoint& checkpoint) {
     if (known_ == 0) first_ = done;
     run_->pass(checkpoint);
@@ -281,7 +284,7 @@ class RunSoFar {
   }
 
  private:
-  /// Takes steps to t that end at the stop, if it is not behind, and keeps the state at t.
+  /// Takes steps to t and keeps the state there. If the stop lies ahead, a step ends at it.
   void advance_to(double t, double end) {
     const bool before = stop_ == end || (t < stop_) == (stop_ < end);
     if (!before && !has_stopped_) {
@@ -302,16 +305,16 @@ class RunSoFar {
   std::size_t components_;
   double stop_;
   bool has_stopped_ = false;
-  std::size_t first_ = 0;       ///< output it knows
-  std::size_t known_ = 0;       ///< from that one on
+  std::size_t first_ = 0;       ///< output that is kept
+  std::size_t known_ = 0;       ///< number of outputs kept
   std::vector<double> states_;  ///< one after another
-  double spent_before_ = 0;     ///< at least
+  double spent_before_ = 0;     ///< a lower bound of spent()
 };
 
-/// Tells how far rounding grows, by three runs in the same steps, coarse and cheap. Two of them are
-/// shaken, in different ways, because one alone may miss the direction that grows. In steps of their
-/// own they would differ by what these err by.
-/// Beside a separatrix it may be far more than what steps err by, which cancels there.
+/// The growth of rounding, estimated by three runs with the same steps, coarse and cheap. Two of
+/// them are perturbed, in different ways, because one alone may miss the direction that grows. Runs
+/// with different steps would differ by the errors of these steps. Near a separatrix the growth may
+/// far exceed the errors of steps, which cancel there.
 class RoundingGrowth {
  public:
   RoundingGrowth(const AdaptiveRuns& runs, double accuracy, const SteppedScene& scene,
@@ -325,12 +328,12 @@ class RoundingGrowth {
     double digits = AdaptiveRuns::shaken_digits;
     for (auto& shaken : shaken_) {
       shaken = run(runs, accuracy, scene, options, start, false, digits);
-      digits += 1;  // other digits, another way
+      digits += 1;  // other digits, another direction
     }
   }
 
-  /// At t, by the measure of RunReport::error_estimate; times are asked for in turn. 0 where steps so
-  /// coarse come to an end.
+  /// The size of rounding at t, in the measure of RunReport::error_estimate. Times must be given in
+  /// order. 0 if such coarse steps fail.
   [[nodiscard]] double at(double t, double end) {
     if (gave_up_) return 0;
     try {
@@ -349,7 +352,7 @@ class RoundingGrowth {
       return gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
     } catch (const StopRequested&) {
       throw;
-    } catch (...) {  // what a load or a guide throws there is no fault of the answer
+    } catch (...) {  // an exception of a load or guide here must not end the run
       gave_up_ = true;
       return 0;
     }
@@ -382,8 +385,8 @@ class RoundingGrowth {
   bool gave_up_ = false;
 };
 
-/// The times at which two runs are compared: those of output and, where these are few, others between,
-/// so that what is told of the error does not depend on what is asked for.
+/// The times at which two runs are compared: the output times and, if these are few, others in
+/// between. The error estimate then does not depend on the outputs requested.
 class ComparisonTimes {
  public:
   ComparisonTimes(const SolveOptions& options, bool adds) {
@@ -408,7 +411,7 @@ class ComparisonTimes {
   [[nodiscard]] double operator[](std::size_t i) const { return times_[i].t; }
   [[nodiscard]] bool is_output(std::size_t i) const { return times_[i].is_output; }
 
-  /// The last output before the i-th of these; `begin` if there is none.
+  /// The last output time before the i-th time; `begin` if there is none.
   [[nodiscard]] double last_output(std::size_t i, double begin) const {
     while (i > 0) {
       if (times_[--i].is_output) return times_[i].t;
@@ -424,8 +427,7 @@ class ComparisonTimes {
   std::vector<Time> times_;
 };
 
-/// How great the error may be at the end, if that at time t is so great: in proportion to time, up to
-/// tenfold.
+/// The expected error at the end, from the error at time t: proportional to time, at most tenfold.
 [[nodiscard]] double forecast(const SolveOptions& options, double t, double error) {
   const double ahead = (options.output_times.back() - options.begin) / (t - options.begin);
   return error * (ahead < 10 ? ahead : 10);
@@ -436,23 +438,26 @@ struct Account {
   double spent = 0;  ///< evaluations
 };
 
-/// Two integrations run side by side, the steps of one held many times more exact than the other's;
-/// the coarser one is returned, with the error that the pair tells of. One of them starts a last
-/// digit away, or as many as rounding has taken by the end, so that the pair also tells what that
-/// grows to: near a separatrix steps of any length round the same digits away. Where the error
-/// exceeds the tolerance, or is on its way to, the finer run takes the coarser's place beside one
-/// finer still; or both begin again, where that would not do; until rounding stops it.
+/// The result of the coarser of two runs, with the error that the pair shows.
 ///
-/// Where rounding grows to the tolerance two runs may agree by chance. Of explicit steps one of the
-/// first pair is shaken by more digits than are rounded; unless they agree to a part of the tolerance
-/// all the same, RoundingGrowth tells what rounding grows to, and both go on, the shaken one anew if it
-/// is off for that. Where rounding may exceed the tolerance, or the error does not fall as the steps
-/// do, the finest are taken at once. Of other steps pairs that are tried until two agree would tell
-/// nothing: a third is held beside them where, after a miss, steps are so fine that what they err by
-/// may be rounding; an error that falls much faster than the steps do is taken for rounding too; and
-/// the finest are four, or six where rounding grows to more than the tolerance.
+/// The error of the finer run is many times smaller. One run starts a last digit away, or as many
+/// digits as rounding changes by the end. The pair then also shows the growth of these digits: near
+/// a separatrix, steps of any length round the same digits away. If the error exceeds the
+/// tolerance, or is about to, the finer run takes the coarser run's place beside a still finer one.
+/// If that does not suffice, both begin again, until rounding leaves nothing to gain.
 ///
-/// Throws : InvalidInput for a checkpoint that is none of these runs; an empty one is of their begin
+/// Where rounding grows to the tolerance, two runs may agree by chance.
+/// - Explicit steps: one run of the first pair is perturbed by more digits than are rounded. If the
+///   pair does not agree to a part of the tolerance, RoundingGrowth estimates the growth of
+///   rounding. Both runs then continue, the perturbed one anew if its perturbation is the cause. If
+///   rounding may exceed the tolerance, or the error does not decrease with the steps, the finest
+///   steps are taken at once.
+/// - Other steps: to try pairs until two agree would prove nothing. After a miss, a third run is
+///   compared if steps are so fine that their error may be rounding. An error that decreases much
+///   faster than the steps counts as rounding too. The finest runs are four, or six where rounding
+///   grows to more than the tolerance.
+///
+/// Throws : InvalidInput for a checkpoint of other runs; an empty one stands for the start
 template <class Runs>
 [[nodiscard]] Trajectory<double> solve_in_pairs(const SteppedScene& scene, Runs runs,
                                                 const Eigen::VectorXd& start,
@@ -465,12 +470,13 @@ template <class Runs>
   const double end = options.output_times.back();
   const ComparisonTimes times(options, std::is_same_v<Runs, AdaptiveRuns>);
   double digits = digits_off(options);
-  double grown_to = 0;  // by rounding, in any try
-  CheapSteps cheap;     // that tell it
-  double known = 0;     // of the error at this setting, from a try with fewer digits
+  double grown_to = 0;  // by rounding, in any try: the greatest
+  CheapSteps cheap;     // to estimate it
+  double known = 0;     // error at this setting, from a try with fewer digits
   auto setting = runs.first();
   Missed<decltype(setting)> missed{setting};
-  // A scene with another one is held against that, and of stiff springs cheap steps tell nothing.
+  // A scene with a perturbed copy is compared with the copy: cheap steps cannot estimate the effect
+  // of stiff springs.
   bool pair_is_shaken = runs.shakes() && !scene.has_other();
   bool looks_for_rounding = !runs.shakes() && !scene.has_other();
   const auto run_with = [&](const auto& s, double moved, double stop) {
@@ -479,8 +485,9 @@ template <class Runs>
     const double shaken = pair_is_shaken && moved > 0 ? runs.pair_digits() : 0;
     return RunSoFar(run(runs, s, scene, options, from, moved != 0, shaken), start.size(), stop);
   };
-  // A step of a finer run ends on the way, lest a short run be one and the same step in both; and at
-  // another time than those of the others, beside which it may go on. Equal steps do not need it.
+  // A step of a finer run ends between start and end, so that a short run is not the same single
+  // step in both runs. The time differs from run to run, because the runs may continue side by
+  // side. Equal steps do not need it.
   const auto finer_run_with = [&](const auto& s, double moved) {
     const double part = moved > 0 ? 1.0 / 2 : moved < 0 ? 2.0 / 5 : 1.0 / 3;
     const double stop = options.begin + part * (end - options.begin);
@@ -488,7 +495,7 @@ template <class Runs>
   };
   std::optional<Checkpoint> from;
   if (!checkpoint.empty()) from.emplace(checkpoint);
-  // Of implicit steps more is rounded.
+  // Implicit steps round more.
   const auto rounding_of = [&](const RunSoFar& run) {
     return run.changed_to() ? AdaptiveRuns::rounding_of_radau : runs.rounding();
   };
@@ -514,7 +521,7 @@ template <class Runs>
     report.error_estimate = known;
     InvariantWatch watch(scene);
     BlockDistance distance(scene.blocks(), options.absolute_scale);
-    // Where rounding is all that is left, a start one digit away is a sample of what it does.
+    // If only rounding is left, a start one digit away is a sample of its effect.
     if (last_try) digits = std::max(digits, 3 * digits_off(options));
     if (!coarse) coarse.emplace(run_with(setting, coarse_starts_off ? digits : 0, end));
     if (!fine) {
@@ -526,16 +533,17 @@ template <class Runs>
         rounding.emplace(runs, cheap.beside(runs, setting), scene, options, start);
       }
     }
-    // Where rounding is all that is left, two runs may agree by chance: more do so less, each with
-    // steps of its own. Steps that begin near rounding and miss are near it in every later try.
+    // If only rounding is left, two runs may agree by chance; more runs, each with steps of its
+    // own, do so less often. Steps that begin near rounding and miss remain near it in every later
+    // try.
     const bool near_rounding = last_try || (runs.begins_near_rounding() && missed.error > 0);
     const bool may_be_rounding =
         runs.begins_near_rounding() || (missed.error > 0 && runs.may_be_rounding(setting));
-    const bool grown = last_try && digits_off(options) > 0;  // to far more than it is made by
+    const bool grown = last_try && digits_off(options) > 0;  // rounding, to far more than its size
     const int more_alone = grown ? 4 : near_rounding ? 2 : may_be_rounding ? 1 : 0;
     const int more = rounding ? (last_try ? 1 : 0) : more_alone;
-    // What begins near rounding and comes near the tolerance is rounding that has grown: three runs
-    // agree on that by chance more often than four.
+    // An error that begins near rounding and comes near the tolerance is rounding that has grown.
+    // Three runs agree on it by chance more often than four.
     const bool surprises = runs.begins_near_rounding() && !near_rounding;
     const double enough = surprises ? options.tolerance / 10 : options.tolerance;
     std::vector<RunSoFar> others;
@@ -576,7 +584,7 @@ template <class Runs>
         const double t = times[done];
         const std::span<const double> reached = coarse->at_output(done, t, end);
         distance.note_sizes(coarse->sizes());
-        // One that was moved by last digits begins with others than were given.
+        // A run that was moved by last digits does not begin with the given ones.
         state = t == options.begin ? components_of(start) : reached;
         double off = 0;
         const auto hold_beside = [&](RunSoFar& run) {
@@ -585,7 +593,7 @@ template <class Runs>
         hold_beside(*fine);
         for (RunSoFar& other : others) hold_beside(other);
         double noise = coarse->noise();
-        // Coarse steps beside a stiff motion go ways of their own when shaken, and that is no growth.
+        // Coarse steps of a stiff motion diverge when perturbed, without any growth of rounding.
         if (rounding && !coarse->changed_to()) {
           const double now = rounding->at(t, end);
           noise = max_or_nan(noise, now);
@@ -614,7 +622,7 @@ template <class Runs>
       cancel(report, "request", times.last_output(done, options.begin));
     } catch (const ComputationFailed& error) {
       report.status = RunStatus::failed;
-      // What a load or a guide throws knows no time.
+      // An exception of a load or a guide contains no time.
       const double last_good = times.last_output(done, options.begin);
       std::ostringstream text;
       text.precision(17);
@@ -627,7 +635,7 @@ template <class Runs>
     const bool unsure = !implicit && pair_is_shaken && !looks_for_rounding &&
                         report.error_estimate > options.tolerance / 8 &&
                         runs.can_look_for_rounding(setting, missed.error > 0);
-    // The shaken one is off by so much for having been shaken.
+    // The perturbation itself causes a third of the error or more.
     const bool shaken_too_much = !implicit && pair_is_shaken && !rounds_too_much &&
                                  runs.of_pair(grown_to) > report.error_estimate / 3;
     bool asks_again = false;
@@ -653,7 +661,7 @@ template <class Runs>
       continue;
     }
     account.spent += coarse->spent();
-    // Rounding on a long way does more than to move the start by a digit.
+    // Rounding in a long run has more effect than a start one digit away.
     const bool rounding_is_known = rounding && !last_try;
     const double lost = rounding_is_known ? 0 : runs.digits_lost(setting, coarse->effort().steps);
     const bool too_close = lost > 2 * std::max(digits, 1.0);
@@ -661,7 +669,7 @@ template <class Runs>
     const bool is_fine = runs.is_fine(setting);
     const bool by_chance = !rounding && !too_coarse && !last_try && complete && is_fine &&
                            missed.falls_by_chance(runs, setting);
-    // The error of implicit steps falls slower than that of explicit ones.
+    // The error of implicit steps decreases more slowly than the error of explicit steps.
     const bool only_rounds =
         rounds_too_much || (!implicit && is_fine && missed.stays(runs, setting));
     const bool stays = by_chance || (too_coarse && only_rounds);
@@ -693,7 +701,7 @@ template <class Runs>
       fine.reset();
       continue;
     }
-    // What the digits grow to may hide what the steps err by.
+    // The growth of the digits may hide the error of the steps.
     if (too_coarse || by_chance || (too_close && complete)) {
       known = too_coarse || by_chance ? 0 : report.error_estimate;
       if (too_coarse || by_chance) {
@@ -724,10 +732,10 @@ template <class Runs>
   }
 }
 
-/// The start as steps take it: quaternions, whose norm means nothing, brought near the norm 1, for
-/// it is by size that errors are measured.
+/// The start for the steps. Quaternions, whose norm has no meaning, are scaled to a norm near 1,
+/// because errors are relative to size.
 ///
-/// Throws : where the state is so small that products of its components underflow
+/// Throws : InvalidInput if the state is so small that products of its components underflow
 [[nodiscard]] Eigen::VectorXd start_of_steps(const SteppedScene& scene,
                                              const Eigen::VectorXd& start, double smallest) {
   using Limits = std::numeric_limits<double>;
@@ -738,7 +746,7 @@ template <class Runs>
     const double size = norm(y, begin, components);
     const bool attitude = components == 4;
     if (attitude && std::isfinite(size) && std::abs(std::ilogb(size)) > 4) {
-      const int power = std::ilogb(size);  // of two, lest anything be rounded
+      const int power = std::ilogb(size);  // of two, so that nothing is rounded
       for (int i = begin; i < begin + components; ++i) y[i] = std::ldexp(y[i], -power);
     } else if (size > 0 && size < least && smallest < least) {
       refuse_task("a part of the state is ", size, " at the start, and below ", least,
@@ -764,7 +772,7 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
     return result;
   };
   const auto with = [&](const auto& runs) { return go_on(runs, options, options.checkpoint); };
-  // Steps that are too long for what comes later on the way do not converge there.
+  // Steps that are too long for a later part of the motion do not converge there.
   const auto by_gauss = [&](const SolveOptions& asked, const std::vector<double>& checkpoint) {
     const double once = pace(scene, asked, start);
     auto result = go_on(gauss_runs(once), asked, checkpoint);
@@ -793,13 +801,13 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
   if (!automatic) return result;
   const bool stiff = !result.report.changes.empty();
 
-  // Where the tolerance was missed, another method may come nearer to it.
+  // If the tolerance was missed, another method may come nearer to it.
   const auto missed = [&] {
     const RunReport& report = result.report;
     return report.status == RunStatus::complete && !report.tolerance_kept;
   };
   const auto or_by = [&](Method method, const auto& run) {
-    SolveOptions alone = options;  // a checkpoint would not know the other trajectory
+    SolveOptions alone = options;  // a checkpoint lacks the other trajectory
     alone.offer_checkpoint = nullptr;
     alone.method = method;
     watcher = &nobody;  // until the other run has proved better
@@ -812,17 +820,17 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
   };
   const auto by_steps = [&](const SolveOptions& asked) { return explicitly(asked, {}); };
   if (missed() && stiff) {
-    // Of explicit steps, as many as stability asks for cost so much; their last digits are better.
+    // The cost of explicit steps, as short as stability requires; their last digits are better.
     const double rate = std::abs(dominant_eigenvalue(scene, false, options.begin, start));
     const double evaluations = 5 * rate * std::abs(options.output_times.back() - options.begin);
     if (evaluations < 10 * account.spent) {
       or_by(scene.knows_series() ? Method::taylor : Method::verner98, by_steps);
     }
   } else if (missed() && result.report.method == name(Method::taylor)) {
-    // What rounding in the field makes of it many stages average.
+    // Many stages average the rounding of the field.
     or_by(Method::verner98, by_steps);
   }
-  // Fixed symmetric steps let errors grow with time where adaptive ones let them with its square.
+  // With fixed symmetric steps errors grow with time, with adaptive steps with its square.
   if (missed() && !stiff && result.report.effort.steps > 1e5 && options.discontinuities.empty()) {
     or_by(Method::gauss16, [&](const SolveOptions& asked) { return by_gauss(asked, {}); });
   }
@@ -835,7 +843,8 @@ Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::Vector
   return none;
 }
 
-/// Throws where a quaternion of the start turns nothing, which no step would mend or tell.
+/// Throws : InvalidInput if a quaternion of the start is 0, which steps would neither correct nor
+///          report
 void check_start(const SteppedScene& scene, const Eigen::VectorXd& start) {
   int begin = 0;
   for (const int components : scene.blocks()) {
@@ -846,7 +855,7 @@ void check_start(const SteppedScene& scene, const Eigen::VectorXd& start) {
   }
 }
 
-/// Throws what is wrong with the method asked for, for this scene.
+/// Throws : InvalidInput if the requested method does not fit the scene
 void check_method(const SteppedScene& scene, const SolveOptions& options) {
   const auto refuse = [&](const char* why) {
     refuse_task("method ", name(options.method), " does not apply: ", why);

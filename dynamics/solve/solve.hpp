@@ -16,8 +16,8 @@
 
 namespace kreisel {
 
-/// A function that solve() calls at every output: on_output(t, state). It returns whether to proceed or
-/// to stop, or nothing, where it only watches.
+/// A function that solve() calls at every output: on_output(t, state). It returns an OutputAction or
+/// nothing; without a result the run proceeds.
 template <class F, class State>
 concept OutputFunction = std::invocable<F&, double, const State&> &&
     (std::same_as<std::invoke_result_t<F&, double, const State&>, OutputAction> ||
@@ -25,7 +25,7 @@ concept OutputFunction = std::invocable<F&, double, const State&> &&
 
 namespace detail {
 
-/// A run as users have it, of one by components.
+/// A run with the scene's states, made of a run by components.
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> with_states(const SceneRuns<Scene>& runs,
                                                             std::size_t components,
@@ -42,7 +42,7 @@ template <class Scene>
   return result;
 }
 
-/// solve() with its observer as a function of components.
+/// solve() with on_output as a function of components.
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve_watched(const SceneRuns<Scene>& runs,
                                                               const Scene& scene,
@@ -73,22 +73,22 @@ template <class Scene>
 
 }  // namespace detail
 
-/// Solves a scene to a tolerance of the GLOBAL error, and says how far the result is off.
+/// Solves a scene to a tolerance of the GLOBAL error, and reports the error of the result.
 ///
-/// Scene  : has State, Vector, blocks, to_vector, from_vector and rates(t, y); with conserved(t,
-///          state) its invariants are watched, with a closed_form() it is computed by that, with
-///          series() by those, and may_be_stiff() tells then whether it may be stiff
+/// Scene  : has State, Vector, blocks, to_vector, from_vector and rates(t, y). Optional:
+///          conserved(t, state), whose drift is reported; the methods closed_form() and series();
+///          and may_be_stiff() (see model/scene.hpp)
 /// Error  : by steps true error / estimate lies in [0.1, 1] in 98 % of 400 runs and never above 1.1
-///          (tests/dynamics/solve/solve.cpp); docs/promises.md tells where that ends. Where the
-///          tolerance cannot be reached the best is returned and RunReport::tolerance_kept is false
+///          (tests/dynamics/solve/solve.cpp); docs/promises.md states the limits. If the tolerance
+///          cannot be reached, the best result is returned and RunReport::tolerance_kept is false
 /// Cost   : by steps 2.3 times the integration alone, 3.4 times by gauss16, reported as
-///          all_evaluations; 0.3 to 0.8 more to 1e-11 and finer, or to 1e-7 where the first pair of
-///          runs does not agree to an eighth of the tolerance; 2.8 to 4.6 times where that errs too
-///          much; twice that where so many steps near the last digits are taken that rounding outgrows
-///          them. Where the tolerance is missed `automatic` may try another method. Outputs take ten
+///          all_evaluations. 0.3 to 0.8 more at 1e-11 and finer, or at 1e-7 if the first pair of
+///          runs does not agree to an eighth of the tolerance. 2.8 to 4.6 times if that pair has
+///          too great an error; twice that if rounding in many steps exceeds the last digits. If
+///          the tolerance is missed, `automatic` may try another method. Outputs cost ten
 ///          evaluations in each step that has some, by series none
-/// Throws : InvalidInput if the options are invalid or the method does not fit the scene. What
-///          fails on the way is told by the report, with the trajectory up to there
+/// Throws : InvalidInput if the options are invalid or the method does not fit the scene. A failure
+///          during the run is reported, with the trajectory up to there
 template <class Scene>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
                                                       const typename Scene::State& start,

@@ -11,18 +11,18 @@
 
 namespace kreisel {
 
-/// How a run is computed.
+/// The method of a run.
 enum class Method {
-  /// The closed form where the scene has one; splitting for a fast top; taylor where the scene knows
-  /// its series; else verner98. Both give way to radau13 where the field proves stiff, and to gauss16
-  /// where a long run asks for it.
+  /// The closed form if the scene has one; splitting for a fast top; taylor if the scene has
+  /// series(); else verner98. Taylor and verner98 change to radau13 where the field proves stiff,
+  /// and to gauss16 where a long run needs it.
   automatic,
   closed_form,  ///< of the scene; see closed_form.hpp
   verner98,     ///< ExplicitRungeKutta, adaptive
   gauss16,      ///< GaussIRK, fixed: the last digits of 1e4 periods and more
   radau13,      ///< RadauSteps, adaptive: for stiff fields
-  splitting,    ///< SplittingSteps, fixed: for a symmetric top whose spin commands its weight
-  taylor        ///< TaylorSteps, adaptive: for scenes that know their series()
+  splitting,    ///< SplittingSteps, fixed: for a symmetric top whose spin dominates its weight
+  taylor        ///< TaylorSteps, adaptive: for scenes with series()
 };
 
 [[nodiscard]] constexpr const char* name(Method method) {
@@ -38,16 +38,16 @@ enum class Method {
   return "none";
 }
 
-/// What is asked of a run. Options are of one type for all scenes; what depends on the scene's state,
-/// the function that watches the outputs, is an argument of solve().
+/// The outputs, the tolerance and the method of a run. The type is the same for all scenes: on_output,
+/// which depends on the type of the state, is an argument of solve().
 struct SolveOptions {
   double begin = 0;
 
   /// Times of output in order, forwards or backwards; the last is the end.
   std::vector<double> output_times = {};
 
-  /// The end, in place of output_times. Output times are then begin, begin + output_step, ... and
-  /// t_end; without an output_step t_end alone. The step is positive also for runs backwards.
+  /// The end, instead of output_times. Output times are then begin, begin + output_step, ... and
+  /// t_end, or t_end alone without output_step. The step is positive also for runs backwards.
   std::optional<double> t_end = std::nullopt;
   std::optional<double> output_step = std::nullopt;
 
@@ -56,24 +56,24 @@ struct SolveOptions {
 
   Method method = Method::automatic;
 
-  /// A part of the state smaller than this (SI) counts as being so large.
+  /// A part of the state smaller than this (SI) counts as this large.
   double absolute_scale = 1e-3;
 
   /// Evaluations of the field after which each run of adaptive steps gives up.
   double max_evaluations = 1e8;
 
-  /// Ends the run when another thread asks its source to stop: before the next step, with
-  /// RunStatus::cancelled. Outputs up to there are kept.
+  /// Ends the run before its next step if a stop is requested. The outputs so far are kept, and the
+  /// status is RunStatus::cancelled.
   std::stop_token stop = {};
 
-  /// Called after every output but the last with what gives a checkpoint, for whoever wants to keep
-  /// one. Verner98, taylor, gauss16 and radau13 have them, closed forms and splitting need none.
+  /// Called after every output but the last, with a function that returns a checkpoint. Verner98,
+  /// taylor, gauss16 and radau13 have checkpoints; closed forms and splitting need none.
   std::function<void(const std::function<std::vector<double>()>& checkpoint)> offer_checkpoint =
       nullptr;
 
-  /// The run goes on behind the output after which this was taken, as it did then to the last bit:
-  /// scene, start and the other options have to be the same. The trajectory is the part that is
-  /// new, or all of it where the run begins again with shorter steps; the report is of the whole.
+  /// A checkpoint. The run continues after the output of the checkpoint, identical to the last bit.
+  /// Scene, start and the other options must be the same. The trajectory is only the new part, or
+  /// all of it if the run begins again with shorter steps. The report covers the whole run.
   std::vector<double> checkpoint = {};
 };
 
@@ -87,8 +87,8 @@ template <class... Words>
   throw InvalidInput(text.str());
 }
 
-/// By how many last digits the start of the run beside is off. Who asks for the last digits of the
-/// result takes those of the start for exact.
+/// The perturbation of the comparison run's start, in last digits. It is 0 for a tolerance in the
+/// last digits, which takes the start as exact.
 [[nodiscard]] inline double digits_off(const SolveOptions& options) {
   return options.tolerance > 1e-11 ? 1 : 0;
 }

@@ -14,21 +14,21 @@
 
 namespace kreisel::detail {
 
-/// Whether splitting applies to a scene: a symmetric top under weight.
+/// True if splitting applies to a scene: a symmetric top under weight.
 [[nodiscard]] inline bool splits(const EulerTop& top) {
   return top.moments().x() == top.moments().y() && !top.weight_moment().isZero(0) &&
          top.rotor_momentum().isZero(0);
 }
 
-/// Whether it pays: the spin commands the weight.
+/// True if splitting pays: the spin dominates the weight.
 ///
-/// The weight's part of the nutation is  A k / L^2.
+/// The weight's share of the nutation is  A k / L^2.
 [[nodiscard]] inline bool is_fast(const EulerTop& top, const EulerTop::State& start) {
   const double L = top.moments().cwiseProduct(start.angular_velocity).norm();
   return L * L > 1000 * top.moments().x() * top.weight_moment().norm();
 }
 
-/// A run of splitting.
+/// A run of SplittingSteps.
 class SplittingRun final : public Run {
   struct Weight {
     const EulerTop* top;
@@ -64,13 +64,13 @@ class SplittingRun final : public Run {
 
 [[nodiscard]] inline FixedRuns splitting_runs(const EulerTop& top, const SolveOptions& options,
                                               const EulerTop::State& start) {
-  // What the torque turns with on body axes.
+  // The rate at which the torque rotates on body axes.
   const Vector3<double>& I = top.moments();
   const bool axial = top.weight_moment().x() == 0 && top.weight_moment().y() == 0;
   const double nutation = I.cwiseProduct(start.angular_velocity).norm() / I.x();
   const double spin = axial ? 0 : start.angular_velocity.norm();
   const double rate = std::max(nutation, spin) + std::sqrt(top.weight_moment().norm() / I.x());
-  // Steps of 2/rate err by some 1e-9.
+  // Steps of 2/rate have an error of some 1e-9.
   return {Method::splitting, 8,
           2 / rate * std::clamp(std::pow(options.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
           0.02 / rate};

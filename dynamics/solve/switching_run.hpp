@@ -24,8 +24,8 @@
 
 namespace kreisel::detail {
 
-/// The eigenvalue of the greatest modulus of the Jacobian; 0 where that is not finite, because a failed
-/// look for stiffness must not end the run.
+/// The eigenvalue of greatest modulus of the Jacobian; 0 if the Jacobian is not finite, because a
+/// failed stiffness check must not end the run.
 [[nodiscard]] inline std::complex<double> dominant_eigenvalue(const SteppedScene& scene, bool other,
                                                               double t, const Eigen::VectorXd& y) {
   Eigen::MatrixXd J(y.size(), y.size());
@@ -55,7 +55,8 @@ class RadauRun final : public SteppedRun {
     steps_.step_towards(*field_, end, output);
   }
 
-  /// Implicit steps forget what they err by: they need not be the same.
+  /// Advances to the leader's time. Implicit steps forget their errors, so both runs need not take
+  /// the same steps.
   void follow(const SteppedRun& leader) override {
     while (t() != leader.t()) step_towards(leader.t(), leader.t());
   }
@@ -93,13 +94,12 @@ class RadauRun final : public SteppedRun {
   double from_;
 };
 
-/// A run of verner98 or taylor that goes on by radau13 from the state it has reached, where that takes
-/// fewer evaluations, and back; and by verner98 where the series of taylor cannot go on, or only in
-/// short steps.
+/// A run by verner98 or taylor that changes to radau13 and back where that takes fewer evaluations.
+/// It changes to verner98 where the series of taylor fails or allows only short steps.
 ///
-/// A field is stiff where stability keeps explicit steps short for a motion that is damped away. That
-/// is decided by trial: one step of radau13, ten times as long, has to stand, and it does not while an
-/// oscillation that it would damp is greater than the accuracy.
+/// A field is stiff where stability limits explicit steps, although the motion is damped away. A
+/// trial decides: one step of radau13, ten times as long, must be accepted. It is rejected while an
+/// oscillation that radau13 would damp exceeds the accuracy.
 class SwitchingRun final : public SteppedRun {
  public:
   SwitchingRun(const SteppedScene& scene, bool other, const SolveOptions& options, Method first,
@@ -111,7 +111,7 @@ class SwitchingRun final : public SteppedRun {
         first_(first),
         explicit_(first),
         method_(first),
-        // Beyond 200 components factorisations would outweigh everything.
+        // Beyond 200 components factorisations would dominate the cost.
         looks_((first == Method::verner98 || scene.may_be_stiff()) && start.size() <= 200) {
     here_.begin = options.begin;
     here_.discontinuities = options.discontinuities;
@@ -121,7 +121,7 @@ class SwitchingRun final : public SteppedRun {
 
   void step_towards(double end, double output) override {
     choose_method(end, output);
-    if (run_->covers(output)) return;  // by the step of the trial
+    if (run_->covers(output)) return;  // by the trial step
     try {
       run_->step_towards(end, output);
     } catch (const SeriesFailed&) {
@@ -146,7 +146,7 @@ class SwitchingRun final : public SteppedRun {
   [[nodiscard]] IntegrationStatistics effort() const override {
     return sum(finished_, run_->effort());
   }
-  /// That of the last method: a stiff, damped motion forgets the noise of explicit steps.
+  /// The noise of the last method: a stiff, damped motion forgets the noise of explicit steps.
   [[nodiscard]] double noise() const override { return run_->noise(); }
   [[nodiscard]] std::optional<Method> changed_to() const override {
     if (changes_.empty()) return std::nullopt;
@@ -201,7 +201,7 @@ class SwitchingRun final : public SteppedRun {
             a.jacobians + b.jacobians};
   }
 
-  /// A run from the present time on.
+  /// A run that begins at the present time.
   [[nodiscard]] std::unique_ptr<SteppedRun> run_by(Method method, const Eigen::VectorXd& y) const {
     Accuracy accuracy = accuracy_;
     accuracy.max_evaluations = std::max(1.0, accuracy_.max_evaluations - finished_.evaluations);
@@ -212,7 +212,7 @@ class SwitchingRun final : public SteppedRun {
 
   [[nodiscard]] std::unique_ptr<RadauRun> radau_run(const Eigen::VectorXd& y,
                                                     Accuracy accuracy) const {
-    // The finest pair of explicit runs is the finest pair of implicit ones.
+    // The finest pair of explicit runs corresponds to the finest pair of implicit runs.
     constexpr double finest = 4e-16;
     const bool beyond = accuracy.relative < (first_ == Method::taylor ? 1e-18 : 1e-16);
     accuracy.relative = beyond ? 1e-16 : std::max(accuracy.relative, finest);
@@ -249,14 +249,14 @@ class SwitchingRun final : public SteppedRun {
       next_look_ *= looks_ && try_radau(end, output) ? 1.25 : 2;
       return;
     }
-    // Where its steps are so short explicit ones are as long.
+    // Explicit steps can be as long as such short implicit steps.
     const auto& radau = static_cast<const RadauRun&>(*run_);
     needless_ = radau.fastest_times_step() < 1 ? needless_ + 1 : 0;
     if (needless_ >= 50) change_to(explicit_);
   }
 
-  /// Goes over from taylor to verner98 where steps three times as long stand: terms make much of a
-  /// fast rotation of what is round but for rounding, stages do not.
+  /// Changes from taylor to verner98 if steps three times as long are accepted. In a fast rotation
+  /// of a body that is symmetric but for rounding, series amplify rounding; stages do not.
   [[nodiscard]] bool try_verner98(double end, double output) {
     const Eigen::VectorXd y = present();
     auto trial = run_by(Method::verner98, y);
@@ -271,7 +271,7 @@ class SwitchingRun final : public SteppedRun {
     return pays;
   }
 
-  /// Goes over to radau13 where that pays; else says whether it may later on.
+  /// Changes to radau13 if that pays; else true if it may pay later.
   [[nodiscard]] bool try_radau(double end, double output) {
     const Eigen::VectorXd y = present();
     const std::complex<double> fastest = dominant_eigenvalue(scene_, other_, run_->t(), y);
@@ -283,9 +283,9 @@ class SwitchingRun final : public SteppedRun {
       change_to(Method::radau13);
       return true;
     }
-    // A series of order 20 follows what oscillates in steps of 2 radians. What is forced through a mode
-    // that is well damped explicit steps follow in shorter ones; and what dies before anybody looks
-    // implicit ones may damp, which costs no more from twice the length on.
+    // A series of order 20 follows an oscillation in steps of 2 radians. Explicit steps are shorter
+    // for a motion forced through a well-damped mode. Implicit steps may damp a mode that dies
+    // before the next output; this costs no more from twice the length on.
     const double angle = speed * run_->length();
     if (angle < 0.2) return false;
     auto trial = radau_run(y, accuracy_);
@@ -317,7 +317,7 @@ class SwitchingRun final : public SteppedRun {
   std::vector<Change> changes_;
   IntegrationStatistics finished_;  ///< of the methods before
   double next_look_ = first_look;
-  int needless_ = 0;  ///< steps of radau13 in turn that explicit ones could have made
+  int needless_ = 0;  ///< consecutive steps of radau13 that could have been explicit
 };
 
 }  // namespace kreisel::detail

@@ -1,4 +1,4 @@
-// ensemble: a scene file run many times with numbers of it varied, and where the members end.
+// ensemble: runs a scene file many times with varied numbers, and reports the final states.
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -34,23 +34,23 @@ using kreisel::RunStatus;
 
 struct Member {
   RunStatus status = RunStatus::cancelled;
-  std::string message;         ///< of one that failed
+  std::string message;         ///< of a failed member
   std::vector<double> varied;  ///< in the order of the keys
-  std::vector<double> joints;  ///< at the end, as simulate's rows have them
+  std::vector<double> joints;  ///< at the end, in the order of simulate's rows
   double error = 0;
   bool tolerance_kept = false;
 };
 
-/// The scene, with which numbers are varied, and what its members have in common.
+/// The scene, the keys of its varied numbers, and the columns common to its members.
 struct Scene {
   const Request& request;
-  std::vector<std::string> keys;  ///< of the numbers that are varied
+  std::vector<std::string> keys;  ///< of the varied numbers
   kreisel::SceneNumbers numbers;
   std::vector<std::string> columns;
 };
 
 Scene read(const Request& request) {
-  // Mistakes that all members would make.
+  // Reports mistakes that all members would share.
   const std::string text = kreisel::read_text(request.scene, kreisel::largest_scene_file);
   const kreisel::SceneFile file = kreisel::parse_scene(text, request.scene, request.solve);
   if (request.csv) outputs::refuse_input("--csv", *request.csv, files_read(request.scene, file));
@@ -63,7 +63,7 @@ Scene read(const Request& request) {
   return {request, keys, kreisel::SceneNumbers(text, keys), std::move(names)};
 }
 
-/// As simulate runs a file in which the numbers that were drawn stand.
+/// Runs a member as simulate runs a file with the numbers drawn.
 Member compute(const Scene& scene, std::size_t index, const std::stop_token& stop) {
   const Request& request = scene.request;
   Member member;
@@ -100,7 +100,7 @@ Member compute(const Scene& scene, std::size_t index, const std::stop_token& sto
   } catch (const std::exception& error) {
     if (stop.stop_requested()) return member;  // cancelled
     member.status = RunStatus::failed;
-    member.message = error.what();  // of a scene several lines
+    member.message = error.what();  // several lines for a scene
     std::replace(member.message.begin(), member.message.end(), '\n', ';');
   }
   return member;
@@ -142,7 +142,7 @@ void write_csv(kreisel::AtomicFile& file, const Scene& scene, const std::vector<
   file.commit();
 }
 
-/// Of a column, added up in the order of members.
+/// The statistics of a column, summed in the order of members.
 struct Statistics {
   std::string name;
   double count = 0, mean = 0, squares = 0;
@@ -160,11 +160,11 @@ struct Statistics {
   [[nodiscard]] double deviation() const { return std::sqrt(squares / std::max(1.0, count - 1)); }
 };
 
-/// How many members there are of each kind, and how the complete ones are spread.
+/// The number of members of each kind, and the spread of the complete ones.
 struct Summary {
   std::size_t complete = 0, failed = 0, off = 0;
   double error = 0;
-  std::string message;  ///< of the first that failed
+  std::string message;  ///< of the first failed member
   std::vector<Statistics> columns;
 };
 

@@ -9,12 +9,13 @@
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/random.hpp>
 
-/// How numbers of the scene differ from member to member; those of one variation together.
+/// The variation of numbers of the scene from member to member; numbers of one variation vary
+/// together.
 struct Variation {
   enum class Kind {
     normal,   ///< mean and deviation
     uniform,  ///< from and to
-    linear    ///< no chance: from the first member to the last in equal steps
+    linear    ///< not random: from the first member to the last in equal steps
   };
   enum class Use { instead, added, factor };
 
@@ -24,14 +25,14 @@ struct Variation {
   double first = 0;
   double second = 0;
 
-  /// The number for a member; `share` is 0 of the first, 1 of the last.
+  /// The number for a member; `share` is 0 for the first, 1 for the last.
   [[nodiscard]] double drawn(double share, kreisel::MemberRandom& random) const;
 
-  /// What it makes of a number of the scene.
+  /// A number of the scene after the variation.
   [[nodiscard]] double applied(double given, double drawn) const;
 };
 
-/// What the command line of ensemble asks for.
+/// The command line of ensemble.
 struct Request {
   std::filesystem::path scene;
   kreisel::SolveRequest solve;
@@ -43,7 +44,7 @@ struct Request {
   std::optional<std::filesystem::path> csv;
 };
 
-/// Nothing where only help was asked for.
+/// The command line; nothing if only help was requested.
 ///
 /// Throws : kreisel::InvalidInput
 std::optional<Request> read_request(int argc, char** argv);

@@ -1,5 +1,5 @@
-// The pendulum deviation calculator: where a physical pendulum hangs on the rotating earth, how its
-// period changes, and how far to trust each number.
+// The pendulum deviation calculator: the equilibrium of a physical pendulum on the rotating earth,
+// the change of its period, and the error of each number.
 
 #include <fmt/core.h>
 
@@ -29,8 +29,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The numbers of an answer that are exact but for rounding; a period that does not exist is left
-/// out.
+/// The numbers of an answer that are exact but for rounding, without periods that do not exist.
 std::vector<kreisel::Estimated<double>> exact_numbers(
     const kreisel::PendulumAnswer<double>& answer) {
   std::vector<kreisel::Estimated<double>> numbers{answer.equilibrium.exact};
@@ -101,7 +100,8 @@ int run(const Request& request) {
   return exit_status::tolerance_missed;
 }
 
-/// Normal gravity comes in double: u and g' are right to 4 epsilon, which the answer cannot know.
+/// Adds the rounding of normal gravity, which is computed in double: u and g' are right to 4
+/// epsilon.
 void add_rounding_of_normal_gravity(const Request& request, const Site& site,
                                     kreisel::PendulumAnswer<double>& answer) {
   const auto& body = request.body;
@@ -123,7 +123,7 @@ void add_rounding_of_normal_gravity(const Request& request, const Site& site,
 kreisel::EarthGuide<Real> earth_guide(const Request& request, kreisel::EarthSite<Real> place) {
   if (!request.gravity) return kreisel::normal_gravity(place.cast<double>()).guide.cast<Real>();
   kreisel::EarthGuide<Real> earth = kreisel::earth_guide(place, *request.gravity);
-  // A gravimeter gives gravity alone. Its gradient is the ellipsoid's, whatever turns the pendulum.
+  // A gravimeter measures gravity alone. Its gradient is the ellipsoid's, at any rotation rate.
   place.rotation_rate = kreisel::EarthSite<Real>{}.rotation_rate;
   earth.gravity_gradient =
       kreisel::normal_gravity(place.cast<double>()).guide.gravity_gradient.cast<Real>();

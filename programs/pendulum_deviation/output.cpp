@@ -73,7 +73,7 @@ void print_one(const Request& request, const Row& row) {
     fmt::print("  {:22} {:.15g} s   {:>20}   error {:.1e} s\n", name, T->value, relative, T->error);
   };
   const auto& p = answer.period;
-  // The corrected period T_00 (1 + z) errs by what (25) leaves out.
+  // The error of the corrected period T_00 (1 + z) is what (25) leaves out.
   const Estimated<double> corrected{p.simple.value * (1 + p.relative_change_formula_25.value),
                                     p.simple.value * p.relative_change_formula_25.error};
   fmt::print("\nperiod                                      change against simple\n");
@@ -201,7 +201,7 @@ void print_json(const Request& request, const std::vector<Row>& rows, double run
     for (const Row& row : rows) result["sites"].push_back(json(request, row));
     result["run_time_s"] = run_time_s;
   }
-  // A name may be no UTF-8.
+  // A name may be invalid UTF-8.
   using Names = nlohmann::ordered_json::error_handler_t;
   fmt::print("{}\n", result.dump(2, ' ', false, Names::replace));
 }

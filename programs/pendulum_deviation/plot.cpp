@@ -30,7 +30,7 @@ std::string abscissa_title(const Request& request) {
   return "latitude [deg]";
 }
 
-/// One of the two panels: what it shows and its greatest power of ten, which goes into the label.
+/// One of the two panels: its quantity and the greatest power of ten, which is part of the label.
 struct Panel {
   std::string title;
   std::string unit;
@@ -53,7 +53,8 @@ struct Panel {
   }
 };
 
-/// Lists up to this long get a line with a name for each site; longer ones are points over latitude.
+/// The length up to which a list has a named line for each site; longer ones are points over
+/// latitude.
 constexpr std::size_t most_names = 60;
 
 std::string script(const Request& request, const std::vector<Row>& rows, bool svg) {
@@ -70,7 +71,7 @@ std::string script(const Request& request, const std::vector<Row>& rows, bool sv
     const auto& relative = row.answer.period.relative_change_exact;
     deviation.take(phi);
     if (relative) change.take(relative->value);
-    // Neither a quote nor a control character has a place inside a quoted field of gnuplot's.
+    // A quoted field of gnuplot must not contain quotes or control characters.
     std::string name = kreisel::printable(row.site.name);
     std::replace(name.begin(), name.end(), '"', '\'');
     fmt::print(s, "{:.17g} {:.17g} {} \"{}\"\n",

@@ -17,7 +17,7 @@ Real number(const std::string& what, const std::string& text) {
   return command_line::number<Real>(what, text);
 }
 
-/// The place in the site that an option or a sweep sets.
+/// The quantity of the site that an option or a sweep sets.
 Real* quantity(kreisel::EarthSite<Real>& place, const std::string& name) {
   if (name == "latitude") return &place.latitude;
   if (name == "azimuth") return &place.azimuth;
@@ -26,7 +26,7 @@ Real* quantity(kreisel::EarthSite<Real>& place, const std::string& name) {
   return nullptr;
 }
 
-/// "latitude=-90:90:1": from, to and step; the end counts when a step hits it.
+/// The sites of a sweep "latitude=-90:90:1": from, to and step; the end counts if a step hits it.
 std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<Real>& base,
                               std::string& swept) {
   const auto refuse = [&text](const std::string& why) -> InvalidInput {
@@ -61,7 +61,7 @@ std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<
   return sites;
 }
 
-/// The pendulum as the options give it: by reduced length, as a rod, or number by number.
+/// The options of the pendulum: its reduced length, a rod, or single numbers.
 struct BodyOptions {
   std::optional<Real> reduced_length, rod, mass, arm, theta_a, theta_b, theta_c, phi_a, phi_b,
       phi_c;

@@ -10,13 +10,13 @@
 
 #include "sites.hpp"
 
-/// What the command line asks for, checked.
+/// The checked command line.
 struct Request {
   enum class Mode { single, sites, sweep };
   Mode mode = Mode::single;
   std::string swept;  // "latitude", "azimuth", "height" or "rotation-rate"
   std::vector<Site> sites;
-  std::filesystem::path list;  // of the sites, where they are read from a file
+  std::filesystem::path list;  // of the sites, if they come from a file
 
   kreisel::PendulumBody<Real> body;
   std::optional<Real> gravity;  // none: normal gravity
@@ -28,13 +28,13 @@ struct Request {
   std::optional<std::filesystem::path> plot;
 };
 
-/// What the gradient of gravitation over the body does, in first order; taken in or not.
+/// The effect of the gravity gradient over the body, in first order, whether included or not.
 struct GradientEffect {
   double equilibrium;  // rad
   double period;       // relative change
 };
 
-/// One site's answer.
+/// The answer for one site.
 struct Row {
   Site site;
   double gravity;
@@ -43,7 +43,7 @@ struct Row {
   double run_time_s;
 };
 
-/// Reads the command line. None when it asked for help, which is then printed.
+/// Reads the command line. None if it printed the help instead.
 ///
 /// Throws : InvalidInput
 [[nodiscard]] std::optional<Request> read_request(int argc, char** argv);
@@ -51,14 +51,14 @@ struct Row {
 /// Throws : InvalidInput, ComputationFailed, with the site's name in front
 [[nodiscard]] Row compute(const Request& request, const Site& site);
 
-/// A whole answer for a person, or a line per site.
+/// Prints a full answer for one site, or one line per site.
 void print_table(const Request& request, const std::vector<Row>& rows, double run_time_s);
 
 void print_json(const Request& request, const std::vector<Row>& rows, double run_time_s);
 
 void write_csv(kreisel::AtomicFile& file, const std::vector<Row>& rows);
 
-/// Deviation and change of period over the swept quantity, or the sites' latitude, by gnuplot.
+/// Draws deviation and change of period over the swept quantity or the latitude, by gnuplot.
 ///
-/// Throws : ComputationFailed when gnuplot is missing or fails
+/// Throws : ComputationFailed if gnuplot is missing or fails
 void draw(const Request& request, const std::vector<Row>& rows);

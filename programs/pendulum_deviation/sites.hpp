@@ -6,11 +6,11 @@
 
 #include <dynamics/guide/earth.hpp>
 
-/// Decimals are read in long double, so that what the user typed counts as exact.
+/// The number type of inputs: decimals read in long double count as exact.
 using Real = long double;
 
 struct Site {
-  std::string name;  // empty unless it comes from a list of sites
+  std::string name;  // empty unless the site comes from a list
   kreisel::EarthSite<Real> place;
 };
 

@@ -7,10 +7,10 @@
 
 #include "number.hpp"
 
-/// What the programs share in reading their command lines.
+/// Command lines, as all programs read them.
 namespace command_line {
 
-/// Reads it, or prints the help where that is asked for, and says which.
+/// Reads the command line; false if it printed the help instead.
 ///
 /// Throws : kreisel::InvalidInput
 [[nodiscard]] inline bool parse(CLI::App& app, int argc, char** argv) {

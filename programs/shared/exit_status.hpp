@@ -19,7 +19,8 @@ inline constexpr int bad_input = 2;
 inline constexpr int failed = 3;
 inline constexpr int tolerance_missed = 4;
 
-/// 130 after SIGINT, 143 after SIGTERM, as shells count; `complete` if neither came.
+/// The status of a signal, as shells count: 130 after SIGINT, 143 after SIGTERM, `complete` if
+/// neither came.
 [[nodiscard]] inline int of_signal() {
   return signals::caught() == 0 ? 0 : 128 + signals::caught();
 }
@@ -33,8 +34,8 @@ inline constexpr const char* help =
     "  4    complete, but the tolerance was not reached\n"
     "  130  interrupted by SIGINT (Ctrl-C), 143 by SIGTERM; what was computed is kept\n";
 
-/// Exit status of `program`. Where it throws, the reason is written to standard error, a line for
-/// each mistake, and the status is `bad_input`, `failed`, or that of a signal that came before.
+/// The exit status of `program`. If it throws, the reason is written to standard error, one line
+/// for each mistake. The status is then `bad_input`, `failed`, or the status of an earlier signal.
 template <class Program>
 [[nodiscard]] int of(const char* name, const Program& program) {
   const auto fail = [name](const std::exception& error, int status) {
@@ -43,10 +44,10 @@ template <class Program>
       return of_signal();
     }
     const std::string line = kreisel::printable(error.what(), 2000);
-    std::fprintf(stderr, "%s: %s\n", name, line.c_str());  // fmt's may throw
+    std::fprintf(stderr, "%s: %s\n", name, line.c_str());  // fmt::print may throw
     return status;
   };
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error of writing
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of writing
   try {
     return program();
   } catch (const kreisel::SceneMistakes& error) {

@@ -27,7 +27,7 @@ namespace {
   throw kreisel::ComputationFailed("--plot: gnuplot " + why);
 }
 
-/// A file descriptor that is closed in the end.
+/// A file descriptor, closed by its destructor.
 class Descriptor {
  public:
   explicit Descriptor(int file) : file_(file) {
@@ -46,7 +46,7 @@ class Descriptor {
   int file_;
 };
 
-/// A file without a name that holds the text.
+/// An unnamed file with the text.
 int text_file(const std::string& text) {
   const int file = ::memfd_create("gnuplot", MFD_CLOEXEC);
   std::size_t done = 0;
@@ -59,7 +59,7 @@ int text_file(const std::string& text) {
   return file;
 }
 
-/// All that can be read; stops at an error, as of a signal.
+/// The rest of the file, up to its end or an error, such as a signal.
 std::string rest_of(int file) {
   std::string text;
   std::array<char, 65536> part{};
@@ -81,7 +81,7 @@ std::string last_line(const std::string& text) {
   return kreisel::printable(last, 200);
 }
 
-/// The child's exit status; a child that still runs after a signal is ended.
+/// The exit status of the child, which is terminated after a signal.
 int wait_for(pid_t child) {
   if (signals::caught() != 0) ::kill(child, SIGTERM);
   int status = -1;
@@ -89,7 +89,7 @@ int wait_for(pid_t child) {
   return status;
 }
 
-/// What gnuplot writes to its standard output by a script on its standard input.
+/// The standard output of gnuplot for a script on its standard input.
 std::string output_of(const std::string& script) {
   const Descriptor input(text_file(script));
   const Descriptor complaints(text_file(""));
@@ -102,7 +102,7 @@ std::string output_of(const std::string& script) {
   posix_spawn_file_actions_adddup2(&actions, input.get(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, output.get(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, complaints.get(), STDERR_FILENO);
-  // -d: the settings of the user's own are not read
+  // -d: ignores the settings of the user
   std::array<std::string, 2> words{"gnuplot", "-d"};
   std::array<char*, 3> arguments{words[0].data(), words[1].data(), nullptr};
   pid_t child = 0;

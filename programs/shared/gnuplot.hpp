@@ -7,17 +7,17 @@
 #include <filesystem>
 #include <string>
 
-/// gnuplot, as the programs call it for --plot.
+/// gnuplot for the option --plot of the programs.
 namespace gnuplot {
 
-/// For the pictures of scene files; texts are taken as they are.
+/// The style of pictures of scene files; texts are shown as they are.
 inline constexpr const char* style =
     "set termoption noenhanced\nset grid xtics ytics lt 1 lc rgb '#dddddd'\n"
     "set border 31 lc rgb '#555555'\n"
     "set tics tc rgb '#333333'\n";
 
-/// A string of gnuplot's that shows the text as it is. Punctuation is written by its number: neither
-/// an apostrophe at the beginning nor a backquote, which runs a command, has a meaning then.
+/// A gnuplot string that shows the text as it is. Punctuation is written by its code, so that an
+/// apostrophe at the beginning or a backquote, which runs a command, has no meaning.
 inline std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -31,7 +31,7 @@ inline std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-/// Throws : kreisel::ComputationFailed where there is none on the PATH
+/// Throws : kreisel::ComputationFailed if gnuplot is not on the PATH
 void require_installed();
 
 /// Makes the folder of --plot.
@@ -39,14 +39,14 @@ void require_installed();
 /// Throws : kreisel::InvalidInput; and as require_installed()
 void open_folder(const std::filesystem::path& folder);
 
-/// Draws one picture by a script that sets a terminal and no output. gnuplot is given no name of a
-/// file: it writes to a pipe, and what comes out of it is put in its place whole.
+/// Draws one picture by a script that sets a terminal and no output. gnuplot gets no file name: it
+/// writes to a pipe, and its complete output becomes the file.
 ///
-/// Throws : kreisel::ComputationFailed where gnuplot does not run to its end, where the disk does not
-///          take the picture, and after a signal
+/// Throws : kreisel::ComputationFailed if gnuplot fails, if the picture cannot be written, and
+///          after a signal
 void draw_picture(const std::filesystem::path& file, const std::string& script);
 
-/// The pictures `place`.svg and .png, 800 wide.
+/// Draws the pictures `place`.svg and .png, 800 wide.
 ///
 /// Throws : as draw_picture()
 void draw(const std::filesystem::path& place, std::size_t height, const std::string& script);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-/// Fowler, Noll and Vo's hash FNV-1a of 64 bits, of what is added piece by piece.
+/// The hash FNV-1a of Fowler, Noll and Vo, 64 bits, of texts and numbers added one by one.
 class Hash {
  public:
   Hash() = default;

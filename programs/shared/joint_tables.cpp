@@ -17,7 +17,7 @@ namespace joint_tables {
 
 namespace {
 
-/// The numbers of these quantities from a place of the state on, one after the other.
+/// The numbers of these quantities in the state from index `at` on, one after another.
 ordered_json listed(const std::vector<JointQuantity>& quantities, const Eigen::VectorXd& state,
                     int at, const SceneScale& scale) {
   ordered_json list = ordered_json::array();

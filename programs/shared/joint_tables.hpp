@@ -9,12 +9,12 @@
 #include <dynamics/file/scale.hpp>
 #include <motor/motor.hpp>
 
-/// Joints and what they carry, for people and for machines. A scale hides what is rounding.
+/// Tables of joints, their motion and their loads, as text and as JSON. A scale hides rounding.
 namespace joint_tables {
 
 [[nodiscard]] nlohmann::ordered_json json(const Eigen::Vector3d& v);
 
-/// What JSON has no number for is null.
+/// A number; null if JSON has none for it.
 [[nodiscard]] nlohmann::ordered_json json(double x);
 
 [[nodiscard]] nlohmann::ordered_json json(const kreisel::Motor<>& force,
@@ -29,7 +29,7 @@ namespace joint_tables {
 /// A number, or a list of them in brackets, with 15 digits.
 [[nodiscard]] std::string text(const nlohmann::ordered_json& numbers);
 
-/// Of objects of numbers, lists or objects of those, by body.
+/// Prints a table of objects by body. Their values are numbers, lists or objects of those.
 void print(const char* title, const nlohmann::ordered_json& table);
 
 }  // namespace joint_tables

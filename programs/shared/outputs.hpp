@@ -12,11 +12,11 @@
 /// Files that a program writes.
 namespace outputs {
 
-/// Throws : kreisel::InvalidInput if the file that `option` names is one of those that are read
+/// Throws : kreisel::InvalidInput if the output file is one of the input files
 inline void refuse_input(const char* option, const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& input : inputs) {
-    std::error_code error;  // not the same, where one of them does not exist
+    std::error_code error;  // files that do not exist are not the same
     if (std::filesystem::is_regular_file(output, error) &&
         std::filesystem::equivalent(output, input, error)) {
       throw kreisel::InvalidInput(std::string(option) + " " + output.string() + ": is the input " +
@@ -26,8 +26,7 @@ inline void refuse_input(const char* option, const std::filesystem::path& output
   }
 }
 
-/// Sends what follows on standard output to standard error, where a table called "-" has standard
-/// output for itself.
+/// Redirects standard output to standard error if a table called "-" needs standard output alone.
 inline void leave_standard_output_to(const std::filesystem::path& table) {
   if (table != "-") return;
   std::fflush(stdout);

@@ -8,7 +8,7 @@
 #include <string>
 #include <unistd.h>
 
-/// A line on the terminal, from the half second on; silent in a pipe.
+/// A progress line on the terminal, after half a second; silent in a pipe.
 class Progress {
   using Clock = std::chrono::steady_clock;
 
@@ -20,7 +20,7 @@ class Progress {
     if (drawn_) fmt::print(stderr, "\r\033[K");
   }
 
-  /// How much of all is done, in [0, 1], and in words.
+  /// Reports the share that is done, in [0, 1], and words for it.
   template <class Words>
   void report(double share, const Words& words) {
     if (!shown_) return;

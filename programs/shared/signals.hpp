@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <thread>
 
-/// SIGINT and SIGTERM, which end a program early with what has been computed so far.
+/// SIGINT and SIGTERM end a program early, with the results so far.
 namespace signals {
 
 namespace internal {
@@ -26,7 +26,7 @@ inline std::stop_source& source() {
 
 }  // namespace internal
 
-/// Has SIGINT and SIGTERM noted instead of ending the program. A wait of the calling thread in the
+/// Records SIGINT and SIGTERM instead of ending the program. A wait of the calling thread in the
 /// kernel then ends with EINTR.
 inline void watch() {
   ::sem_init(&internal::arrived, 0, 0);
@@ -36,11 +36,11 @@ inline void watch() {
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
-/// The signal that came last; 0 if none did.
+/// The last signal; 0 if there was none.
 [[nodiscard]] inline int caught() { return internal::caught; }
 
-/// A token that SIGINT and SIGTERM ask to stop. The first call starts the thread that does so; it takes
-/// no signals itself.
+/// A token whose stop SIGINT and SIGTERM request. The first call starts a thread for that, which
+/// itself blocks all signals.
 [[nodiscard]] inline std::stop_token token() {
   [[maybe_unused]] static const bool started = [] {
     sigset_t all;
