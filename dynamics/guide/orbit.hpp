@@ -28,11 +28,11 @@ struct OrbitElements {
   S perigee = S(0);                           ///< argument, from the node
   S anomaly = S(0);                           ///< TRUE anomaly at t = 0, from the perigee
   S parameter = S(3986004418LL) * S(100000);  ///< mu; the default is the earth's, as is `radius`
-  S j2 = S(0);  ///< 0: node and perigee rest; the earth's is 1.08262982131e-3
+  S j2 = S(0);  ///< 0: node and perigee are fixed; the earth's is 1.08262982131e-3
   S radius = S(6378137);
 };
 
-/// Refuses elements that are no ellipse.
+/// Refuses elements that do not describe an ellipse.
 ///
 /// Throws : InvalidInput, naming element, value and range
 template <class S>
@@ -65,7 +65,7 @@ void check(const OrbitElements<S>& orbit) {
 
 namespace detail {
 
-/// The number in a dual number or at the beginning of a series.
+/// The value of a dual number, or the first coefficient of a series.
 template <class N>
 [[nodiscard]] auto leading(const N& x) {
   if constexpr (std::is_same_v<N, PowerSeries>) {
@@ -89,8 +89,8 @@ template <class R>
   return sum;
 }
 
-/// The eccentric anomaly of a mean anomaly M from 0 to pi. On the convex side Newton's method falls
-/// to the root step by step, until rounding ends that.
+/// The eccentric anomaly of a mean anomaly M from 0 to pi. On the convex side Newton's method
+/// decreases monotonically to the root, until rounding stops it.
 template <class R>
 [[nodiscard]] R eccentric_anomaly_of_half(const R& M, const R& e) {
   using std::acos;
@@ -111,10 +111,10 @@ template <class R>
 
 /// Solves Kepler's equation  E - e sin E = M.
 ///
-/// In other numbers than plain ones the derivatives are those of the implicit function: Newton's steps
-/// in these numbers double their order.
+/// For dual numbers and series the derivatives are those of the implicit function: each Newton step
+/// in these numbers doubles the correct order.
 ///
-/// Error  : <= 4u of E, where M is exact                     (tests/dynamics/guide/orbit.cpp)
+/// Error  : <= 4u of E, if M is exact                        (tests/dynamics/guide/orbit.cpp)
 template <class N>
 [[nodiscard]] N eccentric_anomaly(const N& M, const N& e) {
   using std::acos;
@@ -142,8 +142,8 @@ template <class N>
 
 }  // namespace detail
 
-/// Where a body on an orbit is and how the orbit's axes turn, at one time: x outwards along the
-/// radius, z along the orbit's normal, y completes.
+/// A point of an orbit and the rotation of the orbit's axes at one time. The axis x is the outward
+/// radius, z the orbit's normal, y completes them.
 ///
 /// Frame  : all vectors on the orbit's axes
 template <class N>
@@ -152,8 +152,8 @@ struct OrbitPoint {
   N radius, radius_rate, radius_acceleration;
   Vector3<N> u, du;  ///< angular velocity of the axes, and its rate
   Vector3<N> pole;
-  /// The inertial acceleration of the point less that of Kepler's motion, -mu/r^2 x: what the
-  /// precession of the orbit adds. 0 without J2.
+  /// The contribution of the orbit's precession to the inertial acceleration of the point, in
+  /// addition to the Kepler acceleration -mu/r^2 x. 0 without J2.
   Vector3<N> precession;
 };
 
@@ -161,13 +161,14 @@ struct OrbitPoint {
 ///
 ///   r = a (1 - e cos E),   E - e sin E = M,   M = M(0) + n t,   n^2 a^3 = mu
 ///
-/// With J2 node and perigee turn by their mean rates; the mean anomaly keeps the rate n:
+/// With J2 node and perigee precess at their mean rates; the mean anomaly keeps the rate n:
 ///
 ///   node' = -(3/2) n J2 (R/p)^2 cos i,   perigee' = (3/4) n J2 (R/p)^2 (5 cos^2 i - 1),
 ///   p = a (1 - e^2)
 ///
-/// Source : D. A. Vallado, Fundamentals of Astrodynamics and Applications, 9.6 (rates), 2.2 (Kepler)
-/// Error  : <= 8u of r and v, and what a last digit of n t makes of them
+/// Source : D. A. Vallado, Fundamentals of Astrodynamics and Applications, 9.6 (rates), 2.2
+///          (Kepler)
+/// Error  : <= 8u of r and v, plus the effect of the rounding of n t
 ///                                                           (tests/dynamics/guide/orbit.cpp)
 /// Throws : InvalidInput as check() does
 template <class S = double>
@@ -263,7 +264,7 @@ class Orbit {
     const Vector3<N> z(zero, zero, N(1));
     const Vector3<N> w = N(node_rate_) * point.pole + N(perigee_rate_) * z;
     point.u += w;
-    // The pole rests, and seen from the axes it turns by -along about z.
+    // The pole is fixed: relative to the axes it rotates at -along about z.
     point.du += N(node_rate_) * along * Vector3<N>(c * si, -s * si, zero);
     const Vector3<N> r(point.radius, zero, zero);
     const Vector3<N> v(point.radius_rate, point.radius * f_rate, zero);
@@ -280,19 +281,19 @@ class Orbit {
 
 namespace detail {
 
-/// Whether numbers N are asked for beside S: dual ones and series.
+/// True if N is another number type than S: dual numbers and series.
 template <class N, class S>
 inline constexpr bool is_other_number =
     !std::is_convertible_v<N, S> && std::is_constructible_v<N, S>;
 
 }  // namespace detail
 
-/// The frame that goes along an orbit: x outwards along the radius, z along the orbit's normal, y
-/// completes (on a circle it lies along the velocity). I has the planet's centre as origin, z to the
-/// pole.
+/// The frame that moves along an orbit: x outwards along the radius, z along the orbit's normal, y
+/// completes them (on a circle it is along the velocity). I has the planet's centre as origin, z to
+/// the pole.
 ///
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2, second
-/// Error  : that of Orbit; its series summed up <= 40u of the acceleration
+/// Error  : that of Orbit; the sum of its series <= 40u of the acceleration
 ///                                                           (tests/dynamics/guide/orbit.cpp)
 template <class G = Guide, class I = Inertial, class S = double>
 class OrbitFrame {
@@ -313,7 +314,7 @@ class OrbitFrame {
     return {point.u, point.du};
   }
 
-  /// As AnalyticGuide asks for.
+  /// The series of u and g', as AnalyticGuide requires.
   [[nodiscard]] GuideSeries series(
       double t, double h, int order,
       const detail::Components<double>& g) const requires std::is_same_v<S, double> {
@@ -354,11 +355,11 @@ class OrbitFrame {
   Orbit<S> orbit_;
 };
 
-/// The axes of an orbit as the frame sees them that goes along with the orbit's origin and does not
-/// turn: attitude and angular velocity are those of OrbitFrame, the origin rests.
+/// The axes of an orbit relative to the frame that moves with the orbit's origin without rotation.
+/// Attitude and angular velocity are those of OrbitFrame; the origin is at rest.
 ///
-/// In this frame motions near the origin keep their digits, for nothing as large as gravity acts
-/// there. OrbitGravitation is the gravitation that goes with it.
+/// Motions near the origin keep their digits, because no forces as large as gravity act there. The
+/// gravitation for this guide is OrbitGravitation.
 ///
 /// Units  : rad/s, rad/s^2, second
 template <class G = Guide, class I = Inertial, class S = double>

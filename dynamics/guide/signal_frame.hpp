@@ -14,10 +14,10 @@
 
 namespace kreisel {
 
-/// Place and attitude as signals: a turn about z by the yaw, about the new y by the pitch, about the
-/// new x by the roll.
+/// Position and attitude as signals: a rotation about z by the yaw, about the new y by the pitch,
+/// about the new x by the roll.
 ///
-/// Frame  : position of the origin on the axes of the frame before
+/// Frame  : position of the origin on the axes of the parent frame
 /// Units  : metre, radian
 struct PoseSignals {
   Signal<Vector3<double>> position = {};
@@ -29,7 +29,7 @@ struct PoseSignals {
     return position.is_constant() && yaw.is_constant() && pitch.is_constant() && roll.is_constant();
   }
 
-  /// Whether no value and no rate jumps.
+  /// True if no value and no rate jumps.
   [[nodiscard]] bool is_smooth() const {
     return position.is_smooth() && yaw.is_smooth() && pitch.is_smooth() && roll.is_smooth();
   }
@@ -62,16 +62,16 @@ struct PoseSignals {
   }
 };
 
-/// A frame whose pose is a function of time. Velocity and acceleration are exact derivatives, and its
-/// Taylor series is known.
+/// A frame whose pose is a function of time. Velocity and acceleration are exact derivatives, and
+/// the Taylor series is available.
 ///
-/// No rate of a signal may jump: that would take an infinite force, and what the frame carries would
-/// get an impulse.
+/// No rate of a signal may jump: a jump needs an infinite force, and bodies on the frame would get
+/// an impulse.
 ///
 /// Source : R^t R' = skew(u), as AnalyticFrame
 /// Units  : metre, rad/s, m/s^2, second
 /// Error  : as PosedFrame and Signal
-/// Throws : InvalidInput where a signal, or its rate, jumps
+/// Throws : InvalidInput if a signal or its rate jumps
 template <class G = Guide, class I = Inertial>
 class SignalFrame {
  public:
@@ -81,13 +81,13 @@ class SignalFrame {
         "signal frame: the velocity of position or angles jumps, which takes an infinite force");
   }
 
-  /// In double, or in dual numbers.
+  /// The motion in double, or in dual numbers.
   template <class S>
   [[nodiscard]] FrameMotion<G, I, S> operator()(const S& t) const {
     return PosedFrame<Pointed, G, I, S>(std::cref(pose_))(t);
   }
 
-  /// As AnalyticGuide asks for.
+  /// The series of u and g', as AnalyticGuide requires.
   [[nodiscard]] GuideSeries series(double t, double h, int order,
                                    const detail::Components<double>& g) const {
     return AnalyticFrame<Pointed, G, I>(std::cref(pose_)).series(t, h, order, g);

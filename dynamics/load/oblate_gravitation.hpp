@@ -13,14 +13,14 @@ namespace kreisel {
 ///
 ///   g = -(GM / r^2) [ (1 + k (1 - 5 s^2)) e_r + 2 k s e_z ],   k = (3/2) J2 (R / r)^2,  s = z / r
 ///
-/// The force is m g at the body's centre of mass. With `gradient` the terms of second order in the
-/// body's size are added, force and torque, with the bound of what is neglected: see
-/// PlanetField::size_terms.
+/// The force is m g at the body's centre of mass. With `gradient` the force and torque of second
+/// order in the body's size are added. PlanetField::size_terms has the bound of the neglected
+/// terms.
 ///
 /// Frame  : centre and pole on the axes of Inertial
 /// Units  : m^3/s^2, metre; the defaults are WGS84's
 /// Source : the potential GM/r [1 - J2 (R/r)^2 P2(s)], differentiated
-/// Throws : ComputationFailed where the centre of mass is at the field's centre
+/// Throws : ComputationFailed if the centre of mass is at the field's centre
 template <class S = double>
 struct OblateGravitation {
   static constexpr const char* kind = "gravitation of a planet";
@@ -63,7 +63,7 @@ struct OblateGravitation {
     return {N(parameter), N(S(1.5) * parameter * j2 * radius * radius), k, j2 != S(0)};
   }
 
-  /// The centre of mass from the field's centre, on body axes.
+  /// The position of the centre of mass from the field's centre, on body axes.
   template <class N>
   [[nodiscard]] Vector3<N> position(const LoadContext<N>& s) const {
     const Vector3<N> p = s.template position<Inertial>(s.centre()) - centre.template cast<N>();

@@ -7,20 +7,20 @@
 
 namespace kreisel {
 
-/// The gravitation of a planet on bodies near a point that goes along an orbit, less the acceleration
-/// of that point: the load for guides of OrbitAxes, whose origin does not accelerate.
+/// The gravitation of a planet on bodies near an orbiting point, less the acceleration of this
+/// point. It is the load for guides of type OrbitAxes, whose origin does not accelerate.
 ///
 ///   force = m [g(r + d) - g(r) + (g(r) - a)],   d from the orbit's origin to the centre of mass
 ///
-/// g(r + d) - g(r) is computed in d, not as a difference (PlanetField::tide). g(r) - a is 0 on a Kepler
-/// orbit. With j2 the orbit has the mean rates of node and perigee alone, so its origin does not fall
-/// freely: g(r) - a is then the field of J2 at r less OrbitPoint::precession, about 1e-3 of g, and
-/// bodies move as the full field of J2 moves them. With `gradient` the terms of second order in the
-/// body's size are added, force and torque: see PlanetField::size_terms.
+/// g(r + d) - g(r) is computed from d, not as a difference (PlanetField::tide). g(r) - a is 0 on a
+/// Kepler orbit. With j2 only the mean rates of node and perigee are modelled, so the orbit's
+/// origin is not in free fall. Then g(r) - a is the field of J2 at r less OrbitPoint::precession,
+/// about 1e-3 of g, and bodies move in the full field of J2. With `gradient` the force and torque
+/// of second order in the body's size are added: see PlanetField::size_terms.
 ///
-/// Frame  : Inertial of the situation has the orbit's origin as its origin, as OrbitAxes has it
+/// Frame  : Inertial of the situation has the orbit's origin as its origin, as in OrbitAxes
 /// Units  : SI
-/// Error  : of the force of a mass at 1 mm to 1e6 m from the origin <= 16u of it
+/// Error  : force on a mass at 1 mm to 1e6 m from the origin <= 16u of it
 ///                                              (tests/dynamics/load/orbit_gravitation.cpp)
 template <class S = double>
 class OrbitGravitation {
@@ -40,8 +40,8 @@ class OrbitGravitation {
                                   at.on_body(at.r + at.d));
   }
 
-  /// Without the constant of the orbit's origin; it depends on the time where the orbit is no circle
-  /// or precesses.
+  /// The potential energy relative to the orbit's origin. It depends on time if the orbit is not a
+  /// circle or precesses.
   [[nodiscard]] S potential(const LoadContext<S>& s) const {
     const Near<S> at(*this, s);
     const Inertia<S>& T = s.inertia.value;

@@ -9,7 +9,7 @@
 
 namespace kreisel {
 
-/// The terms that a body's size adds to the gravitation at its centre of mass.
+/// The terms of a body's size, to be added to the gravitation at its centre of mass.
 ///
 /// Units  : N, N m (about the centre of mass), J
 template <class N>
@@ -19,13 +19,13 @@ struct SizeTerms {
   N energy;  ///< to be subtracted from the potential energy
 };
 
-/// The gravitation of a planet, with the first term of its flattening.
+/// The gravitation of a planet with the first term of its flattening, J2.
 ///
 ///   U(p) = mu/r [1 - J2 (R/r)^2 (3 z^2/r^2 - 1)/2],   z = p.k,   g = grad U
 ///
 /// N may be double, a dual number or a PowerSeries.
 ///
-/// Frame  : any axes with the planet's centre as origin; all arguments and results on the same ones
+/// Frame  : any axes with the planet's centre as origin, the same for all arguments and results
 /// Units  : m^3/s^2, m^5/s^2
 template <class N = double>
 struct PlanetField {
@@ -55,7 +55,7 @@ struct PlanetField {
     return sphere + oblateness * (i.r3 / N(3) - z * z * i.r5);
   }
 
-  /// g(p + d) - g(p), in the small quantity d and not as a difference of two accelerations.
+  /// g(p + d) - g(p), computed from the small d and not as a difference of two accelerations.
   ///
   /// With q = d.(d + 2p)/p^2 and m = sqrt(1 + q) = |p + d|/|p| the powers differ by
   /// m^n - 1 = (m - 1)(1 + m + .. + m^(n-1)),  m - 1 = q/(1 + m).
@@ -78,7 +78,7 @@ struct PlanetField {
     return sphere + oblateness * (of_place * d + of_place_change * p + of_pole_change * pole);
   }
 
-  /// U(p + d) - U(p) - g(p).d; that of the sphere in the small quantity, that of J2 as a difference.
+  /// U(p + d) - U(p) - g(p).d; the sphere's part from the small d, the part of J2 as a difference.
   [[nodiscard]] N tidal_potential(const Vector3<N>& p, const Vector3<N>& d) const {
     const Powers i(p);
     const Ratio m(p, d);
@@ -96,14 +96,14 @@ struct PlanetField {
   }
 
   /// The terms of second order in the size of a body with the tensor of inertia Theta about its
-  /// centre of mass. Both come from one potential,  W = -(1/2) G : Theta,  G = grad grad U, so that
-  /// energy and angular momentum are kept:
+  /// centre of mass. Force and torque come from one potential,  W = -(1/2) G : Theta,  G = grad
+  /// grad U, so energy and angular momentum are conserved:
   ///
-  ///   force = grad W,   torque_i = e_ikj (G Theta)_kj;   of a sphere  3 mu/r^5 p x (Theta p)
+  ///   force = grad W,   torque_i = e_ikj (G Theta)_kj;   without J2  3 mu/r^5 p x (Theta p)
   ///
-  /// The first neglected torque and force are at most 2.07 mu M3/r^4 and 4 mu M3/r^5, where M3 is the
-  /// integral of |x|^3 dm over the body; they vanish for bodies that are symmetric about their centre
-  /// of mass, whose next ones are below 3.2 mu M4/r^5 and 5 mu M4/r^6.
+  /// The first neglected torque and force are at most 2.07 mu M3/r^4 and 4 mu M3/r^5, where M3 is
+  /// the integral of |x|^3 dm over the body. They vanish for bodies that are symmetric about their
+  /// centre of mass. For these the next terms are below 3.2 mu M4/r^5 and 5 mu M4/r^6.
   ///
   /// Source : MacCullagh's potential, differentiated; bounds from the Legendre polynomials P3, P4
   [[nodiscard]] SizeTerms<N> size_terms(const Vector3<N>& p, const Symmetric3<N>& Theta) const {
@@ -184,9 +184,9 @@ template <class N>
   return T.tensor - offset_product(half, T.first_moment);
 }
 
-/// Force and torque about O' of a gravitation g at the centre of mass, on body axes. With `sized` the
-/// terms of the body's size are added; `planet` and the place p of the centre of mass are then on body
-/// axes too.
+/// Force and torque about O' of the gravitation g at the centre of mass, on body axes. With `sized`
+/// the terms of the body's size are added. `planet` and the centre of mass p are then also on body
+/// axes.
 template <class N>
 [[nodiscard]] Force<Body, N> gravitation_on(const LoadContext<N>& s, const Vector3<N>& g,
                                             bool sized, const PlanetField<N>& planet,

@@ -7,7 +7,8 @@
 
 namespace kreisel {
 
-/// A ConstantLoad whose force and torque change with time. Who solves announces their jumps.
+/// A ConstantLoad whose force and torque change with time. The user announces their jumps to the
+/// solver.
 ///
 /// Units  : N, N m, metre (point: body axes)
 template <class A>

@@ -10,7 +10,7 @@ namespace kreisel {
 
 namespace {
 
-/// Fowler, Noll and Vo's hash of a name, FNV-1a with 64 bits.
+/// The FNV-1a hash (Fowler, Noll and Vo) of a name, 64 bits.
 std::uint64_t hash(std::string_view name) {
   std::uint64_t result = 0xCBF29CE484222325;
   for (const char c : name) result = (result ^ static_cast<unsigned char>(c)) * 0x100000001B3;

@@ -13,9 +13,9 @@ namespace kreisel {
 template <class M>
 class BodySystem;
 
-/// How a body moves against the guide at one moment.
+/// The motion of a body relative to the guide at one moment.
 ///
-/// Frame  : seen from the guide, on the GUIDE's axes; x, v and a are those of the body's origin
+/// Frame  : relative to the guide, on the GUIDE's axes; x, v and a are those of the body's origin
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2
 struct BodyKinematics {
   Matrix3<double> R = Matrix3<double>::Identity();  ///< body to guide axes
@@ -26,17 +26,19 @@ struct BodyKinematics {
   Vector3<double> a = Vector3<double>::Zero();
 };
 
-/// Gravitation at the points of a system: its uniform field, and one that differs from place to
-/// place, which is a load on its bodies.
+/// The gravitation on a system: a uniform field, and a field that depends on the position, which is
+/// a load on the bodies.
 struct GravityField {
   Vector3<double> uniform = Vector3<double>::Zero();  ///< m/s^2, guide axes
-  const BodyLoad* load = nullptr;                     ///< per kg, of a point mass; null: none
+  const BodyLoad* load = nullptr;                     ///< per kg, for a point mass; null: none
 };
 
-/// Motion of all bodies of a system and reactions of its joints at one moment: the input of sensors.
+/// The motion of all bodies of a system and the reactions of its joints at one moment: the input of
+/// sensors.
 ///
-/// `guide` and `gravity` belong together: the guide may be seen from a frame in free fall, and gravity
-/// is then what differs from that fall. `inertial_guide` is the same guide seen from the inertial frame.
+/// `guide` and `gravity` belong together: the guide's motion may be relative to a frame in free
+/// fall, and gravity is then the difference from that fall. `inertial_guide` is the motion of the
+/// same guide relative to the inertial frame.
 struct SystemKinematics {
   double t = 0;
   FrameMotion<Guide, Inertial> guide = {};
@@ -59,18 +61,18 @@ KREISEL_API [[nodiscard]] SystemKinematics kinematics(const BodyTree& tree, cons
 
 }  // namespace detail
 
-/// Poses, velocities and accelerations of all bodies of a system in the state y, and its reactions.
+/// Poses, velocities and accelerations of all bodies of a system in the state y, and the reactions.
 ///
-/// Accelerations are those of the forward dynamics, carried outwards from body to body as if the
-/// guide rested:  a = a_P + dw_P x r + w_P x (w_P x r) + ..., w = w_P + S v. The guide's own speed
-/// does not enter them.
+/// The accelerations come from the forward dynamics. They are relative to the guide, summed
+/// outwards from body to body:  a = a_P + dw_P x r + w_P x (w_P x r) + ..., w = w_P + S v.  The
+/// guide's own speed does not enter.
 ///
-/// gravitation : the load that stands for a gravity that is not uniform (EarthGravitation,
-///               OblateGravitation); null where the system has none. It has to outlive the result
+/// gravitation : the load of a gravity that is not uniform (EarthGravitation, OblateGravitation);
+///               null if there is none. It must outlive the result
 /// Source : paper 002 (18), (19) from link to link
 /// Error  : that of the system's accelerations
 /// Cost   : one evaluation of the reactions and one pass outwards, however many sensors read it
-/// Throws : InvalidInput where y or w are not of this system
+/// Throws : InvalidInput if y or w does not belong to this system
 template <class M>
 [[nodiscard]] SystemKinematics kinematics(const BodySystem<M>& system, double t,
                                           const Eigen::VectorXd& y, BodyWorkspace& w,

@@ -6,14 +6,14 @@ namespace {
 
 using Vector = Vector3<double>;
 
-/// The point of a body as the guide sees it, on guide axes.
+/// The motion of a body's point relative to the guide, on guide axes.
 PointReading seen_from_guide(const BodyKinematics& body, const Vector& at) {
   const Vector r = body.R * at;
   const Vector turn = body.w.cross(r);
   return {body.x + r, body.v + turn, body.a + body.dw.cross(r) + body.w.cross(turn)};
 }
 
-/// The same as the inertial frame sees it, on guide axes still.
+/// The motion of the point relative to the inertial frame, on guide axes.
 PointReading seen_from_inertial(const PointReading& p, const FrameMotion<Guide, Inertial>& guide) {
   const auto& [u, v_origin] = guide.V.value;
   const Vector& du = guide.dV.value.resultant;
@@ -24,7 +24,7 @@ PointReading seen_from_inertial(const PointReading& p, const FrameMotion<Guide, 
               2 * u.cross(p.velocity)};
 }
 
-/// The same as a body sees it, on guide axes still.
+/// The motion of the point relative to a body, on guide axes.
 PointReading seen_from_body(const PointReading& p, const BodyKinematics& body) {
   const Vector r = p.position - body.x;
   const Vector turn = body.w.cross(r);
@@ -33,7 +33,7 @@ PointReading seen_from_body(const PointReading& p, const BodyKinematics& body) {
           p.acceleration - body.a - body.dw.cross(r) - body.w.cross(turn) - 2 * body.w.cross(v)};
 }
 
-/// Takes components on guide axes to those of the frame.
+/// The rotation from guide axes to the axes of the frame.
 Matrix3<double> from_guide(const SensorFrame& frame, const SystemKinematics& system) {
   switch (frame.kind) {
     case SensorFrame::Kind::guide: break;
@@ -43,7 +43,7 @@ Matrix3<double> from_guide(const SensorFrame& frame, const SystemKinematics& sys
   return Matrix3<double>::Identity();
 }
 
-/// Gravitation at a point of a body on guide axes: what the load is on a mass of 1 kg there.
+/// Gravitation at a point of a body, on guide axes: the load on a mass of 1 kg at the point.
 Vector gravitation(const SystemKinematics& system, int body, const Vector& at) {
   if (system.gravity.load == nullptr) return system.gravity.uniform;
   const BodyKinematics& b = system.body(body);

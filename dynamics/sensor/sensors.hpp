@@ -7,28 +7,28 @@
 #include <dynamics/sensor/kinematics.hpp>
 #include <motor/api.hpp>
 
-/// Readings of instruments on the bodies of a system. Each sensor is a value that is called with the
-/// kinematics of its system: kinematics() is computed once and read by all.
+/// Instruments on the bodies of a system. A sensor is a function of its system's kinematics, which
+/// kinematics() computes once for all sensors.
 ///
-/// `axes` of a sensor turns its own axes to the body's:  v_Body = axes v_sensor. `at` is a point on
-/// the body's axes, from the body's origin.
+/// `axes` of a sensor is the rotation from its own axes to the body's:  v_Body = axes v_sensor.
+/// `at` is a point given on the body's axes, from the body's origin.
 
 namespace kreisel {
 
-/// A frame that a reading is seen from, or on whose axes it is written: the guide, the inertial
-/// frame or a body's.
+/// The frame to which a reading is relative, or on whose axes it is given: the guide, the inertial
+/// frame or a body.
 struct SensorFrame {
   enum class Kind { guide, inertial, body };
 
   Kind kind = Kind::guide;
-  int body = 0;  ///< of kind body: which
+  int body = 0;  ///< index, for kind body
 
   [[nodiscard]] static SensorFrame guide() { return {Kind::guide}; }
   [[nodiscard]] static SensorFrame inertial() { return {Kind::inertial}; }
   [[nodiscard]] static SensorFrame of_body(int body) { return {Kind::body, body}; }
 };
 
-/// The angular velocity against the inertial frame:  u' + u.
+/// A gyro: the angular velocity relative to the inertial frame,  u' + u.
 ///
 /// Frame  : the sensor's axes
 /// Units  : rad/s
@@ -40,14 +40,14 @@ struct KREISEL_API Gyro {
   [[nodiscard]] Vector3<double> operator()(const SystemKinematics& system) const;
 };
 
-/// The specific force at a point: its acceleration against the inertial frame less gravitation
-/// there.
+/// An accelerometer: the specific force at a point, which is its acceleration relative to the
+/// inertial frame less gravitation.
 ///
-///   f = a' + a_O + ou x p + u x (u x p) + 2 u x v' - g(p),  p the point's place in the guide
+///   f = a' + a_O + ou x p + u x (u x p) + 2 u x v' - g(p),  p the point's position in the guide
 ///
-/// At rest on the turning earth it reads the gravity of the place, centrifugal part included,
-/// upwards. Where the effective gravity is given as a number, the guide's origin has no acceleration,
-/// and the centrifugal part is that of the distance from there.
+/// At rest on the rotating earth it reads the local gravity, centrifugal part included, upwards. If
+/// the effective gravity is given as a number, the guide's origin has no acceleration. The
+/// centrifugal part is then that of the distance from the origin.
 ///
 /// Frame  : the sensor's axes
 /// Units  : metre (at), m/s^2
@@ -60,7 +60,7 @@ struct KREISEL_API Accelerometer {
   [[nodiscard]] Vector3<double> operator()(const SystemKinematics& system) const;
 };
 
-/// Place, velocity and acceleration of a point.
+/// Position, velocity and acceleration of a point.
 ///
 /// Units  : metre, m/s, m/s^2
 struct PointReading {
@@ -69,8 +69,8 @@ struct PointReading {
   Vector3<double> acceleration;
 };
 
-/// A point of a body as an observer in the frame `against` sees it: its place from that frame's
-/// origin, and the first two derivatives for one who turns along with it.
+/// The motion of a body's point relative to the frame `against`: its position from the frame's
+/// origin, and the first two derivatives in the rotating frame.
 ///
 ///   r = x - x_A,  v_A = v - v(A) - w_A x r,
 ///   a_A = a - a(A) - dw_A x r - w_A x (w_A x r) - 2 w_A x v_A
@@ -86,7 +86,7 @@ struct KREISEL_API PointSensor {
   [[nodiscard]] PointReading operator()(const SystemKinematics& system) const;
 };
 
-/// How a body is turned against a frame: the matrix takes components on the body's axes to that
+/// The attitude of a body relative to a frame: the rotation matrix from the body's axes to the
 /// frame's.
 ///
 /// Error  : <= 8u in each entry
@@ -97,11 +97,11 @@ struct KREISEL_API AttitudeSensor {
   [[nodiscard]] Matrix3<double> operator()(const SystemKinematics& system) const;
 };
 
-/// Force and torque about a point of the body that its parent exerts on it through the joint.
+/// The force and torque of a body's joint on the body, about a point of the body.
 ///
 ///   (R; M_O - p x R),  p = at
 ///
-/// Frame  : the axes of `frame`, turned by `axes`; about the point `at` of the body
+/// Frame  : the axes of `frame`, rotated by `axes`; about the point `at` of the body
 /// Units  : N, N m
 /// Error  : that of JointReactions
 struct KREISEL_API ReactionSensor {

@@ -24,17 +24,17 @@ using SignalValue = std::conditional_t<std::is_same_v<Value, double>, S, Vector3
 
 }  // namespace detail
 
-/// A function of time: straight lines from time to time, and oscillations.
+/// A function of time: a piecewise linear part plus oscillations.
 ///
 ///   f(t) = value + rate (t - begin) + sum amplitude sin(frequency t + phase)
 ///
-/// The line is the last one that has begun; before all others there is a first one. At the time of a
-/// jump the signal has the value that it jumps to.
+/// Each line is valid from its begin to the next one's; the first is also valid before its begin.
+/// At a jump the signal has the value after the jump.
 ///
 /// Value  : double, or Vector3<double>
 /// Units  : second, rad/s, radian
-/// Error  : of each oscillation <= 3u of its amplitude at any time, for frequency and phase as they
-///          are in double                                    (tests/dynamics/signal/signal.cpp)
+/// Error  : each oscillation <= 3u of its amplitude at any time, for frequency and phase taken as
+///          exact                                            (tests/dynamics/signal/signal.cpp)
 template <class Value = double>
 class Signal {
  public:
@@ -44,13 +44,13 @@ class Signal {
     double phase = 0;
   };
 
-  /// Times, in order, and what the signal is there.
+  /// Times, in order, with the signal's values.
   using Points = std::vector<std::pair<double, Value>>;
 
   Signal() : Signal(zero()) {}
   Signal(const Value& constant)  // NOLINT: a constant is a signal
       : Signal(constant, zero(), {}) {}
-  /// constant + rate t + sum amplitude sin(frequency t + phase)
+  /// The signal  constant + rate t + sum amplitude sin(frequency t + phase).
   ///
   /// Throws : InvalidInput for a number that is not finite
   Signal(const Value& constant, const Value& rate, std::vector<Term> terms)
@@ -63,7 +63,7 @@ class Signal {
     if (!finite) throw InvalidInput("signal: a number is not finite");
   }
 
-  /// Piecewise constant: from each time on its value, before the first time 0.
+  /// A piecewise constant signal: each value holds from its time on; before the first time it is 0.
   ///
   /// Throws : InvalidInput: no points, times that do not increase, a number that is not finite
   [[nodiscard]] static Signal steps(const Points& points) {
@@ -76,7 +76,7 @@ class Signal {
     return result;
   }
 
-  /// A broken line through the points; outside of their times it stays as at the first and the last.
+  /// A broken line through the points; constant before the first and after the last one.
   ///
   /// Throws : as steps()
   [[nodiscard]] static Signal broken_line(const Points& points) {
@@ -93,13 +93,13 @@ class Signal {
     return result;
   }
 
-  /// In double, or in dual numbers of any depth; a pack's lanes share the time.
+  /// The value in double, or in dual numbers of any depth; a pack's lanes share the time.
   template <class S>
   [[nodiscard]] detail::SignalValue<Value, S> operator()(const S& t) const {
     return at(t, 0);
   }
 
-  /// The derivative of that order, on the right side of a jump.
+  /// The derivative of the given order, after a jump if t is one.
   [[nodiscard]] Value derivative(double t, int order) const {
     const Line& line = line_at(t);
     Value sum = zero();
@@ -112,7 +112,7 @@ class Signal {
     return sum;
   }
 
-  /// Fills `result` with the coefficients in powers of (time - t)/h, on the right side of a jump.
+  /// Fills `result` with the coefficients in powers of (time - t)/h, after a jump if t is one.
   void coefficients(double t, double h, std::span<Value> result) const {
     const Line& line = line_at(t);
     for (Value& coefficient : result) coefficient = zero();
@@ -128,20 +128,20 @@ class Signal {
     }
   }
 
-  /// The times at which value or rate jump, in order.
+  /// The times at which value or rate jumps, in order.
   [[nodiscard]] std::vector<double> discontinuities() const {
     std::vector<double> times;
     for (std::size_t i = 1; i < lines_.size(); ++i) times.push_back(lines_[i].begin);
     return times;
   }
 
-  /// Whether neither value nor rate jumps.
+  /// True if neither value nor rate jumps.
   [[nodiscard]] bool is_smooth() const { return lines_.size() == 1; }
 
-  /// Whether its value jumps, not its rate alone.
+  /// True if its value jumps, not only its rate.
   [[nodiscard]] bool jumps() const { return jumps_; }
 
-  /// Whether it never changes.
+  /// True if it is constant.
   [[nodiscard]] bool is_constant() const {
     return lines_.size() == 1 && lines_.front().rate == zero() && terms_.empty();
   }
@@ -164,7 +164,7 @@ class Signal {
     Value rate;
   };
 
-  /// sin(angle + n pi/2), for the angle as it is before it is rounded.
+  /// sin(angle + n pi/2), for the angle without rounding.
   class Cycle {
    public:
     Cycle(const Term& term, double t) {
@@ -245,7 +245,7 @@ class Signal {
     }
   }
 
-  std::vector<Line> lines_;  ///< the first is there before its time too
+  std::vector<Line> lines_;  ///< the first is also valid before its begin
   std::vector<Term> terms_;
   bool jumps_ = false;
 };

@@ -16,7 +16,7 @@ inline void clear_articulated(const BodyTree& tree, BodyWorkspace& w) {
   }
 }
 
-/// Eliminates all joints: what depends on the coordinates alone.
+/// Eliminates all joints. The result depends on the coordinates alone.
 inline void eliminate_all(const BodyTree& tree, BodyWorkspace& w) {
   clear_articulated(tree, w);
   for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
@@ -25,7 +25,7 @@ inline void eliminate_all(const BodyTree& tree, BodyWorkspace& w) {
   }
 }
 
-/// The joints' accelerations, once all are eliminated and all forces reduced.
+/// Sets the joints' accelerations. Needs all joints eliminated and all forces reduced.
 inline void accelerate_all(const BodyTree& tree, const double* joint_force, double* acceleration,
                            BodyWorkspace& w) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
@@ -34,7 +34,8 @@ inline void accelerate_all(const BodyTree& tree, const double* joint_force, doub
   accelerate_rotors(tree, joint_force, acceleration, w);
 }
 
-/// Solves for the joints' accelerations with the forces that stand in w.force at dv = 0.
+/// Solves for the joints' accelerations, with the forces at dv = 0 in w.force. Needs all joints
+/// eliminated.
 inline void solve(const BodyTree& tree, const double* joint_force, double* acceleration,
                   BodyWorkspace& w) {
   for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
@@ -43,7 +44,7 @@ inline void solve(const BodyTree& tree, const double* joint_force, double* accel
   accelerate_all(tree, joint_force, acceleration, w);
 }
 
-/// Eliminates and solves in one pass inwards and one outwards.
+/// Eliminates all joints and solves, in one inward and one outward pass.
 inline void eliminate_and_solve(const BodyTree& tree, const double* joint_force,
                                 double* acceleration, BodyWorkspace& w) {
   clear_articulated(tree, w);

@@ -4,8 +4,9 @@
 
 namespace kreisel::detail {
 
-/// A motor tensor that maps accelerations to forces and is symmetric as such: 21 numbers. What an
-/// inertia becomes when joints give way: no longer a rigid body's, its mass differs by direction.
+/// The articulated inertia of a link: a symmetric motor tensor of 21 numbers that maps
+/// accelerations to forces. Because of the free joints outward of the link, its mass depends on the
+/// direction.
 ///
 ///   (dw; a) -> {linear a + mixed^t dw;  mixed a + angular dw}
 struct ArticulatedInertia {
@@ -16,7 +17,7 @@ struct ArticulatedInertia {
 
 [[nodiscard]] inline double trace(const Symmetric3<>& m) { return m.xx + m.yy + m.zz; }
 
-/// Adds the ten numbers of a rigid body.
+/// Adds the inertia of a rigid body.
 inline void add(ArticulatedInertia& A, const Inertia<>& T) {
   const Vector3<double>& s = T.first_moment;
   A.linear.xx += T.mass;
@@ -31,7 +32,7 @@ inline void add(ArticulatedInertia& A, const Inertia<>& T) {
   A.angular = A.angular + T.tensor;
 }
 
-/// Adds B reduced at the origin of A, from which r leads to that of B:
+/// Adds B, reduced at the origin of A. The vector r leads from this origin to the origin of B:
 ///
 ///   linear B,  mixed' = mixed + [r linear],  angular + [r mixed'^t] + [r mixed^t]^t.
 inline void add_shifted(ArticulatedInertia& A, const Vector3<double>& r,
@@ -53,7 +54,7 @@ inline void add_shifted(ArticulatedInertia& A, const Vector3<double>& r,
   G(2, 2) = H(2, 2) + (x * L.yz - y * L.xz);
   A.linear = A.linear + L;
   for (int k = 0; k < 9; ++k) A.mixed(k) += G(k);
-  // Row i of [r G^t] is that of r x (rows of G).
+  // Row i of [r G^t] is row i of r x (rows of G).
   A.angular.xx += B.angular.xx + (y * G(0, 2) - z * G(0, 1)) + (y * H(0, 2) - z * H(0, 1));
   A.angular.yy += B.angular.yy + (z * G(1, 0) - x * G(1, 2)) + (z * H(1, 0) - x * H(1, 2));
   A.angular.zz += B.angular.zz + (x * G(2, 1) - y * G(2, 0)) + (x * H(2, 1) - y * H(2, 0));

@@ -18,22 +18,22 @@
 
 namespace kreisel {
 
-/// A tree of rigid bodies on a moving guide: any number of them, joined to the guide or to each
-/// other, with springs, dampers, drives, locks and loads.
+/// A tree of rigid bodies on a moving guide. Any number of bodies are joined to the guide or to
+/// each other, with springs, dampers, drives, locks and loads.
 ///
-/// The guide's motion enters by its velocity and acceleration motors where the tree begins, so it
-/// costs the same for one body and for a thousand, and a guide at rest costs nothing.
+/// The guide's motion enters once, by velocity and acceleration at the root of the tree. Its cost
+/// does not depend on the number of bodies; a guide at rest costs nothing.
 ///
-/// Everything is const and may be called from several threads, each with its own workspace(). No
-/// call that takes a workspace asks for memory, save for results that have not their size yet.
+/// All functions are const and may be called from several threads, each with its own workspace().
+/// Calls with a workspace allocate no memory, except to resize results.
 ///
 /// Source : paper 002 (26), (27): T_i V'*_i + [V'_i (T_i V'_i)] + ... = P_i + sum_j R_ij, with the
 ///          R_ij eliminated (dynamics/tree/elimination.hpp)
 /// Error  : accelerations and reactions <= 1e-11 relative, times the condition of the mass matrix
-///          where that is above 1e3, against another formulation (tests/dynamics/tree/body_system)
+///          if it is above 1e3, against another formulation (tests/dynamics/tree/body_system)
 /// Cost   : linear in the number of bodies; benchmarks/body_system.cpp
-/// Throws : InvalidInput as BodyTree does, or where a state has the wrong size; ComputationFailed
-///          where a motion of a joint meets no inertia, naming body and direction
+/// Throws : InvalidInput as BodyTree does, or if a state has the wrong size; ComputationFailed,
+///          naming body and direction, if a motion of a joint moves no inertia
 template <class M>
 class BodySystem {
   static_assert(detail::is_guide<M>, "the guide of a system must return a FrameMotion<Guide, Inertial>");
@@ -56,12 +56,12 @@ class BodySystem {
   [[nodiscard]] const M& guide() const { return guide_; }
   [[nodiscard]] const BodyTree& tree() const { return tree_; }
   [[nodiscard]] const Gravity& gravity() const { return gravity_; }
-  /// The field of gravity on guide axes.
+  /// The uniform gravity on guide axes.
   [[nodiscard]] Vector3<S> gravity_at(double t) const { return detail::field(gravity_, guide_(t)); }
   [[nodiscard]] BodyWorkspace workspace() const { return BodyWorkspace(tree_); }
   [[nodiscard]] int body_count() const { return static_cast<int>(tree_.bodies().size()); }
 
-  /// All coordinates and rates 0, all quaternions 1.
+  /// The state with all coordinates and rates 0 and all quaternions 1.
   [[nodiscard]] State rest() const {
     State state{Vector::Zero(tree_.coordinates()), Vector::Zero(tree_.rates())};
     for (const detail::Link& link : tree_.links()) {
@@ -82,11 +82,11 @@ class BodySystem {
     return {y.head(tree_.coordinates()), y.tail(tree_.rates())};
   }
 
-  /// For integrators: components that share unit and size.
+  /// Lengths of the blocks of components that share unit and size, for integrators.
   [[nodiscard]] std::vector<int> blocks() const { return tree_.blocks(); }
 
-  /// Forward dynamics: the rates of the joint rates. `extra` are joint forces besides those of the
-  /// description, empty or one for each rate.
+  /// Forward dynamics: the derivatives of the joint rates. `extra` is empty or has one further
+  /// joint force for each rate.
   ///
   /// Source : paper 002 (26) solved for V'*
   void accelerations(double t, const Vector& y, const Vector& extra, Vector& result,
@@ -109,14 +109,14 @@ class BodySystem {
     return result;
   }
 
-  /// The vector field for dual numbers (Eigen's AutoDiffScalar with derivatives of fixed size), as
-  /// the exact linearization takes it:  M d(v') = -d(forces that v' takes).
+  /// The vector field in dual numbers (Eigen's AutoDiffScalar with derivatives of fixed size), for
+  /// the exact linearization:  M d(v') = -d(forces needed for v').
   ///
-  /// Error  : rates in time of a guide's accelerations and of rotors' speeds that take doubles alone
-  ///          are differences, which err by 2^-42 of their fifth derivatives
-  /// Cost   : one evaluation in dual numbers of the inverse dynamics, and a solution for each
-  ///          derivative; memory is asked for
-  /// Throws : InvalidInput besides, naming the body, for a load that takes no dual numbers
+  /// Error  : time derivatives of guide accelerations and rotor accelerations that are functions of
+  ///          double alone are differences, with an error of 2^-42 of their fifth derivatives
+  /// Cost   : one evaluation of the inverse dynamics in dual numbers, and one solution for each
+  ///          derivative; memory is allocated
+  /// Throws : also InvalidInput, naming the body, for a load that takes no dual numbers
   template <class Dual>
   [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
@@ -165,21 +165,21 @@ class BodySystem {
     return result;
   }
 
-  /// The same at a time that is given.
+  /// The vector field in dual numbers at a time without derivatives.
   template <class Dual>
   requires(!std::same_as<Dual, double>) [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       double t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
     return rates(Dual(t), y);
   }
 
-  /// Whether series() has one for what is in this system: no loads, no rates that rotors are asked
-  /// for, nothing that floats against another body, and a guide that moves analytically.
+  /// True if series() is available. The system then has an analytic guide, no loads, no prescribed
+  /// rotor accelerations and no free joint between two bodies.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
     return detail::has_series(guide_) && detail::knows_series(tree_);
   }
 
-  /// The Taylor series of the motion, for TaylorSteps; this system has to outlive it. Formulas:
-  /// dynamics/tree/series.hpp.
+  /// The Taylor series of the motion, for TaylorSteps. This system must outlive the series.
+  /// Formulas: dynamics/tree/series.hpp.
   [[nodiscard]] detail::TreeSeries series() const requires(detail::feels_analytically<M>) {
     const auto field = [this](double t, const Vector& y, Vector& rate, BodyWorkspace& w) {
       rates(t, y, rate, w);
@@ -187,14 +187,14 @@ class BodySystem {
     return {tree_, detail::is_resting<M>, field, felt_at_origin()};
   }
 
-  /// Whether anything may be so stiff or damped that steps stay short for it.
+  /// True if a spring or damper may be so stiff that it limits the step.
   [[nodiscard]] bool may_be_stiff() const {
     const auto& forces = tree_.forces();
     return std::any_of(forces.begin(), forces.end(),
                        [](const JointForce& f) { return f.stiffness != 0 || f.damping != 0; });
   }
 
-  /// Inverse dynamics: the joint forces, besides those of the description, that bring about the
+  /// Inverse dynamics: the joint forces, in addition to those of the description, that cause the
   /// accelerations dv.
   void joint_forces(double t, const Vector& y, const Vector& dv, Vector& result,
                     BodyWorkspace& w) const {
@@ -202,7 +202,8 @@ class BodySystem {
     detail::joint_forces(tree_, at(t), y, dv, result, w);
   }
 
-  /// The mass matrix of all joints, drives and locks taken as free. Does not depend on the guide.
+  /// The mass matrix of all joints, with drives and locks treated as free. It does not depend on
+  /// the guide.
   ///
   /// Cost : the number of rates times the depth of the tree
   void mass_matrix(const Vector& y, Eigen::MatrixXd& result, BodyWorkspace& w) const {
@@ -212,36 +213,36 @@ class BodySystem {
 
   /// The reaction motors R_ij of all joints.
   ///
-  /// Source : paper 002 (26), read from the ends of the tree inwards
+  /// Source : paper 002 (26), summed from the ends of the tree inwards
   void reactions(double t, const Vector& y, JointReactions& result, BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
     detail::reactions(tree_, at(t), y, result, w);
   }
 
-  /// The same by causes. Costs about four times as much.
+  /// The reaction motors by causes. Costs about four times as much as reactions().
   void reaction_parts(double t, const Vector& y, std::vector<ReactionParts>& result,
                       BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
     detail::reaction_parts(tree_, at(t), y, result, w);
   }
 
-  /// Where the body is and how it moves: what a Load is given.
+  /// The situation of a body, pose and motion: the argument of a Load.
   [[nodiscard]] LoadContext<> situation(double t, const Vector& y, int body,
                                         BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
     return detail::situation(tree_, at(t), y, body, w);
   }
 
-  /// The left side of the law of one body, with the accelerations that the forces bring about.
+  /// The left side of the equation of motion of one body, with the actual accelerations.
   ///
-  /// Source : paper 002 (26), its relative, guide and Coriolis terms in turn
+  /// Source : paper 002 (26): relative, guide and Coriolis terms
   [[nodiscard]] ForceParts<Body> terms(double t, const Vector& y, int body,
                                        BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
     return detail::terms(tree_, at(t), y, body, w);
   }
 
-  /// What rates() computes of (26), whatever the state: see kreisel::terms.
+  /// The terms of (26) that rates() computes in any state: see kreisel::terms.
   [[nodiscard]] Terms terms() const {
     return detail::terms(tree_, detail::is_resting<M>, gravity_);
   }
@@ -251,12 +252,12 @@ class BodySystem {
     return detail::balance(tree_, at(t), y, w);
   }
 
-  /// Invariants of a motion, by name, as far as the description shows them:
+  /// Invariants of a motion, by name, as far as they follow from the description:
   ///
-  ///   energy            guide at rest, all loads keep it (see Load), no damper; without that of the
-  ///                     spin if rotors are regulated
-  ///   linear and angular momentum   guide at rest, along the rates of root joints on which nothing
-  ///                     acts: about the joint of a spherical root, along gravity if there is one
+  ///   energy            guide at rest, all loads conserve it (see Load), no damper; without the
+  ///                     energy of the spin if rotors are regulated
+  ///   linear and angular momentum   guide at rest, along the rates of root joints without forces:
+  ///                     about the joint of a spherical root, along gravity if there is one
   ///   cyclic momentum   C (phi' + e.w) of every free rotor, on any guide
   ///
   /// Source : paper 000 (4), and (9): T2 + V = const for L = const

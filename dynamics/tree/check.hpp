@@ -11,7 +11,7 @@
 #include <motor/error.hpp>
 #include <motor/static_zero.hpp>
 
-/// What a single body's description may hold.
+/// Checks of a single body's description.
 
 namespace kreisel::detail {
 
@@ -23,7 +23,7 @@ namespace kreisel::detail {
   refuse_body(name, "is no rotor: " + why + "; leave `rotor` out and it is an ordinary body");
 }
 
-/// A number as part of a message.
+/// A number formatted for a message.
 [[nodiscard]] inline std::string digits(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", number);
@@ -101,7 +101,7 @@ inline void check_forces(const BodyDescription& b) {
   }
 }
 
-/// That a body is balanced and symmetric as a rotor is.
+/// Checks that a body is balanced and symmetric about the axis of its joint, as a rotor must be.
 inline void check_symmetry(const BodyDescription& b) {
   constexpr double tolerance = 32 * std::numeric_limits<double>::epsilon();
   const Inertia<>& T = b.inertia.value;

@@ -12,11 +12,11 @@
 #include <dynamics/tree/joint/list.hpp>
 #include <dynamics/tree/loads.hpp>
 
-/// Energy and momentum of a tree, and which of them do not change.
+/// Energy and momentum of a tree, and the laws by which they are conserved.
 
 namespace kreisel::detail {
 
-/// The energy of weight and loads of one body.
+/// The potential energy of weight and loads of one body.
 [[nodiscard]] inline double potential(const LoadContext<>& s, const Gravity& gravity,
                                       const BodyDescription& body) {
   double sum = 0;
@@ -28,7 +28,7 @@ namespace kreisel::detail {
   return sum;
 }
 
-/// The energy of springs and of constant forces along single coordinates.
+/// The potential energy of springs and of constant forces along single coordinates.
 [[nodiscard]] inline double joint_energy(const BodyTree& tree, const double* q) {
   double sum = 0;
   for (const Link& link : tree.links()) {
@@ -45,7 +45,7 @@ namespace kreisel::detail {
 }
 
 /// The weight l of a rotor, from its rate and the absolute angular velocity of its carrier. Needs
-/// poses and places in w.
+/// poses and positions in w.
 [[nodiscard]] inline double momentum_weight(const BodyTree& tree, std::size_t rotor,
                                             const GuideNow<>& guide, const double* v,
                                             const BodyWorkspace& w) {
@@ -54,7 +54,7 @@ namespace kreisel::detail {
   return momentum_weight(r, v[r.link.v], dot(w.pose[tree.rotor_slot(rotor)].axis, turn));
 }
 
-/// What rotors add by their spin to what moves with their carriers.
+/// Adds the energy and momentum of the rotors' spin to the sums over the links.
 inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const double* v,
                       const BodyWorkspace& w, BodyBalance& sum) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -75,7 +75,7 @@ inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const doubl
   }
 }
 
-/// Needs poses and places in w.
+/// The energies and momenta of a tree. Needs poses and positions in w.
 [[nodiscard]] inline BodyBalance balance(const BodyTree& tree, double t, const GuideNow<>& guide,
                                          const Gravity& gravity, const double* q, const double* v,
                                          const BodyWorkspace& w) {
@@ -100,15 +100,15 @@ inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const doubl
   return sum;
 }
 
-/// Which energy does not change on a guide at rest.
+/// The energy that is conserved on a guide at rest.
 enum class EnergyLaw {
   none,
   all,
-  without_spin  ///< BodyBalance::carrier_energy and the potential one: T2 + V
+  without_spin  ///< BodyBalance::carrier_energy + potential_energy: T2 + V
 };
 
-/// Whether no force of a tree changes the energy on a guide at rest, but for motors of regulated
-/// rotors.
+/// True if no force of a tree changes the energy on a guide at rest. Motors of regulated rotors are
+/// not counted.
 [[nodiscard]] inline bool keeps_energy(const BodyTree& tree) {
   return std::none_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
     if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
@@ -123,8 +123,10 @@ enum class EnergyLaw {
   });
 }
 
-/// Source : paper 000 (9)-(13) for L = const: d(u^t A* u)/dt = 2 u^t Q; no such law where a motor's
-///          rate changes as time goes or where another has a torque of its own besides
+/// The energy law of a tree on a guide at rest.
+///
+/// Source : paper 000 (9)-(13) for L = const: d(u^t A* u)/dt = 2 u^t Q; there is no such law if the
+///          rate of a regulated rotor changes with time or another rotor has a motor torque
 [[nodiscard]] inline EnergyLaw energy_law(const BodyTree& tree) {
   if (!keeps_energy(tree)) return EnergyLaw::none;
   const auto any = [&tree](const auto& is) {
@@ -138,8 +140,8 @@ enum class EnergyLaw {
   return driven || changed ? EnergyLaw::none : EnergyLaw::without_spin;
 }
 
-/// A part of a tree that moves as one system: the link whose joint stands still in the guide, and
-/// all links behind it. Nothing but loads, gravity and that joint acts on it from outside.
+/// A part of a tree that moves as one system: a link whose joint is at rest in the guide, and all
+/// links outward of it. Its external forces are loads, gravity and that joint's force.
 struct RootedPart {
   std::size_t root = 0;
   Motor<> momentum = {};  ///< on guide axes about the guide's origin
@@ -147,7 +149,7 @@ struct RootedPart {
   bool has_weight = false;
 };
 
-/// Number of the part that each link belongs to; -1 for links that do not move in the guide.
+/// The number of each link's part; -1 for links that do not move in the guide.
 [[nodiscard]] inline std::vector<int> part_of_links(const BodyTree& tree,
                                                     std::vector<RootedPart>& parts) {
   std::vector<int> part(tree.links().size(), -1);
@@ -161,7 +163,7 @@ struct RootedPart {
   return part;
 }
 
-/// The parts of a tree on a guide at rest, with their momenta. Needs poses and places in w.
+/// The parts of a tree on a guide at rest, with their momenta. Needs poses and positions in w.
 [[nodiscard]] inline std::vector<RootedPart> rooted_parts(const BodyTree& tree, const double* v,
                                                           const BodyWorkspace& w) {
   std::vector<RootedPart> parts;
@@ -192,7 +194,7 @@ struct RootedPart {
   return parts;
 }
 
-/// Whether the joint of a link exerts no force along its own rates.
+/// True if the joint of a link exerts no force along its own rates.
 [[nodiscard]] inline bool moves_freely(const BodyTree& tree, const Link& link) {
   if (!link.moved_by_forces()) return false;
   const auto first = tree.forces().begin() + link.v;
@@ -203,8 +205,8 @@ struct RootedPart {
 
 using Invariants = std::vector<std::pair<std::string, double>>;
 
-/// Momenta that a part of a tree keeps on a guide at rest, by name: those along rates of its root
-/// joint on which neither that joint nor gravity acts.
+/// Adds the conserved momenta of a part of a tree on a guide at rest, by name. A momentum along a
+/// rate of the root joint is conserved if neither that joint nor gravity acts along the rate.
 ///
 ///   free       linear momentum, angular momentum about the guide's origin
 ///   spherical  angular momentum about the joint
@@ -212,14 +214,14 @@ using Invariants = std::vector<std::pair<std::string, double>>;
 ///   prismatic  linear momentum along the axis
 ///   screw      angular momentum about the axis and pitch times the linear momentum along it
 ///
-/// With gravity only the linear momentum across it and the angular momentum along it.
+/// With gravity only the linear momentum normal to it and the angular momentum along it.
 ///
 /// gravity : on guide axes
-/// only    : no other part moves, so that names do not tell the body
+/// only    : no other part moves, so names need not include the body
 inline void add_kept_momenta(const BodyTree& tree, const RootedPart& part,
                              const Vector3<double>& gravity, bool only, const BodyWorkspace& w,
                              Invariants& result) {
-  constexpr double rounding = 1e-15;  // of axes in decimals
+  constexpr double rounding = 1e-15;  // of axes given in decimals
   const Link& link = tree.links()[part.root];
   if (part.is_loaded || !moves_freely(tree, link)) return;
   const Vector3<double> g = part.has_weight ? gravity : Vector3<double>(Vector3<double>::Zero());
@@ -257,7 +259,7 @@ inline void add_kept_momenta(const BodyTree& tree, const RootedPart& part,
   }
 }
 
-/// Momenta that do not change on a guide at rest, by name. Needs poses and places in w.
+/// Adds all conserved momenta on a guide at rest, by name. Needs poses and positions in w.
 inline void add_kept_momenta(const BodyTree& tree, const GuideNow<>& guide, const Gravity& gravity,
                              const double* v, const BodyWorkspace& w, Invariants& result) {
   const std::vector<RootedPart> parts = rooted_parts(tree, v, w);

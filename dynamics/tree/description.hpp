@@ -19,9 +19,9 @@
 
 namespace kreisel {
 
-/// A joint force that follows one coordinate q or rate:  constant + in_time(t) - stiffness (q - rest)
-/// - damping q'. A quaternion and a free position have no spring, because no single coordinate
-/// measures their displacement.
+/// A joint force along one rate, from its coordinate q:  constant + in_time(t) - stiffness (q -
+/// rest) - damping q'.  A spherical or free joint has no springs, because no single coordinate
+/// measures its displacement.
 ///
 /// Units  : N m/rad and N m s/rad, or N/m and N s/m; rad or m; N m or N
 struct JointForce {
@@ -32,28 +32,29 @@ struct JointForce {
   std::optional<Signal<double>> in_time = std::nullopt;
 };
 
-/// What rules the motion in a joint.
+/// The rule for the motion in a joint.
 enum class JointRule {
   forces,        ///< the forces on the bodies
-  held,          ///< locked where it is; its rates count as 0
-  constant_rate  ///< revolute only: a motor keeps the rate whatever torque that takes
+  held,          ///< locked in its position; its rates count as 0
+  constant_rate  ///< revolute only: a motor keeps the rate constant with any torque
 };
 
-/// What rules the spin of a rotor.
+/// The rule for the spin of a rotor.
 enum class RotorMode {
-  free,       ///< nothing turns it about its axis: its cyclic momentum p = C (spin) stays
-  regulated,  ///< a motor on the carrier keeps the relative rate phi' what it is asked to be
-  torque      ///< a motor gives a torque, its reaction acts on the carrier; dampers may brake it
+  free,       ///< no torque about its axis: its cyclic momentum p = C (spin) is constant
+  regulated,  ///< a motor on the carrier keeps the relative rate phi' as prescribed
+  torque      ///< a motor exerts a torque, with its reaction on the carrier; dampers may brake it
 };
 
-/// Makes the body of a revolute joint a rotor, whose angle no equation of motion depends on: it is
-/// balanced, symmetric about the joint's axis e and carries nothing. For the motion of the others
-/// it is welded to its carrier, with the gyroscopic torque  -w x l e  as all that is left of it:
-/// the costs and the steps of a computation do not know how fast it turns. Coordinate (whole turns
-/// counted) and rate, relative to the carrier, remain those of the joint.
+/// A rotor: a body in a revolute joint that is balanced, symmetric about the joint's axis e and
+/// carries no other body. The equations of motion do not depend on its angle.
+///
+/// For the motion of the other bodies it is welded to its carrier and adds the gyroscopic torque
+/// -w x l e.  Cost and steps do not depend on its speed. Coordinate (all revolutions counted) and
+/// rate, relative to the carrier, remain those of the joint.
 ///
 /// Tensor about the origin: C e e^t + A (1 - e e^t), up to 64u of its trace; centre of mass on the
-/// axis, up to 64u of a radius of gyration. A damper may be there in the modes regulated, where the
+/// axis, up to 64u of a radius of gyration. A damper is allowed in the modes regulated, where the
 /// motor overcomes it, and torque.
 ///
 /// Source : paper 000 (2), (4), (8): l = C phi' if regulated, p = C (phi' + e.w) else
@@ -61,21 +62,22 @@ enum class RotorMode {
 struct Rotor {
   RotorMode mode = RotorMode::free;
 
-  /// Mode torque: on the rotor about the axis, besides the joint force, which may have no spring.
+  /// Mode torque: motor torque on the rotor about the axis, added to the joint force. The joint
+  /// force must have no spring.
   double torque = 0;
 
-  /// Mode regulated: phi'' of the rate asked for, which begins at that of the state; null: 0.
+  /// Mode regulated: the prescribed phi''. The rate begins at the state's; null: 0.
   std::function<double(double t)> acceleration = nullptr;
 };
 
 namespace detail {
 
-/// A number and its rate along one direction.
+/// A number and its derivative along one direction.
 using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
 
-/// A situation in dual numbers, of which only the k-th derivative counts.
+/// A situation in dual numbers, reduced to the k-th derivative.
 ///
-/// One : AlongOne; a parameter, so that nothing of it is compiled where this is not called
+/// One : AlongOne; a template parameter, so it is compiled only if called
 template <class One, class Dual>
 [[nodiscard]] LoadContext<One> along_one(const LoadContext<Dual>& s, Eigen::Index k) {
   const auto number = [k](const Dual& x) {
@@ -103,18 +105,18 @@ template <class One, class Dual>
 
 }  // namespace detail
 
-/// Any Load, kept by value. In dual numbers, as linear equations ask for, a load works that is a
-/// template on the number of the situation; others give numbers of type double alone.
+/// Any Load, stored by value. Linear equations need loads in dual numbers: templates on the number
+/// type of the situation. Other loads work in double alone.
 ///
-/// A load for which it is all the same how a symmetric body is turned
-/// about its axis and how fast it spins, as gravitation, may act on a rotor; it says so by
+/// A load may act on a rotor if it depends neither on a symmetric body's angle about its axis nor
+/// on its spin, as gravitation. Such a load declares
 ///
 ///   static constexpr bool ignores_spin = true;
 class BodyLoad {
  public:
   template <class L>
   requires(!std::same_as<L, BodyLoad> && Load<L>) BodyLoad(L load)
-      : force_(load) {  // NOLINT: a load is meant where a load is taken
+      : force_(load) {  // NOLINT: any load converts to a BodyLoad
     if constexpr (requires(const LoadContext<>& s) { load.potential(s); }) {
       potential_ = [load](const LoadContext<>& s) { return load.potential(s); };
     }
@@ -125,7 +127,7 @@ class BodyLoad {
 
   [[nodiscard]] Force<Body> operator()(const LoadContext<>& s) const { return force_(s); }
 
-  /// Of dual numbers: a derivative at a time. Asks for takes_dual_numbers().
+  /// The force in dual numbers, one derivative at a time. Needs takes_dual_numbers().
   template <class Dual>
   [[nodiscard]] Force<Body, Dual> operator()(const LoadContext<Dual>& s) const {
     Force<Body, Dual> result;
@@ -144,7 +146,7 @@ class BodyLoad {
   }
   [[nodiscard]] bool takes_dual_numbers() const { return static_cast<bool>(along_); }
 
-  /// Whether it does no work but that of its potential on a guide at rest: see Load.
+  /// True if its work on a guide at rest is that of its potential alone: see Load.
   [[nodiscard]] bool keeps_energy() const { return keeps_energy_; }
   [[nodiscard]] double potential(const LoadContext<>& s) const {
     return potential_ ? potential_(s) : 0;
@@ -171,7 +173,7 @@ struct BodyDescription {
   std::optional<Rotor> rotor = std::nullopt;
 };
 
-/// The field of gravity that all bodies of a system are in; a field that is not uniform is a load.
+/// The uniform gravity on all bodies of a system. Gravity that is not uniform is a load.
 using Gravity = std::variant<std::monostate, UniformGravity<Guide>, UniformGravity<Inertial>>;
 
 }  // namespace kreisel

@@ -7,12 +7,13 @@
 
 #include <dynamics/tree/workspace.hpp>
 
-/// Articulated bodies: from the ends of the tree inwards each joint is eliminated, and what hangs
-/// on it becomes one inertia, no more a rigid body's, that resists its parent; then outwards the
-/// joint accelerations follow. Solves  M dv = joint forces - forces at dv = 0  in linear time.
+/// The articulated-body algorithm. Solves  M dv = joint forces - forces at dv = 0  in linear time.
+///
+/// An inward pass eliminates each joint and adds the articulated inertia outward of it to its
+/// parent. An outward pass then computes the joint accelerations.
 ///
 /// Source : R. Featherstone, Rigid Body Dynamics Algorithms, chapter 7; here on guide axes, and
-///          with differences of accelerations, which are motors
+///          with differences of accelerations, which are motors (LinkMotion)
 
 namespace kreisel::detail {
 
@@ -28,7 +29,7 @@ namespace kreisel::detail {
                           "a chain, or an axis that coincides with one further out");
 }
 
-/// What of an inertia may be the rounding of larger ones.
+/// The part of an inertia that may be the rounding error of larger ones of this size.
 [[nodiscard]] inline double rounding(double size) {
   return 16 * std::numeric_limits<double>::epsilon() * size;
 }
@@ -43,7 +44,7 @@ inline void factor(const BodyTree& tree, const Link& link, FactoredSymmetric3<>&
   }
 }
 
-/// B^t m^-1 B, with m factored, of the columns of B.
+/// B^t m^-1 B, with m factored and B given by its columns.
 [[nodiscard]] inline Symmetric3<> congruent(const FactoredSymmetric3<>& m, const Vector3<double>& x,
                                             const Vector3<double>& y, const Vector3<double>& z) {
   const Vector3<double> by_y = m.solve(y);
@@ -51,7 +52,7 @@ inline void factor(const BodyTree& tree, const Link& link, FactoredSymmetric3<>&
   return {dot(x, m.solve(x)), dot(y, by_y), dot(z, by_z), dot(x, by_y), dot(x, by_z), dot(y, by_z)};
 }
 
-/// Eliminates a screw joint, which moves its link by  S = (s; pitch s).
+/// Eliminates a screw joint, whose motion subspace is  S = (s; pitch s).
 [[gnu::noinline]] inline void eliminate_screw(const BodyTree& tree, const Link& link,
                                               const Vector3<double>& s, const Size& size,
                                               ArticulatedInertia& A, SingleElimination& e) {
@@ -91,7 +92,7 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
   take_square(A, e.U, e.inverse);
 }
 
-/// The same of a spherical or free joint.
+/// Eliminates a spherical or free joint from the inertia A of its link.
 [[gnu::noinline]] inline void eliminate_ball(const BodyTree& tree, const Link& link,
                                              const Size& size, ArticulatedInertia& A,
                                              BallElimination& e) {
@@ -106,15 +107,14 @@ inline void eliminate_single(const BodyTree& tree, const Link& link, const Vecto
   factor(tree, link, e.linear, A.linear, size.linear, "the displacement along");
   const Symmetric3<> taken = congruent(e.linear, row(e.mixed, 0), row(e.mixed, 1), row(e.mixed, 2));
   factor(tree, link, e.angular, A.angular - taken, size.angular, "the rotation about");
-  A = {};  // its parent feels nothing of it
+  A = {};  // the parent carries no inertia of a free link
 }
 
-/// Eliminates the joint of link i from its inertia and hands the rest on to the parent.
+/// Eliminates the joint of link i from its inertia and adds the rest to the parent.
 ///
-/// What is not a number passes, for a stepper that tried too long a step to see.
+/// A NaN does not throw: it reaches the stepper, which then rejects a step that is too long.
 ///
-/// Throws : ComputationFailed where a motion of the joint meets no inertia, naming body and
-///          direction
+/// Throws : ComputationFailed, naming body and direction, if a motion of the joint moves no inertia
 inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
   const Link& link = tree.links()[i];
   const LinkPose<>& pose = w.pose[i];
@@ -138,7 +138,7 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
   above.angular += size.angular + 2 * dot(pose.r, pose.r) * size.linear;
 }
 
-/// The force that a spherical or free joint hands on of P.
+/// The part of the force P that a spherical or free joint transmits.
 [[gnu::noinline]] inline Motor<> reduce_ball(const Link& link, const LinkPose<>& pose,
                                              const LinkPose<>& parent, const double* joint_force,
                                              const Motor<>& P, BallElimination& e) {
@@ -154,7 +154,7 @@ inline void eliminate(const BodyTree& tree, std::size_t i, BodyWorkspace& w) {
   return given;
 }
 
-/// Hands what is left of the force of link i, with the joint force taken off, on to the parent.
+/// Adds the force that the joint of link i transmits to the parent's force.
 inline void reduce(const Link& link, std::size_t i, const double* joint_force, BodyWorkspace& w) {
   const auto parent = static_cast<std::size_t>(link.parent);
   const LinkPose<>& pose = w.pose[i];
@@ -179,7 +179,7 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
   w.force[parent].moment += n + cross(pose.r, f);
 }
 
-/// The acceleration of a spherical or free joint.
+/// Sets the acceleration of a spherical or free joint.
 [[gnu::noinline]] inline void accelerate_ball(const Link& link, const LinkPose<>& pose,
                                               const LinkPose<>& parent, const BallElimination& e,
                                               Motor<>& delta, double* acceleration) {
@@ -196,7 +196,7 @@ inline void reduce(const Link& link, std::size_t i, const double* joint_force, B
   std::copy_n(turn.data(), 3, acceleration + link.v);
 }
 
-/// The acceleration of the joint of link i, once its parent's is known.
+/// Sets the acceleration of the joint of link i. Needs the parent's acceleration in w.delta.
 inline void accelerate(const Link& link, std::size_t i, double* acceleration, BodyWorkspace& w) {
   const auto parent = static_cast<std::size_t>(link.parent);
   const LinkPose<>& pose = w.pose[i];

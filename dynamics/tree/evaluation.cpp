@@ -30,7 +30,7 @@ BodyWorkspace::BodyWorkspace(const BodyTree& tree)
 
 namespace detail {
 
-/// The force of its joint on a body, once w.force has been summed inwards.
+/// The force of a body's joint on the body. Needs w.force summed inwards.
 [[nodiscard]] inline Force<Body> joint_reaction(const BodyTree& tree, int body,
                                                 const BodyWorkspace& w) {
   const std::size_t link = tree.link(body);
@@ -39,7 +39,7 @@ namespace detail {
   return {{transposed_product(R, force), transposed_product(R, moment)}};
 }
 
-/// The terms of (26) of one body, from the absolute accelerations in w, from which g was taken off.
+/// The terms of (26) of one body, from the absolute accelerations less g in w.
 [[nodiscard]] inline ForceParts<Body> terms_of_body(const BodyTree& tree, const LoadContext<>& s,
                                                     int body, const Vector3<double>& g,
                                                     const BodyWorkspace& w) {
@@ -90,7 +90,7 @@ void require_dual_loads(const BodyTree& tree) {
   }
 }
 
-/// Where a tree begins.
+/// The motion of the tree's root, the guide, with gravity subtracted.
 [[nodiscard]] inline LinkMotion<> root(const Surroundings& now) {
   return root(now.guide, now.gravity, now.guide_rests);
 }
@@ -170,7 +170,8 @@ void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::Vecto
   }
 }
 
-/// Reactions to a part of the causes; the joints are eliminated and w.joint_force is set.
+/// Computes the reactions to one group of causes. Needs the joints eliminated and w.joint_force
+/// set.
 inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double* v,
                    const Surroundings* loads_at, const Eigen::VectorXd& y, BodyWorkspace& w) {
   const auto set_forces = [&](const double* dv) {

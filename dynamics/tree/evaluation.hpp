@@ -14,12 +14,12 @@
 #include <dynamics/tree/workspace.hpp>
 #include <motor/api.hpp>
 
-/// What a BodySystem computes once it is known how its guide moves, of whatever kind that is; what
-/// each function gives is said there (dynamics/tree/body_system.hpp).
+/// The computations of a BodySystem for a given motion of its guide, whatever the guide's type. The
+/// functions are documented in dynamics/tree/body_system.hpp.
 
 namespace kreisel::detail {
 
-/// What a tree is in at one time.
+/// Time, guide motion and gravity of a tree at one moment.
 struct Surroundings {
   double t;
   GuideNow<> guide;
@@ -27,13 +27,17 @@ struct Surroundings {
   const Gravity& gravity;
 };
 
-/// Throws : InvalidInput for a gravity that is not finite
+/// Refuses a gravity that is not finite.
+///
+/// Throws : InvalidInput
 KREISEL_API void check_gravity(const Gravity& gravity);
 
 KREISEL_API [[noreturn]] void refuse_sizes(const BodyTree& tree, Eigen::Index components,
                                            Eigen::Index per_rate);
 
-/// Throws : InvalidInput for a state, numbers of the rates or a workspace that are not of this tree
+/// Checks the sizes of a state, of a vector with one number per rate, and of a workspace.
+///
+/// Throws : InvalidInput if one of them does not fit this tree
 inline void require(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::Index per_rate,
                     const BodyWorkspace& w) {
   const bool fit = y.size() == tree.coordinates() + tree.rates() &&
@@ -42,18 +46,20 @@ inline void require(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::Index
   if (!fit) refuse_sizes(tree, y.size(), per_rate);
 }
 
-/// Throws : InvalidInput, naming the body, for a load that takes no dual numbers
+/// Checks that all loads take dual numbers.
+///
+/// Throws : InvalidInput, naming the body, for a load that does not
 KREISEL_API void require_dual_loads(const BodyTree& tree);
 
-/// The accelerations, from w.joint_force and on.
+/// The accelerations of the joints into `result`; leaves poses, motions and factors in w.
 KREISEL_API void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                             const Eigen::VectorXd& extra, double* result, BodyWorkspace& w);
 
 KREISEL_API void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                        Eigen::VectorXd& result, BodyWorkspace& w);
 
-/// The accelerations  M dv = joint_force  of a system at rest, once the field has been evaluated where
-/// it is: joints eliminated, axes of rotors known. Into w.acceleration.
+/// Solves  M dv = joint_force  for a system at rest, into w.acceleration. Needs w as rates() leaves
+/// it at the same coordinates: joints eliminated, axes of rotors set.
 KREISEL_API void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force,
                          BodyWorkspace& w);
 

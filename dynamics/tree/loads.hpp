@@ -5,14 +5,14 @@
 #include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/tree/rotors.hpp>
 
-/// Where the bodies of a tree are, and what acts on them from outside.
+/// Positions of the bodies of a tree, and the external loads on them.
 
 namespace kreisel::detail {
 
 template <class S = double>
 using GuideNow = FrameMotion<Guide, Inertial, S>;
 
-/// The uniform field of gravity on guide axes.
+/// The uniform gravity on guide axes; 0 if there is none.
 template <class S>
 [[nodiscard]] Vector3<S> field(const Gravity& gravity, const GuideNow<S>& guide) {
   if (const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity)) {
@@ -24,8 +24,8 @@ template <class S>
   return Vector3<S>::Zero();
 }
 
-/// Where a tree begins. In a uniform field the weights of all bodies are what a guide accelerated by
-/// -g would ask for.
+/// The motion of the tree's root, the guide, with gravity subtracted: uniform gravity g acts on the
+/// bodies like an acceleration -g of the guide.
 template <class S>
 [[nodiscard]] LinkMotion<S> root(const GuideNow<S>& guide, const Gravity& gravity, bool rests) {
   if (rests) return {Vector3<S>::Zero(), Vector3<S>::Zero(), -field(gravity, guide)};
@@ -33,7 +33,7 @@ template <class S>
           guide.origin_acceleration() - field(gravity, guide)};
 }
 
-/// Places in the guide and velocity motors V' against it.
+/// Sets the positions in the guide and the relative velocity motors V' of all links.
 template <class S>
 void set_places(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
@@ -43,7 +43,7 @@ void set_places(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
   }
 }
 
-/// Needs poses and places in w.
+/// The situation of a body, as loads take it. Needs poses and positions in w.
 template <class S>
 [[nodiscard]] LoadContext<S> situation(const BodyTree& tree, const S& t, const GuideNow<S>& guide,
                                        int body, const MotionSpace<S>& w) {
@@ -57,7 +57,7 @@ template <class S>
           {lifted<S>(tree.body(body).inertia.value)}};
 }
 
-/// Takes the loads off the forces in w, which the joints have to bring up.
+/// Subtracts the loads from the forces in w, which the joints transmit.
 template <class S>
 void take_off_loads(const BodyTree& tree, const S& t, const GuideNow<S>& guide, const S* v,
                     MotionSpace<S>& w) {

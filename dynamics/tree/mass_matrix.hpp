@@ -9,8 +9,8 @@
 
 namespace kreisel::detail {
 
-/// The mass matrix by composite bodies: what hangs on a joint, as if frozen, accelerated by it.
-/// Needs the inertias in w and leaves sums in their place.
+/// Computes the mass matrix by composite bodies: each joint accelerates all links outward of it as
+/// one rigid body. Needs the inertias in w and replaces them by the composite ones.
 inline void mass_matrix(const BodyTree& tree, BodyWorkspace& w, Eigen::MatrixXd& result) {
   const std::vector<Link>& links = tree.links();
   const auto parent_pose = [&](const Link& link) -> const LinkPose<>& {

@@ -6,24 +6,25 @@
 #include <dynamics/tree/tree.hpp>
 #include <motor/static_zero.hpp>
 
-/// How the links of a tree move. All on the GUIDE's axes, each link about its own origin: then
-/// nothing is turned between the links, and inertias only shift.
+/// The motions of the links of a tree. All vectors are on the GUIDE's axes, each link's about its
+/// own
+/// origin: then no rotations are needed between links, and inertias are only shifted.
 
 namespace kreisel::detail {
 
 template <class S = double>
 struct LinkPose {
   Matrix3<S> R = Matrix3<S>::Identity();  ///< body to guide axes
-  Vector3<S> r = Vector3<S>::Zero();      ///< from the parent's origin to its own
+  Vector3<S> r = Vector3<S>::Zero();      ///< from the parent's origin to the link's
   Vector3<S> axis = Vector3<S>::Zero();   ///< of a revolute, prismatic or screw joint
 };
 
 /// The absolute angular velocity w = u' + u, its inertial rate, and the inertial acceleration of
-/// the origin, from which a uniform gravity may be taken off.
+/// the origin, from which a uniform gravity may be subtracted.
 ///
-/// Accelerations of points, not motors: where the guide runs at 465 m/s, as on the earth, the
-/// motors' u x v comes and goes again and leaves its rounding. The DIFFERENCE of two such pairs
-/// (dw; a) at the same velocities is a motor.
+/// The pairs (dw; a) are accelerations of points, not motors. In motors of a guide at 465 m/s, as
+/// on the earth, terms u x v would cancel and leave rounding errors. The DIFFERENCE of two such
+/// pairs at the same velocities is a motor.
 template <class S = double>
 struct LinkMotion {
   Vector3<S> w = Vector3<S>::Zero();
@@ -58,7 +59,7 @@ template <class S>
           A(2, 0) * b[0] + A(2, 1) * b[1] + A(2, 2) * b[2]};
 }
 
-/// The axes of a link that turns by an angle, on those of its parent.
+/// The rotation from a link to its parent, for the angle of a revolute or screw joint.
 template <class S>
 void turn_by_angle(const Link& link, const S& angle, Matrix3<S>& turned) {
   using std::cos;
@@ -70,7 +71,7 @@ void turn_by_angle(const Link& link, const S& angle, Matrix3<S>& turned) {
   }
 }
 
-/// The pose of another link than a revolute one.
+/// Sets the pose of a link that is not revolute.
 template <class S>
 [[gnu::noinline]] void set_other_pose(const Link& link, const LinkPose<S>& parent, const S* q,
                                       LinkPose<S>& p) {
@@ -94,8 +95,8 @@ template <class S>
   p.r = parent.R * offset;
 }
 
-/// The pose of a link from its parent's and its coordinates. Written in place, here and below:
-/// results copied right after they were made would wait for each other.
+/// Sets the pose of a link from its parent's pose and its coordinates. The functions here write in
+/// place: copying results at once would stall the processor.
 template <class S>
 void set_pose(const Link& link, const LinkPose<S>& parent, const S* q, LinkPose<S>& p) {
   if (link.kind != LinkKind::revolute) {
@@ -109,7 +110,7 @@ void set_pose(const Link& link, const LinkPose<S>& parent, const S* q, LinkPose<
   p.axis = multiply(parent.R, link.axis);
 }
 
-/// What another joint than a revolute one adds to the motion of its parent.
+/// Adds the motion of a joint that is not revolute to the motion of its parent.
 template <class S>
 [[gnu::noinline]] void add_other_motion(const Link& link, const LinkPose<S>& pose,
                                         const LinkPose<S>& parent, const LinkMotion<S>& above,
@@ -136,11 +137,12 @@ template <class S>
   if (dv) m.a += parent.R * three(dv + link.v + 3);
 }
 
-/// The motion of a link from its parent's, its rates v and their rates dv (null: all 0).
+/// Sets the motion of a link from its parent's motion, its rates v and their derivatives dv (null:
+/// 0).
 ///
 ///   w = w_P + S v,   dw = dw_P + S dv + bias,   a = a_P + dw_P x r + w_P x (w_P x r) + ...
 ///
-/// Source : paper 002 (18)-(19) from link to link; the guide is only the link that all begin with
+/// Source : paper 002 (18)-(19) from link to link; the guide is the first link
 template <class S>
 void set_motion(const Link& link, const LinkPose<S>& pose, const LinkPose<S>& parent,
                 const LinkMotion<S>& above, const S* v, const std::type_identity_t<S>* dv,
@@ -158,8 +160,8 @@ void set_motion(const Link& link, const LinkPose<S>& pose, const LinkPose<S>& pa
   if (link.moves()) add_other_motion(link, pose, parent, above, v, dv, m);
 }
 
-/// The velocity motor V' against the guide of a link at its own origin, and that origin's place in
-/// the guide.
+/// The position of a link's origin in the guide, and the velocity motor V' relative to the guide
+/// about this origin.
 template <class S = double>
 struct LinkPlace {
   Vector3<S> x = Vector3<S>::Zero();
@@ -180,7 +182,7 @@ LinkPlace<S> place(const Link& link, const LinkPose<S>& pose, const LinkPose<S>&
   return p;
 }
 
-/// The velocity motor that the k-th rate of a joint, at 1, gives the link at its origin.
+/// The velocity motor of a link about its origin per unit of the joint's k-th rate.
 template <class S>
 [[nodiscard]] Motor<S> direction(const Link& link, const LinkPose<S>& pose,
                                  const LinkPose<S>& parent, int k) {
@@ -191,7 +193,7 @@ template <class S>
   return k < 3 ? Motor<S>{column(pose.R, k), zero} : Motor<S>{zero, column(parent.R, k - 3)};
 }
 
-/// Ten numbers on the axes that R turns to:  (m; R s; R Theta R^t).
+/// An inertia on the axes to which R rotates:  (m; R s; R Theta R^t).
 template <class S>
 void turn(const Matrix3<S>& R, const Inertia<>& T, Inertia<S>& result) {
   const Symmetric3<>& t = T.tensor;
@@ -209,20 +211,20 @@ void turn(const Matrix3<S>& R, const Inertia<>& T, Inertia<S>& result) {
   result.tensor = {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)};
 }
 
-/// Reduced at a point P, when r leads from P to the present origin.
+/// An inertia reduced at a point P; r leads from P to the present origin.
 [[nodiscard]] inline Inertia<> shifted(const Vector3<double>& r, const Inertia<>& T) {
   return {T.mass, T.first_moment + T.mass * r,
           T.tensor + offset_product(r, T.first_moment + (T.mass / 2) * r)};
 }
 
-/// A force motor at the end of r, reduced at its beginning.
+/// A force motor at the end of r, reduced at the beginning of r.
 template <class S>
 [[nodiscard]] Motor<S> carried(const Vector3<S>& r, const Motor<S>& P) {
   return {P.resultant, P.moment + cross(r, P.resultant)};
 }
 
-/// The force motor of the inertia T in that motion: the left side of the law, by the vectors of
-/// (19),  {m a + dw x s + w x (w x s);  s x a + Theta dw + w x Theta w}.
+/// The inertia force of T in the motion m: the left side of the equation of motion, with the
+/// vectors of (19),  {m a + dw x s + w x (w x s);  s x a + Theta dw + w x Theta w}.
 template <class S>
 [[nodiscard]] Motor<S> inertia_force(const Inertia<S>& T, const LinkMotion<S>& m) {
   const auto& [w, dw, a] = m;

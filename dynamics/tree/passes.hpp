@@ -5,8 +5,8 @@
 #include <dynamics/tree/rotors.hpp>
 #include <motor/attitude.hpp>
 
-/// The passes over a whole tree: outwards for what moves, inwards for what pushes. A parent has a
-/// lower number than what hangs on it, so they are plain loops.
+/// The passes over a whole tree: outwards for motions, inwards for forces. Each link has a higher
+/// number than its parent, so the passes are plain loops.
 
 namespace kreisel::detail {
 
@@ -24,14 +24,14 @@ void set_motion(const Link& link, std::size_t i, const S* v, const std::type_ide
   w.force[i] = inertia_force(w.inertia[i], w.motion[i]);
 }
 
-/// Poses and inertias on guide axes, for the coordinates q.
+/// Sets the poses, and the inertias on guide axes, for the coordinates q.
 template <class S>
 void set_poses(const BodyTree& tree, const S* q, MotionSpace<S>& w) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) set_pose(tree.links()[i], i, q, w);
 }
 
-/// Motions, and the force motor that each link alone takes for its own: the left side of the law.
-/// The guide's motion is root; dv may be null, for 0.
+/// Sets the motions, and the inertia force of each link alone: the left side of the equation of
+/// motion. The guide's motion is `root`; a null dv means 0.
 template <class S>
 void set_motions(const BodyTree& tree, const LinkMotion<S>& root, const S* v,
                  const std::type_identity_t<S>* dv, MotionSpace<S>& w) {
@@ -41,7 +41,7 @@ void set_motions(const BodyTree& tree, const LinkMotion<S>& root, const S* v,
   begin_rotors(tree, w);
 }
 
-/// Both in one pass.
+/// set_poses() and set_motions() in one pass.
 template <class S>
 void set_poses_and_motions(const BodyTree& tree, const LinkMotion<S>& root, const S* q, const S* v,
                            const std::type_identity_t<S>* dv, MotionSpace<S>& w) {
@@ -54,8 +54,8 @@ void set_poses_and_motions(const BodyTree& tree, const LinkMotion<S>& root, cons
   begin_rotors(tree, w);
 }
 
-/// Sums the forces inwards: w.force[i] becomes what the parent exerts on link i through the joint,
-/// w.force[0] what the guide has to give.
+/// Sums the forces inwards: w.force[i] becomes the force of the parent on link i through the joint,
+/// w.force[0] the force of the guide.
 template <class S>
 void sum_inwards(const BodyTree& tree, MotionSpace<S>& w) {
   for (std::size_t i = tree.links().size() - 1; i > 0; --i) {
@@ -66,7 +66,7 @@ void sum_inwards(const BodyTree& tree, MotionSpace<S>& w) {
   }
 }
 
-/// The components of those forces along the joints' directions, one for each rate of a link.
+/// The components of the forces in w along the joints' directions, one for each rate of a link.
 template <class S>
 void project(const BodyTree& tree, const MotionSpace<S>& w, S* result) {
   for (std::size_t i = 1; i < tree.links().size(); ++i) {
@@ -82,7 +82,7 @@ void project(const BodyTree& tree, const MotionSpace<S>& w, S* result) {
   }
 }
 
-/// q' = N(q) v.
+/// Sets the rates of the coordinates, q' = N(q) v.
 template <class S>
 void set_coordinate_rates(const BodyTree& tree, const S* q, const S* v, S* result) {
   for (const Link& link : tree.links()) {
@@ -103,7 +103,7 @@ void set_coordinate_rates(const BodyTree& tree, const S* q, const S* v, S* resul
   for (const RotorLink& rotor : tree.rotors()) result[rotor.link.q] = v[rotor.link.v];
 }
 
-/// The forces of springs, dampers and constant joint forces, without those that change with time.
+/// Sets the joint forces: springs, dampers and constants, without those that change with time.
 template <class S>
 void set_joint_forces(const BodyTree& tree, const S* q, const S* v, MotionSpace<S>& w) {
   for (std::size_t k = 0; k < tree.forces().size(); ++k) {

@@ -5,11 +5,11 @@
 
 #include <dynamics/tree/rotors.hpp>
 
-/// Rotors on their carriers where accelerations are sought, and where reactions are read out.
+/// Rotors on their carriers in the forward dynamics and in the computation of reactions.
 
 namespace kreisel::detail {
 
-/// The accelerations that regulated rotors are asked for.
+/// Sets w.spin_up to the prescribed relative accelerations of the regulated rotors.
 inline void ask_spin_up(const BodyTree& tree, double t, BodyWorkspace& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
     const auto& asked = tree.body(tree.rotors()[k].link.body).rotor->acceleration;
@@ -19,8 +19,8 @@ inline void ask_spin_up(const BodyTree& tree, double t, BodyWorkspace& w) {
 
 inline void ask_no_spin_up(BodyWorkspace& w) { std::fill(w.spin_up.begin(), w.spin_up.end(), 0.0); }
 
-/// Adds what the rotors ask of their carriers to the forces of motion in w. Their motors' torques
-/// are the joint forces, or those that spin_up takes.
+/// Adds the rotors' gyroscopic torques and motor reactions to the inertia forces in w. The motor
+/// torques are the joint forces; for regulated rotors they follow from spin_up.
 inline void add_rotor_forces(const BodyTree& tree, const double* v, const double* joint_force,
                              BodyWorkspace& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -34,8 +34,8 @@ inline void add_rotor_forces(const BodyTree& tree, const double* v, const double
   }
 }
 
-/// The rotors' own accelerations, once their carriers' are known: those at dv = 0 and the
-/// differences from them.
+/// Sets the rotors' own accelerations. Needs their carriers' accelerations in w: those at dv = 0
+/// and the differences from them.
 inline void accelerate_rotors(const BodyTree& tree, const double* joint_force, double* acceleration,
                               const BodyWorkspace& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -48,7 +48,7 @@ inline void accelerate_rotors(const BodyTree& tree, const double* joint_force, d
   }
 }
 
-/// Poses of the rotors, for what is read out: here the angles count.
+/// Sets the poses of the rotors for output, angles included.
 inline void set_rotor_poses(const BodyTree& tree, const double* q, BodyWorkspace& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
     const RotorLink& rotor = tree.rotors()[k];
@@ -56,7 +56,7 @@ inline void set_rotor_poses(const BodyTree& tree, const double* q, BodyWorkspace
   }
 }
 
-/// Poses of the rotors, and what of their places follows from them.
+/// Sets the poses, positions and velocity motors of the rotors.
 inline void set_rotor_places(const BodyTree& tree, const double* q, const double* v,
                              BodyWorkspace& w) {
   set_rotor_poses(tree, q, w);
@@ -68,7 +68,7 @@ inline void set_rotor_places(const BodyTree& tree, const double* q, const double
   }
 }
 
-/// Motions of the rotors from those of their carriers. Needs poses of rotors.
+/// Sets the motions of the rotors from the motions of their carriers. Needs poses of rotors.
 inline void set_rotor_motions(const BodyTree& tree, const double* v, const double* dv,
                               BodyWorkspace& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -79,12 +79,14 @@ inline void set_rotor_motions(const BodyTree& tree, const double* v, const doubl
   }
 }
 
-/// Makes the forces that stand at the rotors, their loads taken off, into what their carriers exert
-/// on them: of the whole rotor as if at rest on its carrier, and of its spin
+/// Adds inertia forces to w.force of the rotors, which holds minus their loads. The sum is the
+/// force that each carrier exerts on its rotor.
+///
+/// The inertia force is that of a rotor at rest on its carrier, and the term of its spin
 ///
 ///   C phi'' e + w x C phi' e,
 ///
-/// in which nothing of the size phi'^2 comes and goes. Needs poses of rotors.
+/// so no terms of the size phi'^2 cancel. Needs poses of rotors.
 inline void complete_rotor_forces(const BodyTree& tree, const double* v, const double* dv,
                                   BodyWorkspace& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {

@@ -16,39 +16,39 @@ namespace kreisel {
 ///   A_eff u' + c + G_R u = Q,   A_eff = A + sum over regulated rotors of C_i B_i^t B_i.
 ///
 /// The velocities u are the rates of the system without those of the rotors. They may be angular
-/// velocities, which are no rates of coordinates: the paper's (11), (13), (14) and (26) hold for
-/// rates of coordinates alone and lack  u x dT/du  elsewhere, which is in c and G_R here.
+/// velocities, which are not derivatives of coordinates. The paper's (11), (13), (14) and (26) hold
+/// for derivatives of coordinates only: they lack  u x dT/du,  which is in c and G_R here.
 ///
-/// Source : paper 000 (1), (3), (10)-(14), with G_R from the axes' motion and no derivative,
+/// Source : paper 000 (1), (3), (10)-(14), with G_R from the axes' motion, without a derivative,
 ///          (G_R)_kj = sum l_i e_i.(J_k x J_j), J the angular velocity of the carrier per unit rate
 /// Units  : those of the rates, joint by joint
 /// Error  : <= 1e-13 relative against 22 digits           (tests/dynamics/tree/rotor_matrices.cpp)
 /// Cost   : memory and time grow with the square of the number of rates
 struct RotorMatrices {
-  std::vector<int> rates;   ///< which rates of the system are u
-  std::vector<int> rotors;  ///< which bodies the rows of B, l and C belong to
+  std::vector<int> rates;   ///< the rates of the system that are u
+  std::vector<int> rotors;  ///< the bodies of the rows of B, l and C
 
-  Eigen::MatrixXd A;  ///< of all bodies, C left out
-  Eigen::MatrixXd
-      B;  ///< of the carriers' turning about the rotors' axes:  e.w = B u on a guide at rest
-  Eigen::VectorXd C;      ///< the diagonal of A_R
-  Eigen::VectorXd l;      ///< L = C phi' of regulated rotors, p = C (phi' + e.w) of others
+  Eigen::MatrixXd A;  ///< of all bodies, without C
+  Eigen::MatrixXd B;  ///< the carriers' rates about the rotors' axes:  e.w = B u on a guide at rest
+  Eigen::VectorXd C;  ///< the diagonal of A_R
+  Eigen::VectorXd l;  ///< L = C phi' of regulated rotors, p = C (phi' + e.w) of others
   Eigen::MatrixXd A_eff;  ///< A* of the paper, if all are regulated
-  Eigen::MatrixXd G_R;    ///< gyroscopic: skew to the last bit
+  Eigen::MatrixXd G_R;    ///< gyroscopic: exactly skew
   Eigen::VectorXd h;      ///< B^t l
 
-  /// Forces at u' = 0 less G_R u: of the bodies' other motion, G_A u and its like, and of the
-  /// guide.
+  /// Inertia forces at u' = 0 without G_R u: from the bodies' own motion (G_A u and similar terms)
+  /// and from the guide.
   Eigen::VectorXd c;
 
-  /// Weight, loads, springs, dampers, constant joint forces and the motors of rotors on their
-  /// carriers: -B^t M of driven ones, -B^t C phi'' where a speed changes as it is asked to.
+  /// Weight, loads, springs, dampers, constant joint forces and the reactions of the rotors'
+  /// motors: -B^t M of driven rotors, -B^t C phi'' of regulated rotors with a prescribed
+  /// acceleration.
   Eigen::VectorXd Q;
 };
 
 namespace detail {
 
-/// The angular velocity of a link that each rate gives it at 1, as columns, on guide axes.
+/// The angular velocities of a link per unit of each rate, as columns, on guide axes.
 [[nodiscard]] inline Eigen::Matrix3Xd turning(const BodyTree& tree, std::size_t link,
                                               const BodyWorkspace& w) {
   Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, tree.rates());
@@ -64,7 +64,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Drives and locks of joints are taken as free, as in BodySystem::mass_matrix.
+/// The matrices of a system in the state y. Drives and locks of joints are treated as free, as in
+/// BodySystem::mass_matrix.
 template <class M>
 [[nodiscard]] RotorMatrices rotor_matrices(const BodySystem<M>& system, double t,
                                            const Eigen::VectorXd& y, BodyWorkspace& w) {
@@ -92,7 +93,7 @@ template <class M>
   const auto count = static_cast<Index>(tree.rotors().size());
   Eigen::VectorXd projected(tree.rates());
 
-  detail::set_poses(tree, y.data(), w);  // the inertias have become sums
+  detail::set_poses(tree, y.data(), w);  // restores the inertias that mass_matrix() has summed
   detail::set_motions(tree, moving, v, nullptr, w);
   m.B.resize(count, n);
   m.C.resize(count);
@@ -139,18 +140,19 @@ template <class M>
   return m;
 }
 
-/// What decides whether the precession equations  G_R u = Q  determine the motion.
+/// The rank of G_R. At full rank the precession equations  G_R u = Q  determine the motion.
 ///
-/// Source : paper 000, the condition for which  det G_R != 0  must stand. m rotors give a rank of
-///          2m at most, so it can be met only with an even number of velocities, and no more of
-///          them than 2m
+/// Source : paper 000, the condition  det G_R != 0.  The rank of m rotors is 2m at most, so the
+///          number of velocities must be even and at most 2m
 struct GyroscopicRank {
-  Eigen::VectorXd singular_values;  ///< of G_R, in pairs, falling
+  Eigen::VectorXd singular_values;  ///< of G_R, in pairs, descending
   int rank = 0;
   int most = 0;            ///< 2m
-  Eigen::MatrixXd kernel;  ///< orthonormal columns: along these accelerations cannot be left out
+  Eigen::MatrixXd kernel;  ///< orthonormal columns: directions whose accelerations matter
 };
 
+/// The rank of G_R by its singular values.
+///
 /// Error : singular values below `tolerance` times the greatest count as 0
 [[nodiscard]] inline GyroscopicRank gyroscopic_rank(const RotorMatrices& m,
                                                     double tolerance = 1e-12) {

@@ -4,13 +4,13 @@
 
 #include <dynamics/tree/workspace.hpp>
 
-/// Rotors on their carriers. The carrier's link has the rotor's inertia from the beginning; what is
-/// left of an evaluation are, for each rotor,
+/// Rotors on their carriers. The rotor's inertia is included in its carrier's link. An evaluation
+/// adds, for each rotor,
 ///
 ///   on the carrier   -w x l e  and the motor's reaction -N e,
 ///   of the rotor     phi'' = N/C - e.dw,
 ///
-/// with N from the motor, or N = C phi'' where phi'' is asked for. No angle is looked at.
+/// with N from the motor, or N = C phi'' for a prescribed phi''. The angles are not used.
 ///
 /// Source : paper 000 (14): G_R u = sum_i J^t (w x l_i e_i), l = L if regulated, p else
 
@@ -28,14 +28,14 @@ namespace kreisel::detail {
   return static_cast<std::size_t>(rotor.link.parent);
 }
 
-/// l: C phi' of a regulated rotor, the cyclic momentum C (phi' + e.w) of another.
+/// The weight l: C phi' of a regulated rotor, the cyclic momentum C (phi' + e.w) of another.
 template <class S>
 [[nodiscard]] S momentum_weight(const RotorLink& rotor, const S& rate, const S& turn) {
   if (rotor.regulated()) return rotor.about * rate;
   return rotor.about * (rate + turn);
 }
 
-/// Axes on guide axes, and no force as yet.
+/// Sets the rotors' axes on guide axes, and their forces to 0.
 template <class S>
 void begin_rotors(const BodyTree& tree, MotionSpace<S>& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -46,16 +46,15 @@ void begin_rotors(const BodyTree& tree, MotionSpace<S>& w) {
   }
 }
 
-/// The torque about the axis that brings a rotor to the relative acceleration ddphi, once its
-/// carrier's motion is known.
+/// The torque about the axis for a rotor's relative acceleration ddphi. Needs its carrier's motion.
 template <class S>
 [[nodiscard]] S spin_torque(const RotorLink& rotor, const Vector3<S>& e, const S& ddphi,
                             const MotionSpace<S>& w) {
   return rotor.about * (ddphi + dot(e, w.motion[carrier(rotor)].dw));
 }
 
-/// Adds what the rotors ask of their carriers to the forces of motion in w, where all accelerations
-/// dv are given, and with them the motors' torques.
+/// Adds the rotors' gyroscopic torques and motor reactions to the inertia forces in w, for given
+/// accelerations dv. The motor torques follow from dv.
 template <class S>
 void add_rotor_forces_at(const BodyTree& tree, const S* v, const S* dv, MotionSpace<S>& w) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -70,7 +69,7 @@ void add_rotor_forces_at(const BodyTree& tree, const S* v, const S* dv, MotionSp
   }
 }
 
-/// The rotors' components of the forces on joints.
+/// Sets the rotors' components of the joint forces.
 template <class S>
 void project_rotors(const BodyTree& tree, const S* dv, const MotionSpace<S>& w, S* result) {
   for (std::size_t k = 0; k < tree.rotors().size(); ++k) {
@@ -80,7 +79,7 @@ void project_rotors(const BodyTree& tree, const S* dv, const MotionSpace<S>& w, 
   }
 }
 
-/// Pose and place of a rotor as if its angle were 0: enough for what ignores the angle.
+/// Sets pose and position of a rotor as if its angle were 0, for loads that ignore the angle.
 template <class S>
 void set_place_without_angle(const BodyTree& tree, std::size_t slot, const S* v,
                              MotionSpace<S>& w) {

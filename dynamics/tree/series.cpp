@@ -18,7 +18,7 @@ bool knows_series(const BodyTree& tree) {
   });
 }
 
-/// Axes of which z is the one given.
+/// Axes whose z is the given axis.
 [[nodiscard]] inline Matrix3<double> axes_about(const Vector3<double>& axis) {
   int least = 0;
   for (int i = 1; i < 3; ++i) {
@@ -37,10 +37,10 @@ bool knows_series(const BodyTree& tree) {
   return product[0] + product[1] + product[2];
 }
 
-/// (-y, x, -w, z): two vectors of a plane turned by a right angle.
+/// (-y, x, -w, z): two plane vectors rotated by a right angle.
 [[nodiscard]] inline Vec4d turned_left(const Vec4d& a) { return {-a[1], a[0], -a[3], a[2]}; }
 
-/// The k-th coefficients of w w^t: those with what is newest, and the others.
+/// The k-th coefficients of w w^t: first the products with the newest coefficient, then the others.
 inline void TreeSeries::Branch::begin_products(std::size_t k) {
   squares = w[0] * w[k];
   next = w[0] * w_cycled[k];
@@ -50,7 +50,7 @@ inline void TreeSeries::Branch::add_product(std::size_t i, std::size_t j) {
   next += w[i] * w_cycled[j];
 }
 
-/// From w_next; per_time = (k + 1)/h.
+/// Computes dw and gamma from w_next; per_time = (k + 1)/h.
 inline void TreeSeries::Branch::accelerate(double per_time) {
   dw.as_is = per_time * w_next.as_is;
   dw.next = per_time * w_next.next;
@@ -449,7 +449,7 @@ void TreeSeries::set_left(int k, const Columns& c) {
     if (b.way == Way::ball) {
       for (int j = 0; j < 3; ++j) left[j] -= b.moment[j];
       if (!b.floats) continue;
-      // What nothing brakes takes no force at any order.
+      // For an unbraked link these forces vanish at every order.
       const Ball& ball = balls_[b.number];
       const Vec4d f = b.inwards * CyclicVec4d(ball.f_sum + ball.turn[0] * CyclicVec4d(b.force));
       for (int j = 0; j < 3; ++j) left[3 + j] -= f[j];

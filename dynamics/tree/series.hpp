@@ -15,86 +15,86 @@
 
 namespace kreisel::detail {
 
-/// Whether all that acts in a tree has a series that is known: no loads, no rates that rotors are
-/// asked for, and nothing that floats against another body.
+/// True if the motion of a tree has a computable Taylor series. The tree then has no loads, no
+/// prescribed rotor accelerations and no free joint between two bodies.
 KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree);
 
 /// The Taylor series of the motion of a tree, for TaylorSteps.
 ///
-/// What the motion takes as forces is put together order by order, outwards and inwards along the
-/// tree. Of order k it is linear in the accelerations of order k, with the mass matrix of where the
-/// step begins: this is factored once for all orders, and no series is divided by another.
+/// Outward and inward passes compute the inertia forces order by order. At order k they are linear
+/// in the accelerations of order k, with the mass matrix at the beginning of the step. It is
+/// factored once for all orders, and no series is divided by another:
 ///
-///   M dv_k = forces_k - (what the motion takes with dv_k = 0)
+///   M dv_k = forces_k - (inertia forces with dv_k = 0)
 ///
-/// Each link stands on axes of its own, on which its inertia is constant and a joint's axis is z. Then
-/// all products of series are, of a link, those that turn its parent's motion to its own axes and its
-/// forces back, and the six of w w^t.
+/// Each link has axes on which its inertia is constant and its joint's axis is z. Products of
+/// series are then needed only to rotate motions outwards and forces inwards, and for the six of w
+/// w^t.
 ///
 /// Source : recurrences for products: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 ///          Differential Equations I, I.8
 /// Cost   : linear in the number of bodies; an order takes half an evaluation of the field for one
 ///          link, up to 1.2 in a long chain (benchmarks/body_system.cpp)
-/// Throws : as the field
+/// Throws : as the field does
 class KREISEL_API TreeSeries {
  public:
   static constexpr int most_order = most_series_order;
 
-  /// High orders take hardly longer than low ones, and a step takes an evaluation of the field besides.
+  /// High orders cost hardly more than low ones, and each step also evaluates the field.
   static constexpr double relative_order = 1.15;
 
-  /// The field, which leaves the joints eliminated.
+  /// The vector field; leaves the joints eliminated in the workspace.
   using Field = std::function<void(double t, const Eigen::VectorXd& y, Eigen::VectorXd& rate,
                                    BodyWorkspace& w)>;
-  /// u and g' at the guide's origin.
+  /// The series of u and g' at the guide's origin.
   using Felt = std::function<GuideSeries(double t, double h, int order)>;
 
-  /// The tree has to outlive this.
+  /// The tree must outlive this object.
   TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt);
 
   /// Fills the columns 1 to `order` of c with the coefficients of the state in powers of
-  /// (time - t)/h, for the motion that has column 0 at t.
+  /// (time - t)/h, for the motion whose state at t is column 0.
   void operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c);
 
  private:
   template <class T>
   using Of = std::array<T, most_order + 1>;
 
-  /// How a link moves against its parent, to what is asked here.
+  /// The motion of a link relative to its parent.
   enum class Way { still, turning, sliding, ball };
 
-  /// A link. All vectors stand on its own axes where nothing else is said.
+  /// A link. All vectors are on its own axes unless stated otherwise.
   struct Branch {
     Way way = Way::still;
-    bool slides = false;  ///< alone, or while it turns: a screw
+    bool slides = false;  ///< alone, or while it rotates: a screw
     bool floats = false;
-    bool is_turned = true;   ///< by its parent: what it hangs on is no guide at rest
-    bool hands_on = true;    ///< forces to a parent that is not the guide
-    bool is_braked = false;  ///< floats, with joint forces on its place
+    bool is_turned = true;   ///< by its parent: false on a guide at rest
+    bool hands_on = true;    ///< its parent is not the guide and needs its forces
+    bool is_braked = false;  ///< floats, with joint forces on its position
     std::size_t parent = 0;
     std::size_t number = 0;  ///< among the sliders or among the balls
     int q = 0;               ///< rows of its coordinates and of its rates
     int v = 0;
     int rates = 0;                                           ///< where its rates begin among all
     Matrix3<double> own_axes = Matrix3<double>::Identity();  ///< from the body's axes to these
-    Mat3dByDiagonals outwards;  ///< from the parent's own axes to those that the joint turns from
-    Mat3dByDiagonals inwards;   ///< and back
+    Mat3dByDiagonals outwards;  ///< from the parent's own axes to the joint's at angle 0
+    Mat3dByDiagonals inwards;   ///< the inverse
     double mass = 0;
     CyclicVec4d first_moment;
     Mat3dByDiagonals tensor;
     GyroscopicDifferences gyroscopic = GyroscopicDifferences({});
 
-    // Of where the step begins.
+    // Values at the beginning of the step.
     CyclicVec4d r;     ///< from the parent's origin, on the parent's axes
     Vec4d first_turn;  ///< (w_x, w_y, 0, 0) of the parent, on the joint's axes
 
-    // Of order k: what does not need the accelerations of this order.
+    // Order k: quantities that do not depend on the accelerations of this order.
     Vec4d squares, next;  ///< of w: (xx, yy, zz), (xy, yz, zx)
     Vec4d gyroscopic_moment;
     Vec4d outer, inner;  ///< sums for `turned` and `back`
     Vec4d carried;       ///< where it slides or floats: acceleration, on the parent's axes
 
-    // And what does.
+    // Order k: quantities that do.
     CyclicVec4d w_next;  ///< of order k + 1
     CyclicVec4d dw;
     Vec4d a;                 ///< inertial acceleration of the origin, gravity taken off
@@ -103,9 +103,9 @@ class KREISEL_API TreeSeries {
 
     // Series.
     Of<Vec4d> w, w_cycled;  ///< (x, y, z), (y, z, x)
-    Of<double> cos, sin;    ///< of the angle that it turns by
-    Of<Vec4d> turned;  ///< (w_x, w_y) of order k + 1 and (a_x, a_y), before the joint turns them
-    Of<Vec4d> back;    ///< (f_x, f_y, n_x, n_y), before they are turned back
+    Of<double> cos, sin;    ///< of the joint's angle
+    Of<Vec4d> turned;  ///< (w_x, w_y) of order k + 1 and (a_x, a_y), before the joint's rotation
+    Of<Vec4d> back;    ///< (f_x, f_y, n_x, n_y), before the rotation back
 
     void set_outwards(const Matrix3<double>& turn) {
       outwards = Mat3dByDiagonals::of(turn);
@@ -116,15 +116,15 @@ class KREISEL_API TreeSeries {
     inline void accelerate(double per_time);
   };
 
-  /// What a link that slides has besides, on the parent's axes.
+  /// Further quantities of a link that slides, on the parent's axes.
   struct Slider {
-    CyclicVec4d axis;                  ///< as long as the way by one of the coordinate
-    Vec4d lever;                   ///< moment of what it hands on, but for the newest
-    Of<Vec4d> gamma_axis, w_axis;  ///< of the parent: gamma e, 2 w x e
+    CyclicVec4d axis;              ///< length: displacement per unit of the coordinate
+    Vec4d lever;                   ///< moment of the transmitted force, without its newest order
+    Of<Vec4d> gamma_axis, w_axis;  ///< with the parent's gamma and w: gamma e, 2 w x e
     Of<Vec4d> moment;              ///< e x f
   };
 
-  /// The sum of products m^t v, with the matrices by their diagonals.
+  /// The sum of products m^t v, with the matrices stored by diagonals.
   struct TransposedProducts {
     Vec4d main = {0, 0, 0, 0};
     Vec4d upper = {0, 0, 0, 0};
@@ -138,17 +138,17 @@ class KREISEL_API TreeSeries {
     [[nodiscard]] Vec4d sum() const { return main + lower.next() + upper.after(); }
   };
 
-  /// What a link that turns as a ball has besides.
+  /// Further quantities of a spherical or free link.
   struct Ball {
     double scale = 0;       ///< 1/|q|^2
     Vec4d first_w;          ///< of the parent, on the joint's axes
-    Vec4d w_sum, a_sum;     ///< of order k: of the parent, turned, without what is newest
-    Vec4d f_sum, n_sum;     ///< of its own, turned back
+    Vec4d w_sum, a_sum;     ///< order k: the parent's, rotated, without the newest terms
+    Vec4d f_sum, n_sum;     ///< its own, rotated back
     Of<Vec4d> q, q_cycled;  ///< (x, y, z, w), (y, z, x, w)
     Of<Mat3dByDiagonals> turn, turn_back;  ///< R, R^t
-    Of<Vec4d> w, a;                        ///< of the parent, before the joint turns them
-    Of<Vec4d> f, n;                        ///< of its own, before they are turned back
-    Of<CyclicVec4d> place, slide;          ///< of what floats, on guide axes
+    Of<Vec4d> w, a;                        ///< of the parent, before the joint's rotation
+    Of<Vec4d> f, n;                        ///< its own, before the rotation back
+    Of<CyclicVec4d> place, slide;          ///< of a floating link, on guide axes
 
     inline void put_attitude(std::size_t k, const Vec4d& coefficient);
   };
@@ -169,7 +169,7 @@ class KREISEL_API TreeSeries {
 
   void begin(const Columns& c);
 
-  /// Sums of what is known of order k, and the coordinates' coefficients of the next.
+  /// Computes the sums known at order k, and the coordinates' coefficients of order k + 1.
   void prepare(int k, double h, const GuideSeries& felt, Columns& c);
   void prepare_guide(std::size_t k, double per_time, const GuideSeries& felt);
   void prepare_turning(Branch& b, int k, double weight, Columns& c);
@@ -178,14 +178,14 @@ class KREISEL_API TreeSeries {
   void prepare_floating(Branch& b, int k, double weight, Columns& c);
   void prepare_spins(int k, double weight, Columns& c);
 
-  /// The motion of order k with the accelerations dv, and what it takes as forces.
+  /// Compute the motion of order k with the accelerations dv, and its inertia forces.
   void go_outwards(std::size_t k, double weight, const double* dv);
   void go_inwards(std::size_t k);
 
-  /// The joint forces of order k less what the motion takes of them.
+  /// Sets left_ to the joint forces of order k less the inertia forces.
   void set_left(int k, const Columns& c);
 
-  /// The accelerations that bring it about.
+  /// Solve  M dv = left_; prepare_response() inverts M for small trees.
   void prepare_response();
   const double* response();
 
@@ -202,9 +202,9 @@ class KREISEL_API TreeSeries {
   std::vector<Spin> spins_;
   Of<Mat3dByDiagonals> guide_gamma_;
 
-  /// Beyond which the mass matrix is not inverted: then linear time pays.
+  /// The most rates for which the mass matrix is inverted; for more, linear time is faster.
   static constexpr int most_inverted = 12;
-  std::size_t fours_;  ///< of a column of the inverse, by four; 0 where it is not inverted
+  std::size_t fours_;  ///< packs of four in a column of the inverse; 0 if not inverted
   std::vector<Vec4d> inverse_;
   std::array<double, most_inverted> dv_;
 };

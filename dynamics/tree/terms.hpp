@@ -9,7 +9,7 @@
 
 namespace kreisel::detail {
 
-/// What forward dynamics of a tree computes of (26), and what it leaves out.
+/// The terms of paper 002 (26) that the forward dynamics of a tree computes or leaves out.
 [[nodiscard]] inline Terms equation_terms(const BodyTree& tree, bool guide_rests,
                                           const Gravity& gravity) {
   std::string ruled;

@@ -13,8 +13,8 @@ namespace kreisel {
 
 namespace detail {
 
-/// Makes a link turn about its axis, on which it stands as `still` says, after Rodrigues:
-///  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
+/// Sets the rotation of a link about its axis by Rodrigues' formula, from its rotation `still` at
+/// angle 0:  (a a^t + cos (1 - a a^t) + sin skew(a)) still.
 inline void turn_about_axis(Link& link) {
   const Vector3<double>& a = link.axis;
   for (int k = 0; k < 3; ++k) {
@@ -30,7 +30,7 @@ inline void turn_about_axis(Link& link) {
   }
 }
 
-/// Makes a link move as that part of a joint does.
+/// Gives a link the motion of a part of a joint.
 inline void set_motion(Link& link, const JointPart& part) {
   link.kind = part.kind;
   if (dot(part.axis, part.axis) > 0) link.axis = normalized(part.axis);
@@ -95,7 +95,7 @@ void BodyTree::check_parent(int body) const {
     detail::refuse_body(name, "its parent '" + parent + "' is a rotor, which can carry nothing");
   }
   if (found->second < body) return;
-  // Up from the parent, to tell a loop from a list in the wrong order.
+  // Follows the parents to distinguish a loop from a list in the wrong order.
   std::string path = name + " -> " + parent;
   auto above = found;
   for (std::size_t step = 0; step < bodies_.size(); ++step) {

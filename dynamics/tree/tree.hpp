@@ -10,7 +10,7 @@
 
 namespace kreisel {
 
-/// Where the coordinates and the rates of a body's joint lie.
+/// First index and count of the coordinates and the rates of a body's joint.
 struct JointPlace {
   int q;
   int q_count;
@@ -18,12 +18,12 @@ struct JointPlace {
   int v_count;
 };
 
-/// The structure of a system of bodies: checked descriptions, made into links.
+/// The structure of a system of bodies: checked descriptions and the links made from them.
 ///
-/// Throws : InvalidInput naming body and reason: no, reserved or repeated name; parent unknown,
-///          later in the list or closing a loop; inertia that no mass can have; axis 0, parallel
-///          axes of a universal joint; forces that do not fit the joint; a number that is not
-///          finite; a rotor that is none
+/// Throws : InvalidInput, naming body and reason: no, reserved or repeated name; parent unknown,
+///          later in the list or closing a loop; physically impossible inertia; axis 0; parallel
+///          axes of a joint; forces that do not fit the joint; a number that is not finite; an
+///          invalid rotor
 class KREISEL_API BodyTree {
  public:
   explicit BodyTree(std::vector<BodyDescription> bodies);
@@ -38,13 +38,15 @@ class KREISEL_API BodyTree {
     Signal<double> signal;
   };
   [[nodiscard]] const std::vector<TimedForce>& timed_forces() const { return timed_forces_; }
-  /// The coordinate that the spring of each joint force follows.
+  /// The coordinate of each joint force's spring.
   [[nodiscard]] const std::vector<int>& coordinate_of() const { return coordinate_of_; }
   [[nodiscard]] int coordinates() const { return coordinates_; }
   [[nodiscard]] int rates() const { return rates_; }
   [[nodiscard]] int balls() const { return balls_; }  ///< spherical and free links
 
-  /// Throws : InvalidInput where no body has that name
+  /// The index of the body with this name.
+  ///
+  /// Throws : InvalidInput if there is none
   [[nodiscard]] int index(const std::string& name) const;
 
   [[nodiscard]] const BodyDescription& body(int i) const {
@@ -54,29 +56,29 @@ class KREISEL_API BodyTree {
   /// The bodies that have loads.
   [[nodiscard]] const std::vector<int>& loaded() const { return loaded_; }
 
-  /// Whether there are loads or joint forces that change with time.
+  /// True if there are loads, or joint forces that change with time.
   [[nodiscard]] bool is_acted_on() const { return is_acted_on_; }
 
-  /// Links and, after them, rotors: for how many things a workspace has room.
+  /// The number of links and rotors: the slots of a workspace, links first.
   [[nodiscard]] std::size_t slots() const { return links_.size() + rotors_.size(); }
   [[nodiscard]] std::size_t rotor_slot(std::size_t rotor) const { return links_.size() + rotor; }
 
-  /// The link, or the slot of the rotor, that is a body.
+  /// The slot of a body's last link, or of its rotor.
   [[nodiscard]] std::size_t link(int body) const {
     return last_link_[static_cast<std::size_t>(body)];
   }
 
   [[nodiscard]] JointPlace place(int body) const;
 
-  /// Components of the coordinates, then of the rates, that share unit and size.
+  /// Lengths of the blocks of coordinates, then of rates, whose components share unit and size.
   [[nodiscard]] std::vector<int> blocks() const;
 
  private:
   void check_parent(int body) const;
   void append(int body);
 
-  /// The inertia of a rotor goes to its carrier: whole, if its relative rate is given, else without
-  /// that about its axis, about which it does not turn along.
+  /// Adds a rotor, and its inertia to its carrier's. The moment about its axis is added only if the
+  /// relative rate is given: another rotor does not follow the carrier's rotation about this axis.
   void weld(detail::Link& link);
   void push(detail::Link& link);
 

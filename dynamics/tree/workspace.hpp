@@ -9,15 +9,15 @@ namespace kreisel {
 
 namespace detail {
 
-/// What the elimination of a joint with one coordinate leaves: the force motor U that its unit
-/// acceleration takes, 1/(U . S), and the force left over for it.
+/// The elimination of a joint with one coordinate: the force motor U for its unit acceleration,
+/// 1/(U . S), and the joint force less the force that the motion needs at dv = 0.
 struct SingleElimination {
   Motor<> U = {};
   double inverse = 0;
   double rest = 0;
 };
 
-/// The same of a spherical or free joint; x: its acceleration as long as the parent has none.
+/// The elimination of a spherical or free joint; x is its acceleration if the parent has none.
 struct BallElimination {
   FactoredSymmetric3<> linear = {};
   FactoredSymmetric3<> angular = {};
@@ -25,13 +25,14 @@ struct BallElimination {
   Motor<> x = {};
 };
 
-/// Sizes of what was taken off on the way, to tell an inertia from what rounding left of one.
+/// Sums of the inertias before subtraction: the scale by which rounding errors are recognized.
 struct Size {
   double linear = 0;
   double angular = 0;
 };
 
-/// How the links move and what that takes. For dual numbers it is all that is needed.
+/// Motions of the links and the forces that they need. Evaluations in dual numbers need nothing
+/// more.
 template <class S = double>
 struct MotionSpace {
   explicit MotionSpace(const BodyTree& tree)
@@ -42,19 +43,18 @@ struct MotionSpace {
         force(tree.slots()),
         joint_force(Eigen::Matrix<S, Eigen::Dynamic, 1>::Zero(tree.rates())) {}
 
-  std::vector<LinkPose<S>> pose;  ///< of links, then of rotors, as motion, place and force
+  std::vector<LinkPose<S>> pose;  ///< of links, then of rotors, as for motion, place and force
   std::vector<LinkMotion<S>> motion;
   std::vector<LinkPlace<S>> place;
   std::vector<Inertia<S>> inertia;  ///< on guide axes
-  std::vector<Motor<S>> force;      ///< of each link alone, then of it and all that hangs on it
+  std::vector<Motor<S>> force;      ///< of each link alone, then of it and all links outward
   Eigen::Matrix<S, Eigen::Dynamic, 1> joint_force;
 };
 
 }  // namespace detail
 
-/// Scratch memory for one evaluation of a BodySystem at a time: one of it for each thread. All that
-/// is computed grows linearly with the number of bodies; nothing is asked of the heap once it is
-/// made.
+/// Scratch memory of a BodySystem; each thread needs its own. An evaluation with a workspace
+/// allocates no memory.
 ///
 /// Cost : 1 kB for each body
 struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
@@ -63,11 +63,11 @@ struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
   std::vector<detail::ArticulatedInertia> articulated;
   std::vector<detail::SingleElimination> single;
   std::vector<detail::Size> size;
-  std::vector<Motor<>> delta;  ///< acceleration less that with no joint accelerating
+  std::vector<Motor<>> delta;  ///< acceleration less the one at dv = 0
   std::vector<detail::BallElimination> ball;
   Eigen::VectorXd still;  ///< rates that are all 0
   Eigen::VectorXd acceleration;
-  std::vector<double> spin_up;  ///< of each rotor: the relative acceleration that is asked for
+  std::vector<double> spin_up;  ///< prescribed relative acceleration of each rotor
 };
 
 }  // namespace kreisel

@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// The joint that turns about `axis` and slides along it.
+/// The joint that rotates about `axis` and slides along it.
 [[nodiscard]] inline JointType cylindrical_joint() {
   return {
       .kind = JointKind::cylindrical,

@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// The joint that holds nothing.
+/// The joint without constraints: six degrees of freedom.
 [[nodiscard]] inline JointType free_joint() {
   return {.kind = JointKind::free,
           .name = "free",

@@ -10,7 +10,7 @@ namespace kreisel {
 /// All kinds of joints, in the order of JointKind.
 KREISEL_API [[nodiscard]] const std::vector<JointType>& joint_types();
 
-/// The type of the joints of a kind.
+/// The joint type of a kind.
 KREISEL_API [[nodiscard]] const JointType& joint_type(JointKind kind);
 
 }  // namespace kreisel

@@ -6,10 +6,12 @@
 
 namespace kreisel::detail {
 
-/// The two directions of the displacements of a planar joint, on the parent's axes, with which they
-/// turn: the body's own turning leaves them. The first is the part across `axis` of `second_axis`;
-/// without one, of the parent's axis that follows the one nearest to `axis` in the order x, y, z, x.
-/// The second is  axis x first.  About z they are x and y of the parent.
+/// The two directions of the displacements of a planar joint, on the parent's axes. They are fixed
+/// in the parent: the joint's rotation does not affect them.
+///
+/// The first is the component of `second_axis` normal to `axis`. The default of `second_axis` is
+/// the parent's axis after the one nearest to `axis`, in the order x, y, z, x. The second direction
+/// is axis x first.  For the axis z they are x and y of the parent.
 [[nodiscard]] inline std::pair<Vector3<double>, Vector3<double>> directions(const Joint& joint) {
   const Vector3<double> axis = joint.axis.normalized();
   Vector3<double> first = joint.second_axis;
@@ -23,7 +25,7 @@ namespace kreisel::detail {
   return {first, axis.cross(first)};
 }
 
-/// The joint that slides in the plane normal to `axis` and turns about it.
+/// The joint that slides in the plane normal to `axis` and rotates about it.
 [[nodiscard]] inline JointType planar_joint() {
   return {.kind = JointKind::planar,
           .name = "planar",

@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// The joint that turns about `axis`.
+/// The joint that rotates about `axis`.
 [[nodiscard]] inline JointType revolute_joint() {
   return {.kind = JointKind::revolute,
           .name = "revolute",

@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// The joint that turns about `axis` and advances along it by `pitch` metres per radian.
+/// The joint that rotates about `axis` and advances along it by `pitch` metres per radian.
 [[nodiscard]] inline JointType screw_joint() {
   return {.kind = JointKind::screw,
           .name = "screw",

@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// The attitude of a joint that turns about a point.
+/// The attitude of a spherical or free joint.
 [[nodiscard]] inline JointQuantity joint_attitude() {
   return {"attitude",
           "1",
@@ -14,7 +14,7 @@ namespace kreisel::detail {
           JointQuantity::Meaning::attitude};
 }
 
-/// The angular velocity of such a joint.
+/// The angular velocity of a spherical or free joint.
 [[nodiscard]] inline JointQuantity joint_angular_velocity() {
   return {"angular_velocity",
           "rad/s",
@@ -23,7 +23,7 @@ namespace kreisel::detail {
           {"x", "y", "z"}};
 }
 
-/// The joint that turns about a point.
+/// The joint that rotates about a point.
 [[nodiscard]] inline JointType spherical_joint() {
   return {.kind = JointKind::spherical,
           .name = "spherical",

@@ -11,19 +11,19 @@
 
 namespace kreisel {
 
-/// A quantity that a joint has one or more numbers of: an angle, a displacement, an attitude.
+/// A quantity of a joint, of one or more numbers: an angle, a displacement, an attitude.
 struct JointQuantity {
   enum class Meaning {
     plain,     ///< coordinates or rates themselves
-    attitude,  ///< quaternion: shown against the parent's axes, `orientation` of the joint included
-    place      ///< shown from the parent's origin, `position` of the joint included
+    attitude,  ///< quaternion: shown relative to the parent, `orientation` of the joint included
+    place      ///< position: shown from the parent's origin, `position` of the joint included
   };
 
   std::string key;                   ///< in `initial` of scene files
   std::string unit;                  ///< "rad", "m", "1"; of a rate "rad/s", "m/s"
   std::vector<std::string> columns;  ///< names of the numbers in tables
-  std::string title;                 ///< heading of a picture
-  std::vector<std::string> curves;   ///< names of the numbers in that picture
+  std::string title;                 ///< of the plot
+  std::vector<std::string> curves;   ///< names of the numbers in the plot
   Meaning meaning = Meaning::plain;
 
   [[nodiscard]] int count() const { return static_cast<int>(columns.size()); }
@@ -31,17 +31,18 @@ struct JointQuantity {
 
 namespace detail {
 
-/// How a link moves against the one before it: the motions that all joints are made of. The
-/// equations of each are in motion.hpp (pose, motion subspace, bias acceleration), passes.hpp
-/// (rates of the coordinates), elimination.hpp and series.cpp.
+/// The motion of a link relative to its parent: all joints consist of these.
+///
+/// Their equations are in motion.hpp (pose, motion subspace, bias acceleration), passes.hpp (rates
+/// of the coordinates), elimination.hpp and series.cpp.
 enum class LinkKind { fixed, revolute, prismatic, screw, spherical, free };
 
-/// One motion of a joint. Several follow each other outwards, each on axes that the ones before it
-/// move, with no mass between.
+/// One motion of a joint. The motions follow each other outwards, without mass between them. Each
+/// one moves the axes of those after it.
 struct JointPart {
   LinkKind kind = LinkKind::fixed;
   Vector3<double> axis = Vector3<double>::Zero();  ///< on the parent's axes at zero coordinates
-  double pitch = 0;  ///< metres along the axis by one of the coordinate; of a prismatic one 1
+  double pitch = 0;  ///< metres along the axis per unit of the coordinate; prismatic: 1
 };
 
 /// The motions of a joint, from its parent outwards: one to three.
@@ -62,10 +63,10 @@ class JointParts {
 
 }  // namespace detail
 
-/// A kind of joint: all that the library needs in order to compute, read and show it.
+/// A kind of joint: all data needed to compute, read and show it.
 ///
-/// Coordinates and rates stand in the state in the order of the parts, and in tables too; only a
-/// quaternion, (x, y, z, w) in the state, is (w, x, y, z) in tables.
+/// Coordinates and rates have the order of the parts, in the state and in tables. A quaternion is
+/// (x, y, z, w) in the state, but (w, x, y, z) in tables.
 struct JointType {
   enum class Axis { none, optional, required };
 
@@ -81,12 +82,12 @@ struct JointType {
   [[nodiscard]] int coordinate_count() const { return count(coordinates); }
   [[nodiscard]] int rate_count() const { return count(rates); }
 
-  /// Whether a quaternion is among the coordinates.
+  /// True if a quaternion is among the coordinates.
   [[nodiscard]] bool has_attitude() const {
     return !coordinates.empty() && coordinates.front().meaning == JointQuantity::Meaning::attitude;
   }
 
-  /// Whether each rate is that of one coordinate, so that springs and potentials are possible.
+  /// True if each rate is the derivative of one coordinate, so springs and potentials are possible.
   [[nodiscard]] bool has_single_coordinates() const {
     return !coordinates.empty() && !has_attitude();
   }

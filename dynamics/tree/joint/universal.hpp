@@ -4,7 +4,7 @@
 
 namespace kreisel::detail {
 
-/// The joint that turns about `axis` of the parent, then about `second_axis`, which turns along.
+/// The joint that rotates about the parent's `axis`, then about `second_axis`, which rotates along.
 [[nodiscard]] inline JointType universal_joint() {
   return {.kind = JointKind::universal,
           .name = "universal",

@@ -32,7 +32,7 @@ OrbitElements<S> inclined(S j2 = S(0)) {
           .j2 = j2};
 }
 
-/// The derivative of fourth order in the step.
+/// The derivative by differences of fourth order in the step.
 template <class F>
 auto slope(const F& f, Real t, Real h) {
   return ((8 * (f(t + h) - f(t - h)) - (f(t + 2 * h) - f(t - 2 * h))) / (12 * h)).eval();
@@ -42,7 +42,7 @@ auto slope(const F& f, Real t, Real h) {
 
 BOOST_AUTO_TEST_SUITE(kepler)
 
-// In 50 digits; the mean anomaly is the one of a number E given, rounded.
+// Compared in 50 digits; the mean anomaly is computed from a given E and rounded.
 BOOST_DATA_TEST_CASE(is_solved_to_the_last_digits, data::xrange(2000u), seed) {
   const double shares[] = {0, 1e-12, 0.01, 0.3, 0.9, 0.999, 1 - 1e-9, 1 - 1e-15};
   const double e = shares[seed % 8];
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(comes_back_after_a_period) {
                   Vector3<double>(frame(0.0).X.value.translation), 9e6, 40));
 }
 
-// Of a circle nothing but the constant rate is left.
+// A circle has a constant rate only.
 BOOST_AUTO_TEST_CASE(turns_evenly_on_a_circle) {
   const OrbitElements<> circle{.semi_major_axis = 7e6, .inclination = 0.5, .anomaly = 1};
   const OrbitFrame<> frame(circle);
@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(turns_evenly_on_a_circle) {
   }
 }
 
-// Velocity and acceleration are the derivatives of the pose, also where node and perigee turn.
+// Velocity and acceleration are the derivatives of the pose, also if node and perigee precess.
 BOOST_DATA_TEST_CASE(moves_as_its_pose_does, data::xrange(8u), k) {
   const OrbitFrame<Guide, Inertial, Real> frame(inclined<Real>(k % 2 ? 1e-3L : 0));
   const Real t = 1000 * k;
@@ -139,7 +139,7 @@ BOOST_DATA_TEST_CASE(moves_as_its_pose_does, data::xrange(8u), k) {
   BOOST_TEST((dv - now.dV.value.moment).norm() < 1e-12L);
 }
 
-// precession is what the mean rates add to the acceleration of Kepler's motion.
+// precession is the acceleration by the mean rates, added to the Kepler acceleration.
 BOOST_DATA_TEST_CASE(says_what_precession_adds, data::xrange(8u), k) {
   const OrbitElements<Real> o = inclined<Real>(1e-3L);
   const OrbitFrame<Guide, Inertial, Real> frame(o);
@@ -173,7 +173,7 @@ BOOST_AUTO_TEST_CASE(has_derivatives_by_time_and_elements) {
                            now.V.value.resultant.y().derivatives()[0],
                            now.V.value.resultant.z().derivatives()[0]);
   BOOST_TEST(near(du, Vector3<double>(plain.dV.value.resultant), 1e-6, 8));
-  // By the eccentricity, against a difference in long double.
+  // The derivative by the eccentricity, against a difference in long double.
   OrbitElements<Dual> dual;
   dual.semi_major_axis = 9e6;
   dual.eccentricity = 0.3;

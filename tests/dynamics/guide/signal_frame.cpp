@@ -34,7 +34,8 @@ Angle angle(const Number& signal, double t) {
   return {Real(signal(t)), Real(signal.derivative(t, 1)), Real(signal.derivative(t, 2))};
 }
 
-/// The angular velocity on the turned axes, from the rates of yaw, pitch and roll:
+/// The angular velocity on the rotated axes, from the rates of yaw, pitch and roll.
+///
 ///   (r' - y' sin p, p' cos r + y' cos p sin r, -p' sin r + y' cos p cos r)
 Vector3<Real> turning(const Angle& y, const Angle& p, const Angle& r) {
   using std::cos, std::sin;
@@ -124,7 +125,7 @@ BOOST_AUTO_TEST_CASE(jumps_of_velocity_are_refused) {
 }
 
 /// A pendulum in the xz plane on a pivot at (x, z)(t):  L q'' = -(g + z'') sin q - x'' cos q,  by
-/// Runge and Kutta's steps in long double.
+/// Runge-Kutta steps in long double.
 BOOST_AUTO_TEST_CASE(pendulum_on_a_moved_pivot) {
   const Real length = 0.8L, g = 9.81L;
   const Vector position({0, 0, 0}, {1.5, 0, 0}, {{{0.2, 0, 0}, 2.1, 0.4}, {{0, 0, 0.3}, 3.7, 1}});

@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(deflects_a_falling_body_to_the_east) {
   BOOST_TEST(near(end.position.x(), g * t * t / 2, 100.0, 1e-5 / test::u<>));
 }
 
-// The same fall, observed from a frame that does not turn.
+// The same fall, observed from a frame that does not rotate.
 BOOST_AUTO_TEST_CASE(shows_the_same_fall_as_the_inertial_frame) {
   const auto earth = earth_frame(munich);
   const FreeBody on_earth(ball, earth, EarthGravitation{});

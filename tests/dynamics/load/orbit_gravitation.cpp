@@ -52,7 +52,7 @@ Vector3<double> rounded(const Wide& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// g at a place, from the formula with a polar axis z.
+/// g at a position, from the formula with a polar axis z.
 Wide gravitation(const Wide& p, double flattening) {
   const Digits r2 = dot(p, p);
   const Digits r = sqrt(r2);
@@ -63,7 +63,7 @@ Wide gravitation(const Wide& p, double flattening) {
   return {across * p[0], across * p[1], along * p[2]};
 }
 
-/// Where a free particle is after a time, by f and g functions.
+/// The position of a free particle after a time, by f and g functions.
 ///
 /// Source : R. H. Battin, An Introduction to the Mathematics and Methods of Astrodynamics, 4.3
 Wide kepler_place(const Wide& x, const Wide& v, const Digits& t) {
@@ -97,7 +97,7 @@ struct Cloud {
   }
 };
 
-/// Symmetric about its centre of mass, which is not its origin.
+/// A cloud that is symmetric about its centre of mass, which is not its origin.
 Cloud cloud(unsigned seed, double size) {
   test::Sample sample(seed);
   const Vector3<double> centre = size * sample.direction();
@@ -141,7 +141,7 @@ BOOST_DATA_TEST_CASE(has_its_tide_to_the_last_digits, data::xrange(300u), seed) 
   BOOST_TEST(near(planet<double>(flattening).tide(p, d), truth, truth.norm(), 16));
 }
 
-// Its slope is the tide: differences of fourth order in long double.
+// The slope of the potential is the tide: differences of fourth order in long double.
 BOOST_DATA_TEST_CASE(has_a_tidal_potential, data::xrange(40u), seed) {
   using Real = long double;
   test::Sample sample(seed);
@@ -155,7 +155,7 @@ BOOST_DATA_TEST_CASE(has_a_tidal_potential, data::xrange(40u), seed) {
     const Real slope = (8 * (U(1) - U(-1)) - (U(2) - U(-2))) / 12e3L;
     BOOST_TEST(std::abs(slope - tide[i]) < 1e-8L * tide.norm());
   }
-  // Small places keep its digits on a sphere.
+  // Without J2 the potential keeps its digits at small distances.
   const Vector3<double> place = p.cast<double>();
   const Vector3<double> near_it = 1e-3 * d.cast<double>().normalized();
   const double r = place.norm();
@@ -165,7 +165,7 @@ BOOST_DATA_TEST_CASE(has_a_tidal_potential, data::xrange(40u), seed) {
                   1e-15 / test::u<>));
 }
 
-// A body of point masses: what is left is of fourth order, (size/r)^2 of the terms.
+// A body of point masses: the error is of fourth order, (size/r)^2 of the terms.
 BOOST_DATA_TEST_CASE(acts_on_a_body_of_finite_size, data::xrange(40u), seed) {
   const double flattening = seed % 2 ? j2 : 0;
   const double size = 1000;
@@ -220,8 +220,8 @@ BOOST_DATA_TEST_CASE(acts_on_a_body_of_finite_size, data::xrange(40u), seed) {
   BOOST_TEST(about_centre(load(false)).norm() < rounding);
 }
 
-// Both terms come from one potential: bodies as large as a fifth of the distance keep energy and the
-// momentum about the pole.
+// Both terms come from one potential: even bodies as large as a fifth of the distance conserve
+// energy and the angular momentum about the pole.
 BOOST_DATA_TEST_CASE(keeps_energy_of_large_bodies, data::xrange(2), oblate) {
   const OblateGravitation<> load{.parameter = 1000,
                                  .radius = 3,
@@ -274,7 +274,7 @@ BOOST_DATA_TEST_CASE(moves_particles_as_two_orbits_do, data::xrange(6), k) {
   start.velocity.value.moment = 1e-3 * size * Vector3<double>(0.2, 0.5, -0.3);
   const double t = 6000;
   const auto end = Integrator(particle, 0, start).to(t);
-  // Both orbits from the same numbers: the guide's place and velocity need no more digits than these.
+  // Both orbits use the same numbers, so the guide's position and velocity need no further digits.
   const OrbitFrame<> frame(orbit);
   const auto now = frame(0.0);
   const auto then = frame(t);
@@ -290,7 +290,7 @@ BOOST_DATA_TEST_CASE(moves_particles_as_two_orbits_do, data::xrange(6), k) {
   BOOST_TEST((end.position - truth).norm() < 1e-12 * truth.norm());
 }
 
-// 3 mu/r^3 r x (I r) on the body's axes, and a sphere feels none.
+// 3 mu/r^3 r x (I r) on the body's axes; the torque on a sphere is 0.
 BOOST_DATA_TEST_CASE(turns_bodies_by_its_gradient, data::xrange(10u), seed) {
   test::Sample sample(seed);
   const Vector3<double> moments(10, 70, 75);
@@ -306,7 +306,7 @@ BOOST_DATA_TEST_CASE(turns_bodies_by_its_gradient, data::xrange(10u), seed) {
   BOOST_TEST((OrbitGravitation<>(circle, false)(s).value.moment == Vector3<double>::Zero()));
 }
 
-// Jacobi's integral of a large satellite on a circle, its turning and its place together.
+// Jacobi's integral of a large satellite on a circle, rotation and position together.
 BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_circle) {
   const OrbitGravitation<> load(circle);
   const OrbitAxes<> axes(circle);
@@ -331,7 +331,7 @@ BOOST_AUTO_TEST_CASE(keeps_jacobis_integral_on_a_circle) {
   BOOST_TEST(near(integral(10000, end), H, size, 4000));
 }
 
-// The orbit with mean rates does not fall freely, but bodies do: beside the same motion in space.
+// The orbit with mean rates is not in free fall, but bodies are: compared with the motion in space.
 BOOST_DATA_TEST_CASE(moves_bodies_as_j2_does, data::xrange(2), k) {
   const OrbitElements<> orbit =
       k ? ellipse(j2)
@@ -357,7 +357,7 @@ BOOST_DATA_TEST_CASE(moves_bodies_as_j2_does, data::xrange(2), k) {
   const auto then = frame(t);
   BOOST_TEST((then.X.point(a.position) - b.position).norm() < 2e-6);
   const Matrix3<double> turn = then.X.value.rotation * a.attitude.toRotationMatrix();
-  // The steps in space are as long as a place of 7e6 m asks for.
+  // The steps in space have the accuracy that positions of 7e6 m allow.
   BOOST_TEST((turn - b.attitude.toRotationMatrix()).norm() < 1e-9);
   // Without the field of J2 at the origin they would be kilometres apart.
   BOOST_TEST(a.position.norm() > 1000);
@@ -369,7 +369,7 @@ BOOST_AUTO_TEST_SUITE(a_satellite_on_a_circular_orbit)
 
 namespace {
 
-/// The greatest growth of small motions about the attitude of the orbit's axes, over n.
+/// The greatest growth rate of small motions about the attitude of the orbit's axes, over n.
 double growth(const Vector3<double>& moments) {
   BodyDescription body;
   body.name = "satellite";
@@ -383,7 +383,7 @@ double growth(const Vector3<double>& moments) {
 }
 
 /// k1 = (C - A)/B, k3 = (C - B)/A of the moments A along the radius, B along the velocity, C about
-/// the orbit's normal. Within rounding of a boundary: nothing.
+/// the orbit's normal. No result within rounding of a boundary.
 ///
 /// Source : D. B. DeBra, R. H. Delp, Rigid Body Attitude Stability and Natural Frequencies in a
 ///          Circular Orbit, J. Astronaut. Sci. 8 (1961)
@@ -398,7 +398,7 @@ std::optional<bool> is_stable(double k1, double k3) {
 
 }  // namespace
 
-// The map of DeBra and Delp; KREISEL_GRID = 101 asks for a finer one.
+// The map of DeBra and Delp; KREISEL_GRID = 101 makes it finer.
 BOOST_AUTO_TEST_CASE(is_stable_where_debra_and_delp_say) {
   const char* const asked = std::getenv("KREISEL_GRID");
   const int n = asked ? std::atoi(asked) : 32;
@@ -423,7 +423,7 @@ BOOST_AUTO_TEST_CASE(is_stable_where_debra_and_delp_say) {
                             << wrong << " wrong");
 }
 
-// n sqrt(3 (B - A)/C) in the plane of the orbit, from the roots and from the motion.
+// The frequency n sqrt(3 (B - A)/C) in the plane of the orbit, from the roots and from the motion.
 BOOST_AUTO_TEST_CASE(swings_at_its_frequency) {
   const Vector3<double> moments(10, 75, 80);
   const double n = Orbit<>(circle).mean_motion();

@@ -1,4 +1,4 @@
-// Errors of instruments: each by itself, and the noises by their Allan deviations.
+// Errors of instruments: each alone, and the noises by their Allan deviations.
 
 #include <boost/test/unit_test.hpp>
 
@@ -57,13 +57,13 @@ BOOST_AUTO_TEST_CASE(each_by_itself) {
   BOOST_TEST((misread({.resolution = 0.75}, truth, none) == Vector(0.75, -2.25, 3)));
   BOOST_TEST((misread({.range = 1.5}, truth, none) == Vector(1, -1.5, 1.5)));
   BOOST_TEST((misread({}, truth, {0.25, 0, 0}) == Vector(1.25, -2, 3)));
-  // Real axes that are turned by a quarter about z: the real x is the nominal y.
+  // Real axes rotated by a right angle about z: the real x is the nominal y.
   const double quarter = std::acos(-1.0) / 2;
   const Vector turned = misread({.misalignment = {0, 0, quarter}}, truth, none);
   BOOST_TEST((turned - Vector(-2, -1, 3)).norm() < 1e-15);
 }
 
-// Scale of the turned truth, bias unscaled, noise unscaled, rounding of their sum, range last.
+// Scale of the rotated truth, bias unscaled, noise unscaled, rounding of the sum, range last.
 BOOST_AUTO_TEST_CASE(one_after_the_other) {
   SensorErrors errors;
   errors.misalignment = {0, 0, std::acos(-1.0) / 2};
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(drift_by_its_allan_deviation) {
   }
 }
 
-// 2 s^2 T/tau (1 - T/(2 tau) (3 - 4 exp(-tau/T) + exp(-2 tau/T))), where dt is short against T.
+// 2 s^2 T/tau (1 - T/(2 tau) (3 - 4 exp(-tau/T) + exp(-2 tau/T))), if dt is short against T.
 BOOST_AUTO_TEST_CASE(correlated_noise_by_its_deviation) {
   const double sigma = 0.5, T = 2, dt = 0.05;
   SensorErrors errors;
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(numbers_by_seed_name_and_sample) {
   SensorErrors other = errors;
   other.seed = 1;
   BOOST_TEST((second(errors, "a") != second(other, "a")));
-  // A drift beside does not change the white noise.
+  // An added drift does not change the white noise.
   other = errors;
   other.drift = {0, 0, 1};
   BOOST_TEST(second(errors, "a").x() == second(other, "a").x());

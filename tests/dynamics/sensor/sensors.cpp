@@ -1,4 +1,4 @@
-// What sensors read, against closed forms and against poses that are differentiated in 50 digits.
+// Readings of sensors against closed forms and against poses differentiated in 50 digits.
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/unit_test.hpp>
@@ -47,7 +47,7 @@ double off(const Vector& found, const Vector& expected) { return (found - expect
 
 BOOST_AUTO_TEST_SUITE(sensors_in_closed_form)
 
-// A body that turns about a fixed axis: w, and w^2 r towards the axis.
+// A body that rotates about a fixed axis: w, and w^2 r towards the axis.
 BOOST_AUTO_TEST_CASE(on_a_body_at_constant_rate) {
   auto wheel = described("wheel", "guide", {.kind = JointKind::revolute, .axis = z_axis});
   wheel.rule = JointRule::constant_rate;
@@ -58,14 +58,14 @@ BOOST_AUTO_TEST_CASE(on_a_body_at_constant_rate) {
   BOOST_TEST(off(Gyro{0}(now), rate * z_axis) <= 1e-15 * rate);
   const Vector f = Accelerometer{0, r * x_axis}(now);
   BOOST_TEST(off(f, -rate * rate * r * x_axis) <= 1e-15 * rate * rate * r);
-  // A quarter turn about z takes the sensor's x to the body's y.
+  // A rotation by a right angle about z takes the sensor's x to the body's y.
   const Eigen::Quaterniond turned(std::sqrt(0.5), 0, 0, std::sqrt(0.5));
   BOOST_TEST(off(Accelerometer{0, r * x_axis, turned}(now), rate * rate * r * y_axis) <=
              1e-15 * rate * rate * r);
 }
 
-// P = -d e_z at the angle q about y:  f = (-d q'' - g sin q, 0, d q'^2 + g cos q), which has no part
-// across where d is the distance of the centre of oscillation.
+// P = -d e_z at the angle q about y:  f = (-d q'' - g sin q, 0, d q'^2 + g cos q).  It has no
+// transverse component if d is the distance of the centre of oscillation.
 BOOST_AUTO_TEST_CASE(on_a_pendulum) {
   const double m = 2, s = 0.5, g = 9.8125, q = 0.7, rate = 1.25, d = 0.3;
   const auto rod = described("rod", "guide", {.kind = JointKind::revolute, .axis = y_axis},
@@ -109,8 +109,8 @@ BOOST_AUTO_TEST_CASE(gyro_in_coning) {
   }
 }
 
-// In free fall about a planet the centre of mass feels nothing. A point r above it is held back by what
-// gravitation lacks there.
+// In free fall about a planet the reading at the centre of mass is 0. At a point r above, the
+// reading is the deficit of gravitation.
 BOOST_AUTO_TEST_CASE(accelerometer_in_free_fall) {
   const double R = 7e6, r = 2;
   const OblateGravitation<> planet{.j2 = 0};
@@ -125,11 +125,12 @@ BOOST_AUTO_TEST_CASE(accelerometer_in_free_fall) {
   BOOST_TEST(Accelerometer{0}(now).norm() <= 1e-15 * 9);
   const double gradient = planet.parameter / ((R + r) * (R + r)) - planet.parameter / (R * R);
   BOOST_TEST(off(Accelerometer{0, r * x_axis}(now), gradient * x_axis) <= 1e-14 * 9);
-  // Without it the reading would be kinematic.
+  // Without gravitation the reading would be kinematic.
   BOOST_TEST(Accelerometer{0}(kinematics(system, 0, system.to_vector(state), w)).norm() > 8);
 }
 
-// A body that is held at its origin and weighs m g at its centre: about p the torque (p - c) x m g.
+// A body held at its origin, with the weight m g at its centre c: the torque about p is (p - c) x m
+// g.
 BOOST_AUTO_TEST_CASE(reaction_about_a_point) {
   const Vector c{0.5, 0.25, 0}, p{0.1, 0, -0.4};
   const double weight = 2 * 9.8125;
@@ -159,7 +160,7 @@ Vec wide(const Vector& v) { return test::cast<Digits>(v); }
 
 Mat rotation(const Quat& q) { return q.normalized().toRotationMatrix(); }
 
-/// The turn by a vector.
+/// The rotation by a vector.
 Mat turn(const Vec& v) {
   const Digits angle = v.norm();
   if (angle == 0) return Mat::Identity();
@@ -175,7 +176,7 @@ struct Placed {
   }
 };
 
-/// A guide whose quaternion and place are quadratic in t.
+/// A guide whose quaternion and position are quadratic in t.
 struct Quadratic {
   PoseDerivatives<double> p;
 
@@ -196,7 +197,7 @@ struct Quadratic {
   }
 };
 
-/// The pose of a body against its parent near t = 0, by coordinates, rates and accelerations.
+/// The pose of a body relative to its parent near t = 0, by coordinates, rates and accelerations.
 Placed joint_at(const Joint& joint, const double* q, const double* v, const double* dv,
                 const Digits& t) {
   const auto moved = [&](int k) {
@@ -230,7 +231,7 @@ Placed joint_at(const Joint& joint, const double* q, const double* v, const doub
   return result;
 }
 
-/// A function of time and its first two derivatives at 0, by differences: 50 digits leave 25 of them.
+/// A function of time and its first two derivatives at 0, by differences: of 50 digits 25 remain.
 template <class Value, class Function>
 std::array<Value, 3> derivatives(const Function& f) {
   const Digits h("1e-12");
@@ -240,7 +241,7 @@ std::array<Value, 3> derivatives(const Function& f) {
   return {now, Value((after - before) / (2 * h)), Value((after - 2 * now + before) / (h * h))};
 }
 
-/// A tree with all kinds of joints and a rotor, on a guide that moves in all ways.
+/// A tree with all kinds of joints and a rotor, on a guide in general motion.
 struct Case {
   Quadratic guide;
   std::vector<BodyDescription> bodies;
@@ -290,7 +291,7 @@ Case some_case(unsigned seed) {
   return c;
 }
 
-/// Poses of all bodies against the guide as functions of time.
+/// Poses of all bodies relative to the guide as functions of time.
 class Poses {
  public:
   Poses(const Case& c, const BodyTree& tree, const Eigen::VectorXd& dv)
@@ -307,7 +308,7 @@ class Poses {
     return parent == "guide" ? own : body(tree_.index(parent), t).then(own);
   }
 
-  /// In the inertial frame.
+  /// The pose relative to the inertial frame.
   [[nodiscard]] Placed frame(const SensorFrame& f, const Digits& t) const {
     if (f.kind == SensorFrame::Kind::inertial) return {};
     if (f.kind == SensorFrame::Kind::guide) return guide(t);
@@ -332,7 +333,7 @@ const std::vector<SensorFrame> frames{SensorFrame::guide(),    SensorFrame::iner
 
 BOOST_AUTO_TEST_SUITE(sensors_by_differentiated_poses)
 
-// All kinds of sensors on all bodies of random systems, seen from all frames.
+// All kinds of sensors on all bodies of random systems, relative to all frames.
 BOOST_AUTO_TEST_CASE(read_what_the_poses_do) {
   double worst = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
@@ -361,7 +362,7 @@ BOOST_AUTO_TEST_CASE(read_what_the_poses_do) {
       };
       const auto [x, v, a] = derivatives<Vec>(place);
       const Vec f = sensor.transpose() * R.transpose() * (a - wide(g));
-      // The rotor turns at 40 rad/s: the parts of its acceleration are of the size 1600 m/s^2.
+      // The rotor spins at 40 rad/s: its acceleration has terms of 1600 m/s^2.
       worst = test::worst_of(worst, relative(Accelerometer{i, at, axes}(now), f, 100));
       for (const SensorFrame& against : frames) {
         const auto seen = [&](const Digits& t) {

@@ -19,7 +19,7 @@ namespace {
 
 const UniformGravity<Guide> weight{{0, 0, -9.81}};
 
-/// A body with its centre of mass aside, in a joint of its own.
+/// A body with its centre of mass off its origin, in a joint to the guide.
 BodyDescription body(const Joint& joint) {
   BodyDescription b;
   b.name = "body";
@@ -41,7 +41,7 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> motion(const BodySystem<Guide>& syst
   return {system.rates(0, y), c.rowwise().sum()};
 }
 
-/// Some 20 roundings of what is of the order of 10.
+/// Some 20 roundings of numbers of the order of 10.
 void check_near(const Eigen::VectorXd& found, const Eigen::VectorXd& truth) {
   BOOST_TEST((found - truth).cwiseAbs().maxCoeff() <= 5e-14,
              found.transpose() << " instead of " << truth.transpose());
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(have_the_numbers_of_their_parts) {
   }
 }
 
-// About and along a vertical axis nothing couples: a uniform rotation and a free fall.
+// About and along a vertical axis the motions are uncoupled: a uniform rotation and a free fall.
 BOOST_AUTO_TEST_CASE(a_cylindrical_one_spins_and_falls) {
   const BodySystem system(RestingFrame<>{},
                           {body({.kind = JointKind::cylindrical, .axis = {0, 0, 3}})}, weight);
@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(a_cylindrical_one_spins_and_falls) {
   check_near(after, vector({0.7 + 2 * t, 0.5 - t - 9.81 * t * t / 2, 2, -1 - 9.81 * t}));
 }
 
-// Along a level axis it slides on evenly, about it it is a pendulum of that moment of inertia.
+// On a level axis it slides at constant speed and swings as a pendulum about the axis.
 BOOST_AUTO_TEST_CASE(a_level_cylindrical_one_is_a_pendulum) {
   const Joint cylinder{.kind = JointKind::cylindrical, .axis = {0, 1, 0}, .position = {1, 2, 3}};
   Joint hinge = cylinder;
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(a_screw_has_the_inertia_of_both_motions) {
   check_near(after, vector({0.7 + 2 * t + a * t * t / 2, 2 + a * t}));
 }
 
-// One turn of a right-handed screw of 0.1 m per radian advances by 0.2 pi m along its axis.
+// One revolution of a right-handed screw of 0.1 m per radian advances by 0.2 pi m along its axis.
 BOOST_AUTO_TEST_CASE(a_screw_advances_by_its_pitch_a_radian) {
   const BodySystem system(
       RestingFrame<>{},
@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(a_screw_advances_by_its_pitch_a_radian) {
   BOOST_TEST((at.V_rel.value.resultant - Vector3<double>(0, 3, 0)).norm() <= 1e-15);
 }
 
-// Seen from the turning table, what goes straight on in the inertial frame:
+// A straight inertial motion, relative to the rotating table:
 //   z = exp(-i W t) (z0 + (z0' + i W z0) t)
 BOOST_AUTO_TEST_CASE(a_puck_on_a_turntable_goes_straight_on) {
   const double W = 1.5;
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(planar_ones_slide_along_stated_directions) {
                                                      .second_axis = second_axis,
                                                      .position = {1, 2, 3}})});
     BodyWorkspace workspace = system.workspace();
-    // Turned, so that directions that turned along would be seen.
+    // Rotated, to detect directions that would rotate along.
     const auto at = system.situation(0, vector({0.3, 0.4, 1.2, 5, 6, 0}), 0, workspace);
     const Vector3<double> place = Vector3<double>(1, 2, 3) + 0.3 * first + 0.4 * second;
     BOOST_TEST((at.X.value.translation - place).norm() <= 1e-15);

@@ -32,14 +32,14 @@ BodyDescription body(const char* name, JointKind kind) {
   return b;
 }
 
-/// A wheel or a slide on which the signal acts.
+/// A wheel or a slide under the force of the signal.
 System acted_on(JointKind kind, const Number& signal) {
   BodyDescription b = body("a", kind);
   b.forces = {{.in_time = signal}};
   return System(RestingFrame<>{}, {b});
 }
 
-/// A carrier that is free to turn, and a rotor on it that the signal drives.
+/// A carrier that is free to rotate, with a rotor driven by the signal.
 std::vector<BodyDescription> driven_rotor(const Number& torque) {
   BodyDescription carrier = body("carrier", JointKind::revolute);
   BodyDescription rotor = body("rotor", JointKind::revolute);
@@ -49,7 +49,7 @@ std::vector<BodyDescription> driven_rotor(const Number& torque) {
   return {carrier, rotor};
 }
 
-/// Where the first coordinate and rate end, by a method.
+/// The final values of the first coordinate and rate, by a method.
 struct End {
   double coordinate;
   double rate;
@@ -74,7 +74,8 @@ constexpr Method adaptive[] = {Method::taylor, Method::verner98, Method::radau13
 
 BOOST_AUTO_TEST_SUITE(timed_forces)
 
-/// From rest: the rate is the integral of torque over inertia, the angle that of the rate.
+/// From rest: the rate is the integral of torque over inertia, the angle is the integral of the
+/// rate.
 BOOST_AUTO_TEST_CASE(steps_of_torque_turn_a_wheel) {
   const Number torque = Number::steps({{0, 0}, {1, 0.2}, {3, -0.5}, {4.5, 0}});
   const System wheel = acted_on(JointKind::revolute, torque);
@@ -94,7 +95,7 @@ BOOST_AUTO_TEST_CASE(steps_of_torque_turn_a_wheel) {
   }
 }
 
-/// A run that begins or ends at a jump takes its own side of it.
+/// A run that begins or ends at a jump uses the signal on its own side of the jump.
 BOOST_AUTO_TEST_CASE(runs_between_jumps_see_their_side) {
   const Number torque = Number::steps({{0, 5}, {1, 0.2}, {3, 7}});
   const System wheel = acted_on(JointKind::revolute, torque);
@@ -123,7 +124,7 @@ BOOST_AUTO_TEST_CASE(oscillating_torque_turns_a_wheel) {
   }
 }
 
-/// m x'' rises from 0 at 1 s by 3 N/s up to 2 s and stays.
+/// m x'' rises from 0 at 1 s by 3 N/s up to 2 s and is constant afterwards.
 BOOST_AUTO_TEST_CASE(broken_line_of_force_moves_a_slide) {
   const Number force = Number::broken_line({{1, 0}, {2, 3}});
   const System slide = acted_on(JointKind::prismatic, force);
@@ -137,7 +138,7 @@ BOOST_AUTO_TEST_CASE(broken_line_of_force_moves_a_slide) {
   }
 }
 
-/// The motor's torque turns rotor and carrier against each other.
+/// The motor's torque rotates rotor and carrier in opposite directions.
 BOOST_AUTO_TEST_CASE(motor_of_a_rotor_turns_its_carrier) {
   const Number torque = Number::steps({{1, 0.2}, {2, 0}});
   const System system(RestingFrame<>{}, driven_rotor(torque));
@@ -151,7 +152,7 @@ BOOST_AUTO_TEST_CASE(motor_of_a_rotor_turns_its_carrier) {
   }
 }
 
-/// phi'' of a regulated rotor is the slope of the speed; the torque for it turns the carrier.
+/// phi'' of a regulated rotor is the slope of the speed; its torque rotates the carrier.
 BOOST_AUTO_TEST_CASE(regulated_speed_follows_a_broken_line) {
   const Number speed = Number::broken_line({{1, 10}, {3, 50}});
   auto bodies = driven_rotor(0);
@@ -168,7 +169,7 @@ BOOST_AUTO_TEST_CASE(regulated_speed_follows_a_broken_line) {
   BOOST_TEST(std::abs(rates[0] + 40 / 2.0) <= 1e-12);
 }
 
-/// A free body on which a force acts that stands still in the guide and grows with time.
+/// A free body under a force that is fixed in the guide and grows with time.
 BOOST_AUTO_TEST_CASE(load_that_grows_moves_a_body) {
   BodyDescription b = body("a", JointKind::free);
   b.loads = {SignalLoad<Guide>{Vector({0, 0, 1}, {3, 0, 0}, {}), {}, {0, 0, 0}}};
@@ -189,7 +190,7 @@ BOOST_AUTO_TEST_CASE(series_has_them) {
   test::hold_series("a driven rotor", system, y, 0.05, 1e-14);
 }
 
-/// In dual numbers the field's slope in time is the signal's.
+/// In dual numbers the field's slope in time is the slope of the signal.
 BOOST_AUTO_TEST_CASE(slope_in_time_is_exact) {
   using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
   const Number torque(0, 0, {{0.7, 3.1, 0.4}});
@@ -206,7 +207,7 @@ BOOST_AUTO_TEST_CASE(energy_is_no_invariant) {
   const Number torque = Number::steps({{1, 0.2}});
   const System wheel = acted_on(JointKind::revolute, torque);
   BOOST_TEST(wheel.conserved(0, wheel.rest()).empty());
-  // Both parts turn about the axis together: their momentum stays, the energy does not.
+  // Both parts rotate about the axis together: their momentum is conserved, the energy is not.
   const System pair(RestingFrame<>{}, driven_rotor(torque));
   const auto kept = pair.conserved(0, pair.rest());
   BOOST_TEST_REQUIRE(kept.size() == 1);
