@@ -31,7 +31,7 @@ using namespace py::literals;
 
 namespace {
 
-/// A scene as text, so that every run can override its end, tolerance and method.
+/// The text of a scene, so that every run can override its end, tolerance and method.
 struct Scene {
   std::string text;
   std::filesystem::path path;
@@ -66,7 +66,7 @@ Scene scene_of_text(std::string text, std::filesystem::path path) {
   return {std::move(text), std::move(path)};
 }
 
-/// A text in TOML's quotes.
+/// A text quoted as in TOML.
 std::string quoted(const std::string& text) {
   std::ostringstream out;
   out << '"' << std::hex << std::setfill('0');
@@ -82,7 +82,7 @@ std::string quoted(const std::string& text) {
   return out.str() + '"';
 }
 
-/// A key of TOML, in quotes where it needs them.
+/// A key of TOML, quoted if necessary.
 std::string key_of(const std::string& word) {
   const bool bare =
       !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string::npos;
@@ -115,8 +115,7 @@ std::string toml_table(const std::string& key, const py::dict& table) {
 }
 
 /// A Python value as TOML; numbers keep all their digits.
-///
-/// Throws : TypeError with the key, for a value that TOML does not have
+/// Throws : TypeError naming the key, for a value that TOML does not have
 std::string toml_of(const std::string& key, const py::handle& value) {
   if (py::hasattr(value, "tolist")) return toml_of(key, value.attr("tolist")());  // numpy's
   if (py::hasattr(value, "__fspath__")) return toml_of(key, value.attr("__fspath__")());
@@ -133,7 +132,7 @@ std::string toml_of(const std::string& key, const py::handle& value) {
                        py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
 }
 
-/// The scene of keyword arguments, a line for each keyword and for each body and sensor.
+/// The scene from keyword arguments, with a line for each keyword and for each body and sensor.
 Scene scene_of_keywords(const py::kwargs& keywords) {
   std::string text;
   for (const auto& [name, value] : keywords) {
@@ -203,7 +202,8 @@ py::object part(const py::array_t<double>& rows, std::size_t begin, int count) {
   return rows[py::make_tuple(all, py::slice(first, first + count, 1))];
 }
 
-/// Issues a RuntimeWarning if the tolerance was not reached. Throws if warnings are errors in Python.
+/// Issues a RuntimeWarning if the tolerance was not reached. Throws if Python treats warnings as
+/// errors.
 void warn_if_missed(const kreisel::RunReport& report) {
   if (report.tolerance_kept) return;
   std::ostringstream text;

@@ -209,8 +209,7 @@ class Errors(unittest.TestCase):
             self.assertTrue(kreisel.Scene.from_text(ROD).solve().report.tolerance_kept)
 
     def test_ctrl_c_ends_a_run(self):
-        """Which it only can where the run has let go of Python's lock: the signal's thread waits
-        for that."""
+        """The signal's thread needs Python's lock, so the run must have released it."""
         scene = kreisel.Scene.from_text(ROD)
         threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
         begin = time.monotonic()

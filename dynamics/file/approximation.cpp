@@ -35,7 +35,7 @@ class LinearMotion {
     about_ = steady_motion::linearized(system_, 0, steady.state);
   }
 
-  /// Throws : ComputationFailed where the states have grown out of all numbers
+  /// Throws : ComputationFailed if the states overflow
   [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
                                              const std::vector<double>& times) const {
     const Tangent tangent = steady_motion::tangent_of(system_, about_.state);
@@ -89,7 +89,7 @@ class Approximation final : public SceneSolver {
     if (result.report.status != RunStatus::complete) return result;
     const std::vector<VectorXd> states = motion_.states(joined(start), result.times);
     ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
-    // Relative to the sizes of the whole exact run: an approximation may begin with other rates.
+    // Relative to the sizes of the whole exact run: an approximation may start with other rates.
     distance.note_sizes(result.report.sizes);
     if (result.report.sizes.empty()) note_way(distance, options, start);
     RunReport& report = result.report;
@@ -157,7 +157,7 @@ class Approximation final : public SceneSolver {
   }
 
  private:
-  /// Takes the sizes at even times from begin to end. A closed form reports none; every other run does.
+  /// Records the sizes at evenly spaced times from begin to end. A closed form reports no sizes.
   void note_way(detail::ErrorMeasure<Measured>& distance, SolveOptions options,
                 const JointState& start) const {
     constexpr int parts = 64;

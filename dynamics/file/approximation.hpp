@@ -6,15 +6,15 @@
 
 namespace kreisel {
 
-/// The model of a scene: the exact one, or that of the approximation which it asks for, with states
-/// by its equations, all else by the exact ones. Its error is the distance from the exact motion,
-/// which is computed beside it. Angles of rotors are the exact ones.
+/// The solver of a scene, by the exact equations or by the approximation that the scene selects.
+/// An approximation computes states by its own equations and all else by the exact equations. Its
+/// error is the distance from the exact motion, which is computed too. Angles of rotors are exact.
 ///
-/// linear        : eta' = A eta about the steady motion at the start or next to it
+/// linear        : eta' = A eta about a steady motion
 /// precession    : technical equations, which have no angles of rotors
 /// foeppl        : paper 002 (50), FoepplGyro
 /// fuchs-weigand : paper 002 (49), UnsymmetricRotor
-/// Throws        : InvalidInput where the scene has no such equations
+/// Throws        : InvalidInput if the scene does not fit these equations
 [[nodiscard]] std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
                                                               std::unique_ptr<SceneSolver> exact);
 

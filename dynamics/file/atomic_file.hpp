@@ -21,8 +21,8 @@ namespace kreisel {
 
 namespace detail {
 
-/// A stream's output to a file descriptor, which it owns. After the first write that fails nothing
-/// more is written.
+/// Stream buffer that owns a file descriptor and writes to it. Nothing is written after the first
+/// failure.
 class DescriptorBuffer : public std::streambuf {
  public:
   DescriptorBuffer() = default;
@@ -35,7 +35,7 @@ class DescriptorBuffer : public std::streambuf {
     setp(buffer_.data(), buffer_.data() + buffer_.size());
   }
 
-  /// Writes the rest and closes; errno of the first failure, 0 if there was none.
+  /// Writes the remaining bytes and closes the file. Returns the errno of the first failure, or 0.
   int close() {
     if (file_ < 0) return error_;
     sync();
@@ -71,8 +71,7 @@ class DescriptorBuffer : public std::streambuf {
   std::array<char, 65536> buffer_{};
 };
 
-/// The file that a chain of symbolic links ends at, whether it exists or not; `place` if that is no
-/// link.
+/// The file at the end of a chain of symbolic links, existing or not; `place` if it is no link.
 ///
 /// Throws : InvalidInput if the links form a loop
 [[nodiscard]] inline std::filesystem::path end_of_links(const std::filesystem::path& place) {
@@ -89,14 +88,14 @@ class DescriptorBuffer : public std::streambuf {
 
 }  // namespace detail
 
-/// A file that appears whole or not at all: it is written beside its place, to PLACE.part, and put
-/// there by commit(). Without commit(), or when writing fails, the place stays as it was.
+/// A file that appears whole or not at all. It is written to PLACE.part, and commit() moves it to
+/// PLACE. Without commit(), or if writing fails, PLACE stays unchanged.
 ///
-/// A symbolic link stays, and the file that it leads to is replaced. A device, a pipe or standard
-/// output, called "-", is not replaced: it gets all in commit().
+/// A symbolic link stays, and the linked file is replaced. A device, a pipe or standard output,
+/// called "-", is not replaced: commit() writes everything to it.
 class AtomicFile {
  public:
-  /// Throws : InvalidInput if no file can be written there, or if another process writes it
+  /// Throws : InvalidInput if the file cannot be written, or if another process is writing it
   explicit AtomicFile(std::filesystem::path place) : place_(std::move(place)) {
     struct stat status = {};
     const bool is_there = ::stat(place_.c_str(), &status) == 0;
@@ -116,16 +115,16 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile() {
     if (committed_ || draft_.empty()) return;
-    std::error_code ignored;  // nothing better can be done while another error is on its way
+    std::error_code ignored;  // another error is already being handled
     std::filesystem::remove(draft_, ignored);
   }
 
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
-  /// Puts the file in its place.
+  /// Moves the file to its final path.
   ///
-  /// Throws : ComputationFailed if the disk, device or reader did not take it all; a file at the
-  ///          place is then untouched
+  /// Throws : ComputationFailed if the disk, device or reader did not take all bytes; a file at the
+  ///          final path is then unchanged
   void commit() {
     if (draft_.empty()) {
       write_through();
@@ -147,7 +146,7 @@ class AtomicFile {
     throw ComputationFailed(place_.string() + ": not written, " + std::strerror(error));
   }
 
-  /// A new file that this process has locked. A draft that a killed process left is removed.
+  /// Creates a file and locks it for this process. Removes the draft of a killed process first.
   [[nodiscard]] int create_draft() const {
     constexpr int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
     int file = ::open(draft_.c_str(), flags, 0666);  // NOLINT: variadic in POSIX
@@ -187,9 +186,9 @@ class AtomicFile {
 
   std::filesystem::path place_;
   std::filesystem::path target_;
-  std::filesystem::path draft_;  ///< empty where nothing is replaced
+  std::filesystem::path draft_;  ///< empty if nothing is replaced
   detail::DescriptorBuffer buffer_;
-  std::stringbuf held_;  ///< where nothing is replaced
+  std::stringbuf held_;  ///< used if nothing is replaced
   std::ostream stream_{nullptr};
   bool committed_ = false;
 };

@@ -15,24 +15,26 @@ namespace kreisel {
 /// The quantities of a joint in the order of the columns: coordinates, then rates.
 std::vector<JointQuantity> joint_quantities(JointKind kind);
 
-/// Names of what a joint carries.
+/// Names of the components of a joint's reaction.
 inline constexpr std::array reaction_quantities{"force x",  "force y",  "force z",     "torque x",
                                                 "torque y", "torque z", "drive torque"};
 
-/// The columns of a trajectory: t, coordinates and rates of every joint, and on demand what it
-/// carries and what its drive needs. Attitudes (w, x, y, z) and places are against the parent.
+/// The columns of a trajectory: t, coordinates and rates of every joint, and on request its
+/// reaction and the torque of its drive. Attitudes (w, x, y, z) and positions are relative to the
+/// parent.
 std::vector<std::string> columns(const std::vector<BodyDescription>& bodies, bool reactions);
 inline std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
   return columns(tree.bodies(), reactions);
 }
 
-/// The columns of a run of a scene: joints, what they carry where it is reported, and sensors.
+/// The columns of a scene's run: joints, reactions if they are requested, and sensors.
 [[nodiscard]] std::vector<std::string> columns(const SceneFile& scene);
 
-/// Whether a word is a column's name, or that of its group: all of it before a dot or a blank.
+/// True if a word is a column's name or its group: the part of the name before a dot or a blank.
 [[nodiscard]] bool names_column(std::string_view word, std::string_view column);
 
-/// The indices of the columns that words name, in the order of the words, after that of the time.
+/// The indices of the columns that the words name, in the order of the words, after the time's
+/// index.
 [[nodiscard]] std::vector<std::size_t> chosen_columns(const std::vector<std::string>& columns,
                                                       const std::vector<std::string>& words);
 
@@ -40,11 +42,11 @@ inline std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
 std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
                         bool reactions);
 
-/// Appends coordinates and rates of a body's joint, as the columns have them.
+/// Appends coordinates and rates of a body's joint, in the order of the columns.
 void append_joint(const BodyTree& tree, int body, const JointState& state,
                   std::vector<double>& values);
 
-/// The row as pictures show it: what is rounding next to the scale is 0.
+/// The row as pictures show it: numbers that are rounding relative to the scale are 0.
 std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
                               const SceneScale& scale);
 

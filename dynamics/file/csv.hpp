@@ -20,16 +20,15 @@ namespace kreisel {
 
 /// A table of comma-separated values whose first row names the columns.
 ///
-/// Blank lines and lines that begin with # are passed over; a field may stand
-/// in double quotes, in which two of them mean one; spaces around a field do
-/// not count; a line may end in CR LF, the file may begin with a byte-order
-/// mark. A quoted field does not run over a line's end.
+/// Blank lines and lines that begin with # are skipped. A field may be in double quotes, within
+/// which two quotes mean one. Spaces around a field are ignored. A line may end in CR LF, and the
+/// file may begin with a byte-order mark. A quoted field must end on its line.
 class CsvTable {
  public:
   /// Reads the whole table and checks that every row is complete.
   ///
-  /// Throws : InvalidInput naming file and line: unreadable, longer than 64 MB, a column of `required` missing or
-  ///          twice, a row too long or too short, an open quote, no rows
+  /// Throws : InvalidInput naming file and line: unreadable, longer than 64 MB, a column of
+  ///          `required` missing or twice, a row too long or too short, an open quote, no rows
   [[nodiscard]] static CsvTable read(const std::filesystem::path& path,
                                      std::initializer_list<std::string_view> required) {
     CsvTable table(path.string());
@@ -162,7 +161,7 @@ class CsvTable {
   std::vector<Row> rows_;
 };
 
-/// The text as one field of a CSV row, in quotes where it needs them.
+/// The text as one field of a CSV row, in quotes if it needs them.
 [[nodiscard]] inline std::string csv_field(std::string_view text) {
   if (text.find_first_of(",\"\n\r#") == std::string_view::npos) return std::string(text);
   std::string quoted = "\"";

@@ -25,7 +25,7 @@ namespace steady_motion {
 
 namespace {
 
-/// Places of the angles at which a whole turn changes nothing.
+/// Indices of the angles in which the system has the period 2 pi.
 std::vector<int> periodic_angles(const StudySystem& system) {
   std::vector<int> places;
   for (const Link& link : system.tree().links()) {
@@ -37,7 +37,7 @@ std::vector<int> periodic_angles(const StudySystem& system) {
   return places;
 }
 
-/// The element of Halton's sequence in a base, in (0, 1).
+/// An element of Halton's sequence in a base, in (0, 1).
 double halton(int index, int base) {
   double result = 0;
   double digit = 1;
@@ -51,7 +51,7 @@ double halton(int index, int base) {
 /// The states from which equilibria are searched.
 class Starts {
  public:
-  /// fixed : directions that keep their values
+  /// fixed : directions whose values are kept
   Starts(const StudySystem& system, VectorXd base, const Places& fixed)
       : base_(std::move(base)), choices_(1) {
     int dimension = 0;
@@ -86,7 +86,7 @@ class Starts {
     return detail::rate_count(kind) == 1 ? 1 : 4;
   }
 
-  /// Angles of 0 or pi; attitudes turned by pi about one of the axes, or not at all.
+  /// Angles of 0 or pi; attitudes rotated by pi about one of the axes, or not at all.
   [[nodiscard]] VectorXd corner(int number) const {
     VectorXd y = base_;
     for (const Link* const link : links_) {
@@ -127,7 +127,7 @@ class Starts {
   int count_ = 1;
 };
 
-/// Searches equilibria of a system and keeps those that differ.
+/// Searches equilibria of a system and keeps distinct ones.
 class Search {
  public:
   Search(const StudySystem& system, const VectorXd& start, double t_end)
@@ -165,31 +165,31 @@ class Search {
   static constexpr std::size_t most_found = 64;
   static constexpr double shares[] = {0.21, 0.5, 0.83};
 
-  /// Keeps the equilibrium that Newton's method reaches, if there is one. A start may also lie where
-  /// the accelerations are not determined.
+  /// Keeps the equilibrium that Newton's method reaches, if any. Accelerations may be undetermined
+  /// at a start.
   void refine(const VectorXd& guess) {
     try {
       const auto reached = find_equilibrium(
           system_, 0, guess, {.held = list(fixed_), .running = running_, .most_iterations = 40});
       add(reached.state, reached.residual);
     } catch (const ComputationFailed&) {
-      // Another start may lead to one.
+      // Another start may converge.
     }
   }
 
-  /// The same from where a descent leads.
+  /// Descends along the accelerations, then refines the end by Newton's method.
   void descend(const VectorXd& guess) {
     std::optional<VectorXd> low;
     try {
       low = descended(guess);
     } catch (const ComputationFailed&) {
-      // As above.
+      // Another start may converge.
     }
     if (low) refine(*low);
   }
 
-  /// Along  dq/ds = q''(q), the acceleration of a body let go at rest, by implicit Euler steps that
-  /// grow as the acceleration falls: close to an equilibrium they are Newton's.
+  /// The end of  dq/ds = q''(q), where q'' is the acceleration of a body released at rest. Implicit
+  /// Euler steps grow as the acceleration falls: close to an equilibrium they are Newton's.
   [[nodiscard]] std::optional<VectorXd> descended(VectorXd y) const {
     if (free_.empty()) return std::nullopt;
     double step = 0;
@@ -248,7 +248,7 @@ class Search {
     return rate.tail(directions_.rates)(free_);
   }
 
-  /// Whether all states on the way from one to the other are equilibria.
+  /// True if all states between two equilibria are equilibria.
   [[nodiscard]] bool are_joined(const VectorXd& from, const VectorXd& to, double norm) const {
     const VectorXd way = tangent_.between(from, in_turns_of(system_, to, from));
     return std::all_of(std::begin(shares), std::end(shares), [&](double share) {
@@ -257,7 +257,7 @@ class Search {
     });
   }
 
-  /// Traces of powers of A over those of its norm: equal for matrices with the same roots.
+  /// Traces of powers of A / |A|: equal for matrices with the same eigenvalues.
   [[nodiscard]] static Eigen::Vector4d traces(const MatrixXd& A) {
     const double norm = A.norm();
     Eigen::Vector4d result = Eigen::Vector4d::Zero();

@@ -15,7 +15,7 @@ using Eigen::Matrix3d, Eigen::Vector3d, Eigen::VectorXd;
 
 namespace {
 
-/// What adding, turning and normalizing a few numbers may leave of them.
+/// Rounding that adding, rotating and normalizing a few numbers may leave.
 constexpr double slack = 64 * std::numeric_limits<double>::epsilon();
 
 class Refusal {
@@ -34,7 +34,7 @@ class Refusal {
   std::string model_;
 };
 
-/// Joints, one in the other, whose axes meet in one point, and nothing but springs and friction.
+/// Checks for a chain of joints whose axes meet in one point, with springs and friction alone.
 void check_joints(const SceneFile& scene, const Refusal& refuse) {
   if (!scene.rests()) refuse("this guide moves");
   if (scene.bodies.size() != 3) refuse("here are not three bodies");
@@ -70,7 +70,7 @@ void check_joints(const SceneFile& scene, const Refusal& refuse) {
   }
 }
 
-/// Moments about the axes of outer ring, inner ring and, across them, rotor.
+/// Moments about three axes: outer ring, inner ring and, perpendicular to both, rotor.
 Vector3d principal(const BodyDescription& body, const Matrix3d& axes, const Refusal& refuse) {
   const Matrix3d tensor = axes.transpose() * body.inertia.value.tensor.matrix() * axes;
   Vector3d moments = tensor.diagonal();
@@ -99,7 +99,7 @@ std::vector<VectorXd> ring_oscillation(const Gyro& gyro, double t_begin, const V
   return result;
 }
 
-/// The equations that the model asks for, with this scene's numbers.
+/// The model's equations with the numbers of this scene.
 std::variant<FoepplGyro<>, UnsymmetricRotor<>> gyro_of(const SceneFile& scene) {
   const bool symmetric = scene.model == SceneModel::foeppl;
   const Refusal refuse(symmetric);
@@ -140,7 +140,7 @@ GimbalMotion::GimbalMotion(const SceneFile& scene) : gyro_(gyro_of(scene)) {}
 
 std::vector<VectorXd> GimbalMotion::states(const VectorXd& start,
                                            const std::vector<double>& times) const {
-  // Of the unsymmetric rotor the coefficients are those of one that begins at the angle 0.
+  // The coefficients of the unsymmetric rotor belong to one that starts at the angle 0.
   const bool periodic = std::holds_alternative<UnsymmetricRotor<>>(gyro_);
   const double begin = periodic ? start[2] / start[5] : 0;
   return std::visit([&](const auto& gyro) { return ring_oscillation(gyro, begin, start, times); },

@@ -11,18 +11,18 @@
 
 namespace kreisel {
 
-/// The scene's three bodies as a gyro in two rings at rest: what Foeppl's equations, and Fuchs' and
-/// Weigand's, are about. Small angles of the rings, a rotor at constant speed.
+/// The scene's three bodies as a gyro in two rings, at rest and for small angles of the rings, with
+/// a rotor of constant speed. Foeppl's equations and those of Fuchs and Weigand describe such a
+/// gyro.
 ///
-/// Throws : InvalidInput with what the scene has that the equations have not
+/// Throws : InvalidInput naming the part of the scene that the equations do not contain
 class GimbalMotion {
  public:
   static constexpr const char* method = "small oscillations, verner98";
 
   explicit GimbalMotion(const SceneFile& scene);
 
-  /// States of all joints, their coordinates before their rates. The angle of the rotor grows with
-  /// the time.
+  /// States of all joints, coordinates before rates. The rotor's angle grows with time.
   [[nodiscard]] std::vector<Eigen::VectorXd> states(const Eigen::VectorXd& start,
                                                     const std::vector<double>& times) const;
 

@@ -11,24 +11,24 @@
 
 namespace kreisel {
 
-/// Coordinates and rates of all joints, as BodySystem counts them.
+/// Coordinates and rates of all joints, in the order of BodySystem.
 struct JointState {
   Eigen::VectorXd coordinates;
   Eigen::VectorXd rates;
 };
 
-/// The scene file and the tables of its guides.
+/// The scene file and the logs of its guides.
 [[nodiscard]] std::vector<std::filesystem::path> files_read(const std::filesystem::path& scene_file,
                                                             const SceneFile& scene);
 
-/// The state that a scene begins with.
+/// The initial state of a scene.
 [[nodiscard]] JointState start_of(const SceneFile& scene);
 
-/// Attitude and place of a body against its parent.
+/// The attitude and position of a body relative to its parent.
 [[nodiscard]] Eigen::Quaterniond attitude(const BodyTree& tree, int body, const JointState& state);
 [[nodiscard]] Eigen::Vector3d place(const BodyTree& tree, int body, const JointState& state);
 
-/// The torque of what keeps the rate of a joint, 0 where nothing does.
+/// The torque that keeps the rate of a joint constant; 0 without a drive.
 [[nodiscard]] double drive_torque(const BodyTree& tree, int body, const JointReactions& reactions);
 
 }  // namespace kreisel

@@ -50,7 +50,7 @@ LogError::Joint joint_distance(const BodyTree& tree, int body, const End& a, con
   return off;
 }
 
-/// Calls `visit` with each number of an error, always in the same order.
+/// Calls `visit` with each number of an error, in a fixed order.
 template <class Visit>
 void visit_numbers(LogError& error, const Visit& visit) {
   visit(error.worst);
@@ -73,7 +73,7 @@ void set_numbers(LogError& error, const VectorXd& numbers) {
   visit_numbers(error, [&](double& x) { x = numbers[next++]; });
 }
 
-/// Runs along other logs, held against one.
+/// Computes runs along other readings of the logs and compares their ends with the given run.
 class Beside {
  public:
   Beside(const SceneSolver& model, const Trajectory<JointState>& run, std::stop_token stop)
@@ -100,7 +100,7 @@ class Beside {
     return {state, other->reactions(options.output_times.back(), state)};
   }
 
-  /// The distance of two ends.
+  /// The distance between two ends.
   [[nodiscard]] LogError distance(const End& a, const End& b) const {
     ErrorMeasure<Measured> measure({model_.tree().blocks()}, 1e-3);
     for (const JointState& passed : run_.states) (void)measure(joined(passed), joined(passed));
@@ -121,7 +121,7 @@ class Beside {
   End end_;
 };
 
-/// Squares of the errors that the log of one link makes; nothing where the link follows none.
+/// Squares of the errors due to the log of one link; nothing if the link follows no log.
 std::optional<VectorXd> squares_of_link(const SceneFile& scene, std::size_t i, const Beside& beside,
                                         double tolerance) {
   const auto along = [&](const auto& link) -> std::optional<VectorXd> {
@@ -153,7 +153,7 @@ std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver&
   if (!scene.follows_log()) return LogError{};
   const Beside beside(model, run, stop);
   LogError error = beside.distance(beside.end(), beside.end());
-  // A run to a coarse tolerance tells a great error as well as a fine one does.
+  // A large error shows at a coarse tolerance as well.
   constexpr double coarse = 1e-6;
   double tolerance = std::max(coarse, scene.tolerance);
   try {

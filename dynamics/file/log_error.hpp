@@ -8,13 +8,13 @@
 
 namespace kreisel {
 
-/// How far the errors of logs move the end of a run.
+/// The effect of the errors of logs on the end of a run.
 struct LogError {
   double worst = 0;  ///< of the state, in the measure of RunReport::error_estimate
 
   struct Joint {
     std::vector<double>
-        coordinates;            ///< rad or m; of a quaternion one angle, of a place one distance
+        coordinates;            ///< rad or m; a quaternion has one angle, a position one distance
     std::vector<double> rates;  ///< one for each coordinate
     double force = 0;           ///< N, of the reaction on the body
     double torque = 0;          ///< N m
@@ -22,12 +22,12 @@ struct LogError {
   std::vector<Joint> joints = {};  ///< one for each body; empty where the guide follows no log
 };
 
-/// The error of a run that its guide's logs make, by runs along these logs taken in other ways; see
-/// error_of_log. Nothing if the token was asked to stop.
+/// The error of a run that is due to its guide's logs; see error_of_log. It is estimated by runs
+/// along other readings of the logs. Returns nothing after an interruption.
 ///
-/// Cost   : thirteen runs for each log, to 1e-6, or to the options' tolerance where the error is as
+/// Cost   : thirteen runs for each log, to 1e-6, or to the options' tolerance if the error is as
 ///          small
-/// Throws : ComputationFailed where such a run fails
+/// Throws : ComputationFailed if such a run fails
 [[nodiscard]] std::optional<LogError> error_of_logs(const SceneFile& scene,
                                                     const SceneSolver& model,
                                                     const Trajectory<JointState>& run,

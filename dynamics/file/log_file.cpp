@@ -20,8 +20,8 @@ using detail::WrittenNumber;
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// Rows before and after the run that are kept: a sample this far away changes a quintic spline by
-/// 0.43^64 = 4e-24 of itself.
+/// Rows kept before and after the run: a sample this far away changes a quintic spline by 0.43^64 =
+/// 4e-24 of its value.
 constexpr std::size_t margin = 64;
 constexpr std::size_t most_rows = 10'000'000;
 
@@ -52,7 +52,7 @@ std::string rounded_up(double value) {
   return shown(std::ceil(value / unit * (1 - 1e-12)) * unit);
 }
 
-/// The coarseness with which the numbers of a column were written.
+/// The resolution with which the numbers of a column were written.
 class Spacing {
  public:
   void take(const WrittenNumber& number) {
@@ -62,7 +62,7 @@ class Spacing {
     most_ = std::max(most_, number.value);
   }
 
-  /// See LogColumn::resolution, in the unit of the file.
+  /// The value of LogColumn::resolution, in the unit of the file.
   [[nodiscard]] double value() const {
     if (!(least_ < most_) && decimals_ <= 0) return 0;
     const double greatest = std::max(std::abs(least_), std::abs(most_));
@@ -222,7 +222,7 @@ class LogReader {
     merged_ = 1;
   }
 
-  /// A row whose time is that of the row before, or earlier.
+  /// Handles a row whose time is not later than that of the row before.
   void take_late_row(double t) {
     const std::size_t last = log_.size() - 1;
     if (t < times().back()) {
@@ -294,7 +294,7 @@ class LogReader {
     return *middle;
   }
 
-  /// Refuses gaps within the run, and forgets what lies beyond gaps outside it.
+  /// Refuses gaps within the run, and drops the rows beyond gaps outside the run.
   void check_gaps() {
     if (log_.size() < 2) return;
     std::size_t first = 0;
@@ -346,10 +346,10 @@ class LogReader {
   ExactDecimal time_zero_;
   std::vector<std::string_view> fields_;
   std::vector<Spacing> spacing_;
-  std::vector<double> values_;  ///< of the row that is read
+  std::vector<double> values_;  ///< of the current row
   Log log_;
   bool has_rows_ = false;
-  std::size_t rows_after_ = 0;  ///< the run
+  std::size_t rows_after_ = 0;  ///< within the run
   std::size_t merged_ = 1;      ///< rows of the file in the last row of the log
 };
 

@@ -14,7 +14,7 @@
 
 namespace kreisel {
 
-/// The physical quantity in a column of a log. It decides the unit that the numbers come out in.
+/// The physical quantity in a column of a log. It determines the unit of the values that are read.
 enum class LogQuantity {
   length,        ///< metre
   quaternion,    ///< the four columns of a group are one quaternion, w first
@@ -27,29 +27,29 @@ enum class LogQuantity {
 /// Columns that belong together, for example x, y and z.
 struct LogColumnGroup {
   LogQuantity quantity = LogQuantity::number;
-  /// The names in `LogOptions::columns` and in `Log`; a header with these names fits.
+  /// The names in `LogOptions::columns` and in `Log`; a header with these names matches.
   std::vector<std::string> names;
   /// Other usual headers, each with as many names.
   std::vector<std::vector<std::string>> other_headers = {};
 };
 
-/// Columns that a reader needs or can use, besides the time `t`: one of several groups.
+/// Columns besides the time `t` that a reader needs or can use: one of several groups.
 struct LogRequest {
-  std::string title;                   ///< in messages: "attitude"
-  std::vector<LogColumnGroup> one_of;  ///< the first that the log has
+  std::string title;                   ///< used in messages: "attitude"
+  std::vector<LogColumnGroup> one_of;  ///< the first one in the log is used
   bool required = true;
 };
 
 enum class LogTimeUnit { s, ms, us, ns };
 enum class LogDuplicates { error, first, last, mean };
 
-/// How the text of a log is to be read: the keys of "Logs" in docs/scene_files.md.
+/// The layout of a log's text: the keys of "Logs" in docs/scene_files.md.
 struct LogOptions {
   /// The header's name of a column, or its number from 1.
   std::map<std::string, std::variant<std::string, std::size_t>, std::less<>> columns = {};
   std::optional<bool> degrees = {};  ///< angles and angular rates; nothing: radian
   char separator = 0;                ///< ',', ';', tab, blank; 0: found from the text
-  char decimal = '.';                ///< or ','
+  char decimal = '.';                ///< ',', ';', tab, blank; 0: detected from the text
   std::size_t skip = 0;              ///< lines before the header
   bool header = true;                ///< false: columns are given by number
   std::size_t skip_after_header = 0;
@@ -58,7 +58,7 @@ struct LogOptions {
   /// [from, to] in seconds after `time_zero`: rows outside are not read.
   std::optional<std::array<double, 2>> window = {};
   /// [from, to] of the run. Without `window`, rows outside are read only as far as the spline
-  /// within can depend on them.
+  /// within depends on them.
   std::optional<std::array<double, 2>> run = {};
   std::optional<double> longest_gap = {};  ///< s; infinity: any; nothing: 10 times the median step
   LogDuplicates duplicates = LogDuplicates::error;
@@ -68,8 +68,8 @@ struct LogOptions {
 struct LogColumn {
   std::string name;
   std::vector<double> values;
-  /// The spacing of the numbers as they were written, in the unit of `values`: 1e-4 for 4 decimals
-  /// of metres; of columns with a fixed count of digits the spacing at the greatest value. 0 where
+  /// The spacing of the numbers as written, in the unit of `values`: 1e-4 for 4 decimals of metres.
+  /// For columns with a fixed number of digits it is the spacing at the greatest value. It is 0 if
   /// all values are the same integer.
   double resolution = 0;
 };
@@ -81,7 +81,7 @@ struct Log {
   std::filesystem::path path;
   std::vector<LogColumn> columns;  ///< t, then the groups that were found
   std::vector<std::size_t> lines;  ///< the line of each row, from 1
-  double first_time = 0;           ///< of all rows in the file, also those that were not read
+  double first_time = 0;           ///< of all rows in the file, including rows that were skipped
   double last_time = 0;
 
   [[nodiscard]] std::size_t size() const { return lines.size(); }
@@ -92,14 +92,14 @@ struct Log {
   [[nodiscard]] std::string where(std::size_t row) const;
 };
 
-/// Reads a log: numbers in columns, in any of the usual ways of writing them.
+/// Reads a log: numbers in columns, in any of the usual layouts.
 ///
 /// Cost   : one pass over the file in blocks; 8 bytes for each number and line that is kept
-/// Throws : InvalidInput naming file, line, what was found and which option helps: not a regular
-///          file or pipe, not text, no header that fits, two columns that fit, a unit in the header
-///          that differs from the option's, a row too short or too long, a number that is not
-///          finite, times that do not increase, a gap, a quaternion whose norm is not 1 within 1 %,
-///          no row, over ten million rows
+/// Throws : InvalidInput naming file, line, the text found and the option that helps: not a regular
+///          file or pipe, not text, no header that matches, two columns that match, a unit in the
+///          header that differs from the option's, a row too short or too long, a number that is
+///          not finite, times that do not increase, a gap, a quaternion whose norm is not 1 within
+///          1 %, no row, over ten million rows
 [[nodiscard]] Log read_log(const std::filesystem::path& path,
                            const std::vector<LogRequest>& requests, const LogOptions& options = {});
 

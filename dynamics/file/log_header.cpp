@@ -16,8 +16,8 @@ std::string lower_case(std::string_view text) {
   return result;
 }
 
-/// The positions of the columns that fit a name best: those written alike, else those that differ
-/// in capitals, else those that differ in a unit.
+/// The positions of the columns that best match a name. Exact matches come before names that differ
+/// in capitals, and these before names that differ in a unit.
 std::vector<std::size_t> positions(const HeaderNames& header, std::string_view wanted) {
   const HeaderName name(wanted);
   for (const auto part : {&HeaderName::as_written, &HeaderName::any_case, &HeaderName::plain}) {
@@ -90,7 +90,7 @@ std::optional<LogTimeUnit> time_unit(const std::string& unit) {
   return std::nullopt;
 }
 
-/// The units of a quantity as headers have them: the one that is read, and others.
+/// The units of a quantity in headers: the unit that is read, and others.
 struct UnitNames {
   LogQuantity quantity;
   std::vector<std::string> read;
@@ -125,7 +125,7 @@ const UnitNames* units_of(LogQuantity quantity) {
                         [quantity](const UnitNames& units) { return units.quantity == quantity; });
 }
 
-/// The reason why the unit in a header is not read as it stands, or nothing.
+/// The reason why the unit in a header does not match the options, or nothing.
 std::string wrong_unit(const PlacedColumn& column, const HeaderName& header,
                        const LogOptions& options) {
   const std::string found = "column " + in_quotes(header.as_written) + " for '" + column.name +
@@ -219,7 +219,8 @@ class Matcher {
     }
   }
 
-  /// Takes the first alternative that the header has whole, by its own names or by other usual ones.
+  /// Takes the first alternative whose columns are all in the header, by their own or other usual
+  /// names.
   void place_by_usual_names(const WantedGroup& wanted) {
     bool has_some = false;
     for (const LogColumnGroup* const group : wanted.one_of) {
@@ -260,7 +261,7 @@ bool sounds_alike(const std::string& header, const std::string& column) {
   return header.starts_with("p_") || header.starts_with("pos");
 }
 
-/// The only header that sounds like the column, or nothing.
+/// The only header that resembles the column's name, or nothing.
 std::string likely_header(const HeaderNames& headers, const std::string& column) {
   if (column == "t") {
     for (const char* const part : {"time", "stamp", "tow", "sec"}) {
@@ -279,7 +280,7 @@ std::string likely_header(const HeaderNames& headers, const std::string& column)
   return only;
 }
 
-/// The alternative whose columns were found, else the one whose columns are likely, else the first.
+/// The alternative whose columns were found, else one whose columns are likely, else the first one.
 const LogColumnGroup& likeliest(const WantedGroup& wanted, const HeaderMatch& match,
                                 const HeaderNames& headers) {
   for (const LogColumnGroup* const group : wanted.one_of) {
@@ -296,7 +297,7 @@ const LogColumnGroup& likeliest(const WantedGroup& wanted, const HeaderMatch& ma
   return *wanted.one_of.front();
 }
 
-/// The header as a value of the key `columns`, or its number where the name does not tell which.
+/// The header as a value of the key `columns`, or its number if the name is ambiguous.
 std::string column_value(const HeaderNames& headers, const std::string& name,
                          std::size_t position) {
   const bool is_clear = positions(headers, name).size() == 1 && is_utf8(name);
@@ -345,7 +346,7 @@ std::vector<WantedGroup> wanted_groups(const std::string& path,
     }
     wanted.push_back(std::move(group));
   }
-  // Where the options name a group, optional groups that they do not name are left out.
+  // If the options name a group, optional groups that they do not name are left out.
   std::erase_if(wanted, [names_a_group](const WantedGroup& group) {
     return names_a_group && !group.required && !group.by_option;
   });

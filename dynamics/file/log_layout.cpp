@@ -13,14 +13,14 @@ namespace {
   throw InvalidInput(where + ": " + reason);
 }
 
-/// A line of the file's beginning that is neither empty nor skipped.
+/// A line at the beginning of the file that is neither empty nor skipped.
 struct HeadLine {
   std::size_t number;
   std::string_view text;
   bool comment;
 };
 
-/// The first lines of a log, as far as a header is looked for.
+/// The first lines of a log, among which the header is searched.
 std::vector<HeadLine> head_lines(const LogLines& lines, std::size_t skip) {
   constexpr std::size_t most = 1000;
   std::string_view rest = lines.head();
@@ -37,13 +37,13 @@ std::vector<HeadLine> head_lines(const LogLines& lines, std::size_t skip) {
   return result;
 }
 
-/// What one separator makes of the first lines.
+/// The first lines read with one separator: the layout, or a complaint.
 struct Attempt {
   std::optional<LogLayout> layout;
   std::size_t line = 1;  ///< of the complaint
   std::string complaint;
-  std::size_t found = 0;   ///< wanted columns that it has
-  std::size_t fields = 0;  ///< of the line of the complaint
+  std::size_t found = 0;   ///< number of wanted columns found
+  std::size_t fields = 0;  ///< number of fields in the line of the complaint
 };
 
 constexpr std::size_t fits_as_header = 1000;  ///< for Attempt::found
@@ -116,7 +116,7 @@ class LayoutSearch {
     counts_ = count_fields(fields_);
     for (const std::string_view field : fields_) {
       const bool is_unit = field.starts_with('[') || field.starts_with('(');
-      // Between blanks a unit is a field of its own.
+      // With blanks as separators a unit is a field of its own.
       if (separator_ == ' ' && is_unit && !names_.empty()) {
         const std::string with_unit = names_.back().as_written + " " + std::string(field);
         names_.back() = HeaderName(with_unit);
@@ -129,7 +129,7 @@ class LayoutSearch {
     return match_header(names_, *wanted_, *options_);
   }
 
-  /// Takes the units in a skipped line below the header, for names without a unit of their own.
+  /// Takes units from a skipped line below the header, for names without a unit.
   void take_units(std::size_t index) {
     if (index >= lines_->size() || !split((*lines_)[index].text)) return;
     if (fields_.size() != names_.size()) return;
@@ -140,7 +140,7 @@ class LayoutSearch {
     }
   }
 
-  /// How many fields of the line are numbers or empty; 0 where most are text.
+  /// The number of fields that are numbers or empty; 0 if most fields are text.
   std::size_t count_numbers(const HeadLine& line) {
     if (!split(line.text)) return 0;
     const auto is_number = [this](std::string_view field) {
@@ -151,13 +151,13 @@ class LayoutSearch {
     return 2 * numbers > fields_.size() && !fields_.front().empty() ? numbers : 0;
   }
 
-  /// A comment with as many fields as the rows below it may have been meant as a header.
+  /// Notes a comment with as many fields as the rows below it: it may be meant as a header.
   void note_comment(std::size_t comment, std::size_t fields_of_row) {
     const HeaderMatch match = match_line(comment);
     if (names_.size() == fields_of_row) note_missing((*lines_)[comment], match);
   }
 
-  /// Remembers the line that lacks the fewest columns, for the complaint.
+  /// Notes the line that lacks the fewest columns, for the complaint.
   void note_missing(const HeadLine& line, const HeaderMatch& match) {
     const bool nearer =
         nearest_names_.empty() || match.missing.size() < nearest_.missing.size() ||
@@ -198,7 +198,7 @@ class LayoutSearch {
     return {std::nullopt, line.number, std::move(complaint), found, fields_.size()};
   }
 
-  /// The index of the first line after a header and the lines that are skipped behind it.
+  /// The index of the first line after a header and the skipped lines below it.
   [[nodiscard]] std::size_t lines_below(std::size_t header) const {
     const std::size_t last = (*lines_)[header].number + options_->skip_after_header;
     std::size_t i = header + 1;
@@ -233,21 +233,21 @@ class LayoutSearch {
            written_number(fields_[column.position], decimal).has_value();
   }
 
-  /// How many of the columns hold a number in the fields.
+  /// The number of columns whose field is a number.
   [[nodiscard]] std::size_t numbers_in(const std::vector<PlacedColumn>& columns) const {
     return static_cast<std::size_t>(
         std::count_if(columns.begin(), columns.end(),
                       [this](const PlacedColumn& c) { return is_number(c, options_->decimal); }));
   }
 
-  /// The same with either decimal mark.
+  /// The number of columns whose field is a number with either decimal mark.
   [[nodiscard]] std::size_t likely_numbers_in(const std::vector<PlacedColumn>& columns) const {
     return static_cast<std::size_t>(std::count_if(
         columns.begin(), columns.end(),
         [this](const PlacedColumn& c) { return is_number(c, '.') || is_number(c, ','); }));
   }
 
-  /// Looks for the first row; text may stand above it only where `passes_text`.
+  /// Searches for the first row; text may precede it only if `passes_text`.
   Attempt first_row_from(std::size_t begin, std::vector<PlacedColumn> columns, bool passes_text) {
     const HeadLine* partial = nullptr;
     FieldCount partial_counts;
@@ -311,7 +311,7 @@ class LayoutSearch {
                       std::to_string(row.number - 1 - header_line_));
   }
 
-  /// The complaint about the line, from `begin` on, that is most like a row of numbers.
+  /// The complaint about the line, from `begin` on, that most resembles a row of numbers.
   Attempt no_numbers(std::size_t begin, const std::vector<PlacedColumn>& columns) {
     const HeadLine* likeliest = nullptr;
     std::size_t most = 0;
@@ -342,7 +342,7 @@ class LayoutSearch {
   std::vector<std::string_view> fields_;
   HeaderNames names_;    ///< of the line that was matched last
   FieldCount counts_;    ///< the same
-  HeaderMatch nearest_;  ///< of the line that fits best, where none fits
+  HeaderMatch nearest_;  ///< the best match, if no line matches
   HeaderNames nearest_names_;
   std::size_t nearest_line_ = 1;
   std::size_t header_line_ = 0;

@@ -11,22 +11,23 @@
 
 namespace kreisel::detail {
 
-/// The way in which a log is written.
+/// The layout of a log's text.
 struct LogLayout {
   char separator = ',';
   std::vector<PlacedColumn> columns;  ///< t first
-  std::size_t first_row = 1;          ///< the line from which on lines are rows, from 1
+  std::size_t first_row = 1;          ///< the number of the line at which the rows begin, from 1
   FieldCount fields;                  ///< of each row
 };
 
 /// Finds header, separator and first row in the first lines of a log.
 ///
-/// Throws : InvalidInput naming file and line if nothing fits the options, or several columns do
+/// Throws : InvalidInput naming file and line if nothing, or more than one column, matches the
+///          options
 [[nodiscard]] LogLayout find_layout(const LogLines& lines, const std::string& path,
                                     const std::vector<LogRequest>& requests,
                                     const LogOptions& options);
 
-/// The reason why a field is not the number that it should be, and the key that may help.
+/// The reason why a field is not the number that is expected, and the key that may help.
 [[nodiscard]] std::string why_no_number(std::string_view field, const std::string& column,
                                         const LogOptions& options);
 

@@ -47,7 +47,7 @@ void read_columns(Section& section, const std::vector<LogRequest>& requests, Log
   columns->finish();
 }
 
-/// The groups of columns that `columns` names must be whole, one for each quantity.
+/// Checks that `columns` names whole groups, and one group for each quantity.
 void check_groups(Section& section, const std::vector<LogRequest>& requests,
                   const LogOptions& options) {
   for (const LogRequest& request : requests) {
@@ -83,7 +83,7 @@ std::size_t read_count(Section& section, std::string_view key) {
   return static_cast<std::size_t>(number->get());
 }
 
-/// The digits of the number as they stand in the file, as far as 15 of them are significant.
+/// The digits of the number as in the file, up to 15 significant ones.
 std::string shortest(double value) {
   char text[32];
   const auto [end, error] = std::to_chars(std::begin(text), std::end(text), value);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Knows toml++: for the .cpp files of this folder alone.
+// Includes toml++: only for the .cpp files of this folder.
 #include <array>
 #include <vector>
 
@@ -9,7 +9,7 @@
 
 namespace kreisel::detail {
 
-/// The keys of a log in a section of a scene file: `columns`, `separator`, `time_unit`, ...
+/// Reads the keys of a log in a section of a scene file: `columns`, `separator`, `time_unit`, ...
 ///
 /// `run` is [from, to] of the scene in seconds. Mistakes are noted in the section. The keys `file`
 /// and `sigma` are not read here.

@@ -29,7 +29,8 @@ void refuse_what_is_no_file(const std::filesystem::path& path) {
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-/// The digits of a number that is written correctly: a sign, digits with a decimal mark, an exponent.
+/// The parts of a number that is written correctly: a sign, digits with a decimal mark, an
+/// exponent.
 struct Digits {
   bool negative = false;
   std::string_view mantissa;  ///< with the decimal mark

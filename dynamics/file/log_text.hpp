@@ -20,7 +20,7 @@ class LogLines {
  public:
   /// Opens the file and reads the first block.
   ///
-  /// Throws : InvalidInput if the path is no regular file, or its bytes are not lines of text
+  /// Throws : InvalidInput if the path is no regular file, or if its bytes are not lines of text
   explicit LogLines(const std::filesystem::path& path);
 
   /// The first block, from the beginning of the file. Valid before the first call of next().
@@ -28,7 +28,7 @@ class LogLines {
   /// True if the first block holds the whole file.
   [[nodiscard]] bool head_is_all() const { return at_end_; }
 
-  /// Moves on to the next line; false at the end of the file.
+  /// Advances to the next line; false at the end of the file.
   ///
   /// Throws : InvalidInput if the line is longer than a megabyte or is not text
   [[nodiscard]] bool next();
@@ -58,14 +58,14 @@ class LogLines {
 /// True if the line begins with # or %.
 [[nodiscard]] bool is_comment(std::string_view line);
 
-/// Splits a line into fields without the blanks around them. A field may stand in double quotes.
+/// Splits a line into fields without surrounding blanks. A field may be in double quotes.
 ///
-/// `separator` is ',', ';', tab, or blank for any run of blanks and tabs. False if a quote is not
-/// closed or text follows a closed one.
+/// `separator` is ',', ';', tab, or blank for any run of blanks and tabs. Returns false if a quote
+/// is not closed or text follows a closing quote.
 [[nodiscard]] bool split_fields(std::string_view line, char separator,
                                 std::vector<std::string_view>& fields);
 
-/// How many fields a line has: all of them, and without the empty ones at its end.
+/// Numbers of fields in a line: all fields, and all but the empty ones at the end.
 struct FieldCount {
   std::size_t without_empty = 0;
   std::size_t all = 0;
@@ -74,14 +74,14 @@ struct FieldCount {
 /// True if lines with these counts have the same columns: empty fields at the end may be missing.
 [[nodiscard]] bool agree(const FieldCount& a, const FieldCount& b);
 
-/// A number as it was written.
+/// A number as it is written in the file.
 struct WrittenNumber {
   double value = 0;
   int decimals = 0;  ///< the last digit stands for 10^-decimals
   int digits = 0;    ///< significant digits, zeros at the end included
 };
 
-/// The finite number in a field, or nothing. A plus sign may stand before it.
+/// The finite number in a field, or nothing. A leading plus sign is allowed.
 [[nodiscard]] std::optional<WrittenNumber> written_number(std::string_view field, char decimal);
 
 // ISO C++ has no integer of 128 bits.
@@ -93,11 +93,11 @@ struct ExactDecimal {
   int exponent = 0;
 };
 
-/// The number in a field that written_number() accepts.
+/// The number in a field that written_number() accepts, without rounding.
 [[nodiscard]] ExactDecimal exact_decimal(std::string_view field, char decimal);
-/// a - b. Error: exact, unless the digits of both together span more than 37 places.
+/// The difference a - b. Error: exact, unless the digits of both together span more than 37 places.
 [[nodiscard]] ExactDecimal difference(const ExactDecimal& a, const ExactDecimal& b);
-/// The double next to  value 10^shift;  infinite where that is too great.
+/// The double nearest to  value 10^shift;  infinite on overflow.
 [[nodiscard]] double nearest_double(const ExactDecimal& value, int shift);
 
 }  // namespace kreisel::detail

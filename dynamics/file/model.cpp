@@ -9,7 +9,7 @@ namespace kreisel {
 
 namespace {
 
-/// Throws : InvalidInput, naming the body, for a field whose centre is at a centre of mass at t = 0
+/// Throws : InvalidInput naming the body if a field's centre is at its centre of mass at t = 0
 void check_field(const SceneFile& scene, const SceneSolver& model) {
   const auto* const planet = std::get_if<OblateGravitation<>>(&scene.gravity);
   if (planet == nullptr) return;

@@ -33,7 +33,7 @@ void take_attitudes(const Log& log, LoggedMotion& result) {
     const YawPitchRoll<double> angles{yaw[i], pitch[i], roll[i]};
     result.motion.attitudes.emplace_back(angles.rotation());
   }
-  // A turn by a small angle changes the quaternion by half of it.
+  // A rotation by a small angle changes the quaternion by half of the angle.
   for (const char* const name : {"yaw", "pitch", "roll"}) resolution(name, 0.5);
 }
 

@@ -9,12 +9,12 @@
 
 namespace kreisel {
 
-/// A logged motion with the places and the spacing of its numbers in the file.
+/// A logged motion with the line numbers and the spacing of its numbers in the file.
 struct LoggedMotion {
   MotionLog<double> motion;
   std::vector<std::size_t> lines = {};  ///< the line of each sample, from 1
   double time_resolution = 0;           ///< s, spacing of the numbers as they were written
-  double attitude_resolution = 0;       ///< the same of the quaternion's components
+  double attitude_resolution = 0;       ///< spacing of the quaternion's components
   double position_resolution = 0;       ///< m
 };
 
@@ -23,11 +23,11 @@ struct LoggedMotion {
 
 /// Reads a logged motion.
 ///
-/// Attitude G to I, position of G's origin on I's axes. Angles: a turn by yaw about z, then by pitch
-/// about the new y, then by roll about the new x.
+/// The attitude is that of G relative to I, the position that of G's origin on I's axes. Angles are
+/// a rotation by yaw about z, then by pitch about the new y, then by roll about the new x.
 ///
 /// Units  : second, metre, radian (degree by `options.degrees`)
-/// Throws : InvalidInput as read_log(), and where the attitude turns by more than 90 degrees from
+/// Throws : InvalidInput as read_log(), and if the attitude rotates by more than 90 degrees from
 ///          one row to the next
 [[nodiscard]] LoggedMotion read_motion_log(const std::filesystem::path& path,
                                            const LogOptions& options = {});

@@ -7,8 +7,8 @@
 
 namespace kreisel {
 
-/// A text for one line of a message: control characters, which could begin another line or steer a
-/// terminal, become escapes such as \n and \x1b, and what is longer than `most` bytes is cut.
+/// A text for one line of a message. Control characters, which could begin a line or control a
+/// terminal, become escapes such as \n and \x1b. Text beyond `most` bytes is cut.
 [[nodiscard]] inline std::string printable(std::string_view text, std::size_t most = 600) {
   const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   std::string result;

@@ -6,7 +6,7 @@
 
 namespace kreisel::detail {
 
-/// The bytes of the UTF-8 character at the beginning of the text, 0 if there is none.
+/// The number of bytes of the UTF-8 character at the beginning of the text; 0 if there is none.
 [[nodiscard]] inline std::size_t utf8_length(std::string_view text) {
   if (text.empty()) return 0;
   const auto first = static_cast<unsigned char>(text.front());
@@ -27,8 +27,8 @@ namespace kreisel::detail {
   return text.empty();
 }
 
-/// A text of a file in a message: in quotes, on one line, at most 60 bytes of it. Control characters
-/// and bytes that are not UTF-8 become question marks.
+/// A text of a file for a message: in quotes, on one line, at most 60 bytes. Control characters and
+/// bytes that are not UTF-8 become question marks.
 [[nodiscard]] inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
   std::string result = "'";

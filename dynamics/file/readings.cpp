@@ -11,14 +11,14 @@ namespace kreisel {
 
 namespace {
 
-/// What a run is like at one time.
+/// The state of a run at one time.
 struct Now {
   const BodyTree& tree;
   const JointState& state;
   const SystemKinematics& system;
 };
 
-/// The numbers of a sensor without its errors, in the order of its parts.
+/// The readings of a sensor without errors, in the order of its parts.
 class TrueNumbers {
  public:
   TrueNumbers(const Now& now, std::vector<double>& numbers) : now_(now), numbers_(numbers) {}

@@ -10,9 +10,9 @@
 
 namespace kreisel {
 
-/// The sensors of a scene along a run, whose samples are the output times.
+/// The readings of a scene's sensors during a run. Samples are taken at the output times.
 ///
-/// Cost : nothing where the scene has no sensor; else one evaluation of the kinematics for each row
+/// Cost : none without sensors; else one evaluation of the kinematics for each row
 class SensorReadings {
  public:
   explicit SensorReadings(const SceneFile& scene);
@@ -22,15 +22,15 @@ class SensorReadings {
                                         const JointState& state);
 
  private:
-  /// The noise of a sensor at the sample of that time.
+  /// The noise of a sensor at the sample of time t.
   [[nodiscard]] Vector3<double> noise(std::size_t sensor, double t);
 
-  /// The time since the sample before; of the first sample its distance from t = 0 or, where that
-  /// is 0, from the next.
+  /// The time since the previous sample. For the first sample it is the time since t = 0 or, if
+  /// that is 0, the time to the next sample.
   [[nodiscard]] double length(std::size_t sample) const;
 
   const SceneFile& scene_;
-  std::optional<SceneGuide> inertial_guide_;  ///< if the equations are seen from a frame in free fall
+  std::optional<SceneGuide> inertial_guide_;  ///< if the equations use a freely falling frame
   std::vector<double> times_;
   std::vector<SensorNoise> noises_;      ///< one for each sensor
   std::vector<Vector3<double>> latest_;  ///< noise of each sensor's latest sample

@@ -19,7 +19,7 @@ double gravity_of(const SceneFile& scene) {
         } else if constexpr (requires { field.magnitude; }) {
           return double(field.magnitude);
         } else if constexpr (requires { field.parameter; }) {
-          // Where a planet's surface is, if that is given.
+          // Gravity at the planet's surface, if its radius is given.
           return field.j2 == 0 ? 0.0 : field.parameter / (field.radius * field.radius);
         } else {
           return std::is_same_v<Field, scene_gravity::Ellipsoid> ? 9.8 : 0.0;
@@ -28,7 +28,7 @@ double gravity_of(const SceneFile& scene) {
       scene.gravity);
 }
 
-/// How far a body's mass and its joint reach.
+/// The extent of a body's mass and its joint.
 double length_of(const BodyDescription& body) {
   const auto& [mass, first_moment, tensor] = body.inertia.value;
   const double joint = body.joint.position.norm();
@@ -37,7 +37,7 @@ double length_of(const BodyDescription& body) {
   return std::max({joint, centre, std::sqrt(tensor.matrix().trace() / mass)});
 }
 
-/// Greatest rate, speed and way of one body's joint.
+/// Greatest rate, speed and displacement of one body's joint.
 struct Motion {
   double turning = 0;
   double speed = 0;
@@ -98,13 +98,13 @@ SceneScale scale_of(const SceneFile& scene, const BodyTree& tree,
   scale.angle = 1;
   scale.turning = scene.t_end > 0 ? 1 / scene.t_end : 0;
   double mass = 0;
-  double momentum = 0;  // the greatest of a body's turning
+  double momentum = 0;  // the greatest angular momentum of a body
   for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
     const BodyDescription& body = tree.body(i);
     const Motion motion = motion_of(tree, i, states);
     scale.length = std::max({scale.length, length_of(body), motion.way});
     scale.speed = std::max(scale.speed, motion.speed);
-    // A rotor's own turning moves no mass to and fro.
+    // The rotation of a rotor moves no mass to and fro.
     if (!body.rotor) scale.turning = std::max(scale.turning, motion.turning);
     mass = std::max(mass, body.inertia.value.mass);
     momentum = std::max(momentum, body.inertia.value.tensor.matrix().trace() * motion.turning);

@@ -31,7 +31,7 @@ constexpr std::size_t most_outputs = 10'000'000;
 
 Vector3<double> three(const std::vector<double>& x) { return {x[0], x[1], x[2]}; }
 
-/// What a check of the library found, without its name for the thing.
+/// The message of a library check, without the prefix that names the object.
 std::string reason(const InvalidInput& error) {
   const std::string text = error.what();
   const std::size_t colon = text.find(": ");
@@ -145,7 +145,7 @@ class SceneReader {
     scene_.output_times = detail::output_grid(0, end, given_step.value_or(end / 500));
   }
 
-  /// What of a signal concerns the run.
+  /// Notes that forces change, and the times within the run at which the signal is discontinuous.
   template <class Value>
   void note(const Signal<Value>& signal) {
     if (signal.is_constant()) return;
@@ -177,7 +177,7 @@ class SceneReader {
         depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
     if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
         guide.find("kind")->as_string()->get() != kind) {
-      // Of an unknown kind nothing can be said about the other keys.
+      // The other keys of an unknown kind cannot be checked.
       if (guide.has("kind") || depth > 0) guide.ignore_rest();
     }
     if (kind == "inertial") scene_.guide.emplace_back(scene_guide::Resting{});
@@ -238,7 +238,7 @@ class SceneReader {
     return series;
   }
 
-  /// In radian, or in degrees at the key that ends in _deg.
+  /// Reads a series in radian, or in degrees if the key ends in _deg.
   static HarmonicSeries<double> read_angular_series(Section& guide, const std::string& key) {
     const std::string in_degrees = key + "_deg";
     if (!guide.has(in_degrees)) return read_series(guide, key);
@@ -249,7 +249,7 @@ class SceneReader {
     return series;
   }
 
-  /// HarmonicFrame keeps a piece of 1 kB for each 1/(2 Omega).
+  /// Checks the memory of HarmonicFrame: a piece of 1 kB for each 1/(2 Omega).
   void check_length(Section& guide, const scene_guide::Harmonic& link) const {
     double turning = link.angular_velocity.constant.norm();
     double frequency = 0;
@@ -349,7 +349,7 @@ class SceneReader {
     scene_.guide.emplace_back(scene_guide::Orbit{orbit});
   }
 
-  /// A log's file and how to read it; nothing where that is wrong.
+  /// A log's file and its options; nothing if they are wrong.
   struct LogPlace {
     std::string name;
     std::filesystem::path file;
@@ -368,7 +368,7 @@ class SceneReader {
   }
 
   void read_table(Section& guide) {
-    (void)guide.has("sigma");  // is read with the log, and a key also where that is refused
+    (void)guide.has("sigma");  // read with the log; a known key also if that fails
     const auto place = read_log_place(guide, motion_log_columns());
     if (!place) return;
     try {
@@ -399,7 +399,7 @@ class SceneReader {
     }
     auto place = read_log_place(guide, rates_log_columns());
     if (!place) return;
-    place->options.run.reset();  // the attitude is that at the first time of all
+    place->options.run.reset();  // the attitude belongs to the first time of the log
     try {
       RatesLog log = read_rates_log(place->file, place->options);
       check_covers_run(guide, place->name, place->options, log.times);
@@ -418,7 +418,7 @@ class SceneReader {
     }
   }
 
-  /// Specific forces lack gravity: the guide's own, or that of a scene where it is uniform.
+  /// Passes gravity to logged specific forces: the guide's own, or uniform gravity of the scene.
   void give_gravity_to_rates() {
     if (!rates_without_gravity_) return;
     const auto* const uniform = std::get_if<UniformGravity<Inertial>>(&scene_.gravity);
@@ -452,7 +452,7 @@ class SceneReader {
     return text.str();
   }
 
-  /// The keys that make a log cover a run from 0 on, as the end of a message.
+  /// Suggests keys with which a log covers a run from 0 on, as the end of a message.
   static std::string time_hint(const LogOptions& options, const std::vector<double>& times) {
     const double begin = times.front();
     if (begin <= 0) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
@@ -471,8 +471,9 @@ class SceneReader {
            "time_zero = \"first\"";
   }
 
-  /// How a log is smoothed: by the noise that `sigma` gives, one number or that of the attitude and
-  /// that of the place (of rates: that of both rates); else by what the log itself shows.
+  /// The smoothing spline of a log. The noise is `sigma`: one number, or one each for attitude and
+  /// position (of a log of rates for angular rates and accelerations). Without `sigma` it is
+  /// estimated from the log.
   template <class Log>
   static LogSpline read_smoothing(Section& guide, const Log& log) {
     LogNoise::Components sigma;
@@ -582,7 +583,7 @@ class SceneReader {
     const std::optional<Joint> joint = read_joint(section);
     read_inertia(section, body);
     scene_.points.push_back(detail::read_points(section));
-    if (!joint) {  // and so nobody knows what else belongs to the body
+    if (!joint) {  // the other keys of the body cannot be checked
       section.ignore_rest();
       scene_.bodies.push_back(std::move(body));
       scene_.start.emplace_back();
@@ -675,7 +676,7 @@ class SceneReader {
     }
   }
 
-  /// Nothing where the kind of joint is missing or unknown.
+  /// Reads the joint; nothing if its kind is missing or unknown.
   static std::optional<Joint> read_joint(Section& body) {
     Joint joint;
     auto section = body.required_section("joint");
@@ -797,7 +798,7 @@ class SceneReader {
     const auto count = static_cast<std::size_t>(quantity.count());
     if (quantity.meaning == JointQuantity::Meaning::attitude) {
       if (const auto q = quaternion(initial, quantity.key)) {
-        // The file's attitude is against the parent, the coordinate against the joint's.
+        // The file's attitude is relative to the parent, the coordinate relative to the joint.
         const Eigen::Quaterniond own = joint.orientation.conjugate() * *q;
         std::copy_n(own.coeffs().data(), 4, at);
       }
@@ -845,7 +846,7 @@ class SceneReader {
     if (speed) set_speed(*speed, body);
   }
 
-  /// A speed that changes with time.
+  /// Checks a speed that changes with time.
   static void check_speed(Section& rotor, const Signal<double>& speed, const std::string& mode,
                           const BodyDescription& body) {
     const char* const key = rotor.has("speed") ? "speed" : "speed_deg";
@@ -862,7 +863,7 @@ class SceneReader {
 
   static void set_rotor(BodyDescription& body, const std::string& mode) {
     if (!body.loads.empty()) {
-      // A load may depend on the rotor's angle, so that it moves as any other body does.
+      // A load may depend on the rotor's angle, so the rotor is treated as an ordinary body.
       if (mode == "regulated") body.rule = JointRule::constant_rate;
       return;
     }
@@ -897,9 +898,9 @@ class SceneReader {
     body.rotor->acceleration = [speed](double t) { return speed.derivative(t, 1); };
   }
 
-  /// Whether a rotor's mass lies evenly about its axis.
+  /// True if a rotor's mass is distributed symmetrically about its axis.
   static bool check_balance(Section& section, const BodyDescription& body) {
-    constexpr double slack = 32 * std::numeric_limits<double>::epsilon();  // as BodyTree has it
+    constexpr double slack = 32 * std::numeric_limits<double>::epsilon();  // as in BodyTree
     const Inertia<double>& T = body.inertia.value;
     const Vector3<double> axis = body.joint.orientation.conjugate() * body.joint.axis.normalized();
     const Matrix3<double> tensor = T.tensor.matrix();
@@ -968,10 +969,10 @@ class SceneReader {
   Mistakes& mistakes_;
   SceneFile scene_;
   std::optional<Section> rates_without_gravity_ = {};  ///< of a link that has specific forces
-  scene_gravity::Field site_gravity_ = scene_gravity::None{};  ///< what the guide itself asks for
+  scene_gravity::Field site_gravity_ = scene_gravity::None{};  ///< gravity given by the guide
 };
 
-/// Deeper keys than a scene can have would be taken apart one call in another.
+/// Refuses deeply nested keys, because the parser is recursive. No scene needs such keys.
 void refuse_depth(std::string_view text, Mistakes& mistakes) {
   constexpr int deepest = 64;
   toml::source_region where{{1, 1}, {1, 1}, nullptr};

@@ -19,17 +19,17 @@
 #include <dynamics/tree/description.hpp>
 #include <motor/error.hpp>
 
-/// What a scene file says, checked and typed: one mechanical system on one guide frame.
+/// The contents of a scene file, checked and typed: one mechanical system on one guide frame.
 
 namespace kreisel {
 
-/// One frame of a chain of guides, as the file describes it. Each moves against the one before, the
-/// first against the inertial frame.
+/// Descriptions of the frames in a chain of guides. Each frame moves relative to the previous one,
+/// the first relative to the inertial frame.
 namespace scene_guide {
 
 struct Resting {};
 
-/// Pose and velocity of a frame at t = 0, on the axes of the frame before it.
+/// Pose and velocity of a frame at t = 0, on the axes of the previous frame.
 struct Start {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
   Vector3<double> origin_position = Vector3<double>::Zero();
@@ -48,8 +48,9 @@ struct Harmonic {
   Start start = {};
 };
 
-/// The local level at a site. With a gravity given as a number its latitude is that of the plumb
-/// line, and the number holds the centrifugal part; else the place on the WGS84 ellipsoid decides.
+/// The local level at a site. If gravity is a number, the latitude is that of the plumb line, and
+/// the number includes the centrifugal part. Otherwise latitude and height refer to the WGS84
+/// ellipsoid.
 struct Earth {
   EarthSite<double> site = {};
   std::optional<double> gravity = {};  ///< m/s^2, effective
@@ -69,7 +70,7 @@ struct Rates {
   LogSpline spline = {};
 };
 
-/// Pose as a function of time.
+/// A pose as a function of time.
 struct Motion {
   PoseSignals pose = {};
 };
@@ -90,14 +91,14 @@ struct None {};
 /// Gravitation of the WGS84 ellipsoid at every body's centre of mass.
 struct Ellipsoid {};
 
-/// The effective gravity at the site of the earth frame, down its x axis, the same for all bodies.
+/// The effective gravity at the site of the earth frame, along its x axis, the same for all bodies.
 struct AtSite {
   double magnitude = 0;  ///< m/s^2
 };
 
-/// The planet of the orbit on which the guide goes, at every body's own place.
+/// The gravity of the planet that the guide orbits, at every body's own position.
 struct OnOrbit {
-  bool gradient = true;  ///< with the terms of the bodies' size
+  bool gradient = true;  ///< includes the terms of second order in the bodies' size
 };
 
 using Field = std::variant<None, UniformGravity<Guide>, UniformGravity<Inertial>, Ellipsoid, AtSite,
@@ -105,22 +106,22 @@ using Field = std::variant<None, UniformGravity<Guide>, UniformGravity<Inertial>
 
 }  // namespace scene_gravity
 
-/// A joint's coordinates and rates as Joint counts them, quaternions as (x, y, z, w).
+/// A joint's coordinates and rates in the order of Joint, quaternions as (x, y, z, w).
 struct JointStart {
   std::vector<double> coordinates;
   std::vector<double> rates;
 };
 
-/// The equations that a scene is computed by.
+/// The equations by which a scene is computed.
 enum class SceneModel {
   exact,
-  linear,        ///< about the steady motion next to the start
-  precession,    ///< technical equations, in which the nutations are left out
+  linear,        ///< about the steady motion at or next to the start
+  precession,    ///< technical equations, without nutations
   foeppl,        ///< small oscillations of a Cardan gyro with a symmetric rotor
-  fuchs_weigand  ///< the same with a rotor of any moments at constant speed
+  fuchs_weigand  ///< small oscillations with a rotor of any moments at constant speed
 };
 
-/// As a scene file has it.
+/// The model's name in scene files.
 [[nodiscard]] constexpr const char* name(SceneModel model) {
   switch (model) {
     case SceneModel::exact: return "exact";
@@ -145,43 +146,43 @@ struct SceneFile {
   Method method = Method::automatic;
   SceneModel model = SceneModel::exact;
   std::vector<double> output_times;  ///< in order, within [0, t_end]
-  std::vector<double> discontinuities;  ///< when forces jump, in order, within (0, t_end]
-  bool forces_change = false;           ///< with time: loads, joint forces or speeds of rotors
-  std::vector<std::string> columns;  ///< that are chosen, or groups of them; empty: all
+  std::vector<double> discontinuities;  ///< times of jumps of forces, in order, within (0, t_end]
+  bool forces_change = false;           ///< loads, joint forces or rotor speeds change with time
+  std::vector<std::string> columns;  ///< chosen columns or groups of columns; empty: all
   bool reactions = false;
   bool terms = false;
 
-  /// Whether the guide rests, so that nothing of its motion needs to be computed.
+  /// True if the guide is at rest, so that its motion need not be computed.
   [[nodiscard]] bool rests() const;
 
-  /// Of the logs that the guide and its parts follow.
+  /// The files of the logs that the guide and its parts follow.
   [[nodiscard]] std::vector<std::filesystem::path> log_files() const;
   [[nodiscard]] bool follows_log() const { return !log_files().empty(); }
 };
 
-/// What is wrong with a scene file: a line for each mistake,  file:line:column: key: reason
+/// The mistakes in a scene file: a line for each,  file:line:column: key: reason
 struct SceneMistakes : InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
-/// What a command line sets against the file's [solve].
+/// Options of a command line that override [solve] of the file.
 struct SolveRequest {
   std::optional<double> t_end = {};
   std::optional<double> tolerance = {};
   std::optional<Method> method = {};
 };
 
-/// The integrator of that name: "auto", "verner98", "gauss16", ...; nothing for any other word.
+/// The integrator with a name: "auto", "verner98", "gauss16", ...; nothing for any other word.
 [[nodiscard]] std::optional<Method> method_named(std::string_view name);
 
 /// Reads a scene file, TOML 1.0.
 ///
 /// Units  : SI and radian; keys of angles may end in _deg
-/// Throws : SceneMistakes; InvalidInput where the file cannot be read
+/// Throws : SceneMistakes; InvalidInput if the file cannot be read
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& path,
                                    const SolveRequest& request = {});
 
-/// The same of a text; `path` names it in messages, and tables are looked for beside it.
+/// Reads a scene from a text. Messages name `path`, and logs are searched beside it.
 [[nodiscard]] SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
                                     const SolveRequest& request = {});
 

@@ -12,7 +12,7 @@ namespace kreisel {
 
 namespace {
 
-/// What of `rest` is behind `word`, where that is a whole part of it.
+/// The part of `rest` after `word`, if `word` is a complete part of the key.
 std::optional<std::string_view> behind(std::string_view rest, std::string_view word) {
   if (!rest.starts_with(word)) return std::nullopt;
   rest.remove_prefix(word.size());
@@ -21,7 +21,7 @@ std::optional<std::string_view> behind(std::string_view rest, std::string_view w
   return std::nullopt;
 }
 
-/// Goes on at "[i]".
+/// The element that "[i]" selects.
 const toml::node* at_place(const toml::array& list, std::string_view& rest) {
   std::size_t i = 0;
   const char* const end = rest.data() + rest.size();
@@ -33,7 +33,7 @@ const toml::node* at_place(const toml::array& list, std::string_view& rest) {
   return list.get(i);
 }
 
-/// Goes on in the table of that name.
+/// The table with the name that `rest` begins with.
 const toml::node* named(const toml::array& list, std::string_view& rest,
                         std::vector<std::string>& words) {
   for (const toml::node& element : list) {
@@ -78,7 +78,7 @@ const toml::node& find(const toml::table& root, const std::string& key) {
   return *node;
 }
 
-/// Where a position of toml++, which counts characters of UTF-8, lies in a text.
+/// The byte offset of a position of toml++, which counts UTF-8 characters.
 std::size_t offset(std::string_view text, const toml::source_position& position) {
   std::size_t at = 0;
   for (toml::source_index line = 1; line < position.line; ++line) at = text.find('\n', at) + 1;
@@ -125,7 +125,7 @@ std::string SceneNumbers::with(const std::vector<double>& values) const {
     const auto written =
         std::to_chars(number.data(), number.data() + number.size(), values.at(key));
     result.append(text_, done, begin - done).append(number.data(), written.ptr);
-    // Whole numbers of TOML have 64 bits.
+    // Integers of TOML have 64 bits.
     const std::string_view digits(number.data(),
                                   static_cast<std::size_t>(written.ptr - number.data()));
     if (digits.size() > 17 && digits.find_first_of(".e") == std::string_view::npos) result += ".0";

@@ -8,20 +8,21 @@
 
 namespace kreisel {
 
-/// The text of a scene file in which some numbers can be others: for members of an ensemble that
-/// differ in a mass or in where they begin.
+/// The text of a scene file in which some numbers can be replaced. Members of an ensemble differ,
+/// for example, in a mass or in the start.
 ///
-/// A number is named by the keys that lead to it; of several tables the one with that name, or by
-/// its place:  body.rotor.inertia[2], gravity.vector[2], guide.links[1].rate
+/// A number is named by the path of its keys. Tables in a list are selected by name or by index:
+/// body.rotor.inertia[2], gravity.vector[2], guide.links[1].rate
 class SceneNumbers {
  public:
-  /// Throws : InvalidInput where the text is no TOML, or a key leads to no number
+  /// Throws : InvalidInput if the text is no TOML, or if a key does not lead to a number
   SceneNumbers(std::string text, const std::vector<std::string>& keys);
 
-  /// Those of the text, in the order of the keys.
+  /// The numbers of the text, in the order of the keys.
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
 
-  /// The text with others, which stand there to the last bit; all else, lines included, as it was.
+  /// The text with other numbers, exact to the last bit; all other text and all lines are
+  /// unchanged.
   [[nodiscard]] std::string with(const std::vector<double>& values) const;
 
  private:

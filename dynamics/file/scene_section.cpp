@@ -12,7 +12,7 @@ namespace kreisel::detail {
 
 namespace {
 
-/// How many letters have to be put in, taken out, changed or swapped with their neighbour.
+/// The number of letters to insert, delete, change or swap with a neighbour.
 std::size_t edits(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -75,7 +75,7 @@ void Mistakes::throw_any() const {
   });
   std::ostringstream all;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    // The root has no place of its own.
+    // The root has no position.
     const auto line = std::max(sorted[i].where.line, toml::source_index(1));
     const auto column = std::max(sorted[i].where.column, toml::source_index(1));
     all << (i > 0 ? "\n" : "") << file_ << ':' << line << ':' << column << ": " << sorted[i].text;

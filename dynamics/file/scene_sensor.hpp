@@ -10,7 +10,7 @@
 #include <dynamics/sensor/sensors.hpp>
 #include <dynamics/tree/description.hpp>
 
-/// Sensors and points of bodies, as a scene file names them.
+/// Sensors and points of bodies, as in a scene file.
 
 namespace kreisel {
 
@@ -24,7 +24,7 @@ struct Attitude {
   bool as_angles = false;  ///< yaw, pitch, roll instead of a quaternion
 };
 
-/// Coordinates and rates of a body's joint, as the columns of a run have them.
+/// Coordinates and rates of a body's joint, in the order of a run's columns.
 struct Joint {
   int body = 0;
 };
@@ -36,7 +36,7 @@ using Kind = std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, Rea
 struct SceneSensor {
   std::string name;
   scene_sensor::Kind kind = Gyro{};
-  std::optional<SensorErrors> errors = {};  ///< of a gyro or an accelerometer; none: ideal
+  std::optional<SensorErrors> errors = {};  ///< for a gyro or an accelerometer; none: ideal
 };
 
 /// Numbers of a reading that belong together: "value", "true", "position", "force" and the like.
@@ -46,11 +46,11 @@ struct SensorPart {
   std::vector<std::string> units;  ///< one for each component
 };
 
-/// The parts of a sensor's reading in their order.
+/// The parts of a sensor's reading, in order.
 [[nodiscard]] std::vector<SensorPart> parts(const SceneSensor& sensor,
                                             const std::vector<BodyDescription>& bodies);
 
-/// The columns of a sensor: NAME.x of its value, NAME.position x of another part.
+/// The columns of a sensor: NAME.x for its value, NAME.position x for another part.
 [[nodiscard]] std::vector<std::string> columns(const SceneSensor& sensor,
                                                const std::vector<BodyDescription>& bodies);
 

@@ -13,7 +13,7 @@ namespace {
 template <class Value>
 constexpr std::size_t width = std::is_same_v<Value, double> ? 1 : 3;
 
-/// A value that stands as numbers from `begin` on.
+/// The value whose numbers begin at index `begin`.
 template <class Value>
 [[nodiscard]] Value value_at(const std::vector<double>& numbers, std::size_t begin) {
   if constexpr (std::is_same_v<Value, double>) {

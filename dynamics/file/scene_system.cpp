@@ -16,11 +16,11 @@ namespace kreisel {
 
 namespace {
 
-struct Outer;  // the frame that all links up to one make
+struct Outer;  // the frame of all links up to one
 
 using Motion = FrameMotion<Guide, Inertial>;
 
-/// Steps that end at t_end may ask a rounding later.
+/// Steps that end at t_end may evaluate the guide a rounding error later.
 constexpr double past_the_end = 1 + 1e-12;
 
 template <class... Cases>
@@ -34,7 +34,7 @@ Displacement<Inertial, Guide> pose(const scene_guide::Start& start) {
   return {Pose<>::from(start.attitude, start.origin_position)};
 }
 
-/// A frame that is known up to its end, asked no later than there.
+/// A guide from a frame that is defined up to its end: slightly later times are set to the end.
 template <class Frame>
 SceneGuide within(Frame known) {
   const auto frame = std::make_shared<const Frame>(std::move(known));
@@ -57,7 +57,7 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
                                    kind.start.origin_velocity);
           },
           [](const scene_guide::Earth& kind) -> SceneGuide {
-            // The centrifugal part at the origin is in the number.
+            // The number includes the centrifugal part at the origin.
             if (kind.gravity) return RotatingFrame<>{earth_rotation(kind.site)};
             return earth_frame(kind.site);
           },
@@ -71,7 +71,7 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
       link);
 }
 
-/// Weight in a gravity that is uniform on the axes of the first link of a chain.
+/// A weight in gravity that is uniform on the axes of the first link of a chain.
 struct SiteWeight {
   static constexpr bool ignores_spin = true;
 

@@ -11,12 +11,12 @@
 
 namespace kreisel {
 
-/// A guide motion whose kind a file has named: a steady one too has its series.
+/// A guide motion whose kind is chosen by a file. Steady kinds have series, too.
 class SceneGuide : public AnyGuide {
  public:
   template <GuideMotion M>
   requires(!std::derived_from<M, AnyGuide>)
-      SceneGuide(M motion)  // NOLINT: any kind is meant where one is taken
+      SceneGuide(M motion)  // NOLINT: implicit, any kind is accepted
       : AnyGuide(with_series(std::move(motion))) {}
 
  private:
@@ -36,20 +36,20 @@ class SceneGuide : public AnyGuide {
 
 /// The guide motion of a scene, for times in [0, t_end].
 ///
-/// Cost   : of one link that of its kind, of a chain one product of motions more for each link
-/// Throws : InvalidInput as the kinds do, where what each of them takes was not checked in the file
+/// Cost   : one link costs as much as its kind, a chain one product of motions more for each link
+/// Throws : InvalidInput as the kinds do, for values that are not checked in the file
 [[nodiscard]] SceneGuide make_guide(const SceneFile& scene);
 
-/// The guide motion that goes with bodies_in_gravity() into a system of bodies. It is that of
-/// make_guide(), but for gravity of kind orbit: then it is against the frame that goes along with the
-/// orbit's origin and does not turn, and the acceleration of that origin is in the gravity.
+/// The guide motion for a system with the bodies of bodies_in_gravity(). It equals make_guide()
+/// except for gravity of kind orbit. Then the motion is relative to a frame that moves with the
+/// orbit's origin and does not rotate. The origin's acceleration is part of the gravity.
 [[nodiscard]] SceneGuide make_guide_of_equations(const SceneFile& scene);
 
-/// What a BodySystem takes: the bodies, with the gravity that is not uniform among their loads.
+/// The bodies of a scene for BodySystem. Gravity that is not uniform is one of their loads.
 struct SceneBodies {
   std::vector<BodyDescription> bodies;
   Gravity gravity;
-  std::optional<BodyLoad> gravitation = {};  ///< the load on all bodies that stands for gravity
+  std::optional<BodyLoad> gravitation = {};  ///< the load on all bodies that represents gravity
 };
 
 [[nodiscard]] SceneBodies bodies_in_gravity(const SceneFile& scene);

@@ -30,7 +30,7 @@ class SensorReader {
     SceneSensor sensor{.name = name};
     const std::string kind = section.required_choice(
         "kind", {"gyro", "accelerometer", "point", "attitude", "joint", "reaction"});
-    if (section.peek("kind") != kind) {  // nothing can be said about the other keys
+    if (section.peek("kind") != kind) {  // the other keys cannot be checked
       section.ignore_rest();
       return sensor;
     }
@@ -46,14 +46,14 @@ class SensorReader {
   }
 
  private:
-  /// The body of that name at a key that is needed.
+  /// The body at a required key.
   int body(Section& section, const char* key) {
     if (!section.has(key)) section.refuse_missing(key);
     const auto name = section.text(key);
     return name ? index(section, key, *name, names_, "body") : 0;
   }
 
-  /// The index of a word among those allowed.
+  /// The index of a word among the allowed words.
   static int index(Section& section, const char* key, const std::string& word,
                    const std::vector<std::string>& words, const char* what) {
     const auto found = std::find(words.begin(), words.end(), word);
@@ -73,7 +73,7 @@ class SensorReader {
     return found == 1 ? SensorFrame::inertial() : SensorFrame::of_body(found - 2);
   }
 
-  /// A point of the body: numbers, or its name.
+  /// A point of the body: coordinates, or a name.
   Vector3<double> at(Section& section, int body) {
     const toml::node* const node = section.find("at");
     if (node == nullptr) return Vector3<double>::Zero();
@@ -149,12 +149,12 @@ class SensorReader {
     return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
   }
 
-  /// One number for all axes, or three.
+  /// One number for all axes, or three numbers.
   static Vector3<double> numbers(Section& section, const std::string& key, bool is_angle) {
     return three(is_angle ? section.angle_or_list(key, 3) : section.number_or_list(key, 3));
   }
 
-  /// Standard deviations and densities.
+  /// Reads standard deviations and densities.
   static Vector3<double> size(Section& section, const std::string& key, bool is_angle) {
     Vector3<double> result = numbers(section, key, is_angle);
     if (result.minCoeff() < 0) section.refuse(key, "must not be below 0");
@@ -184,7 +184,7 @@ class SensorReader {
     return 0;
   }
 
-  /// Those of a gyro are angular rates, which may be given in degrees.
+  /// Reads the errors of a sensor. For a gyro they are angular rates, possibly in degrees.
   static std::optional<SensorErrors> errors(Section& section, bool is_gyro) {
     if (!has_errors(section)) return std::nullopt;
     SensorErrors result;
@@ -213,7 +213,7 @@ class SensorReader {
   std::vector<std::string> names_;
 };
 
-/// Refuses columns of a sensor that are there already.
+/// Refuses columns of a sensor that exist already.
 void check_columns(Section& section, const SceneSensor& sensor,
                    const std::vector<BodyDescription>& bodies, std::set<std::string>& taken) {
   for (const std::string& column : columns(sensor, bodies)) {

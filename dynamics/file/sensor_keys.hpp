@@ -1,6 +1,6 @@
 #pragma once
 
-// Knows toml++: for the .cpp files of this folder alone.
+// Includes toml++: only for the .cpp files of this folder.
 #include <string>
 #include <vector>
 
@@ -10,17 +10,17 @@
 
 namespace kreisel::detail {
 
-/// The key `points` of a body.
+/// Reads the key `points` of a body.
 [[nodiscard]] NamedPoints read_points(Section& body);
 
-/// The list [[sensor]] of a scene. `points` are those of each body; `sound` says that nothing is
-/// wrong with the bodies.
+/// Reads the list [[sensor]] of a scene. `points` are the points of each body; `sound` is true if
+/// the bodies have no mistakes.
 [[nodiscard]] std::vector<SceneSensor> read_sensors(Section& root,
                                                     const std::vector<BodyDescription>& bodies,
                                                     const std::vector<NamedPoints>& points,
                                                     bool sound);
 
-/// The columns that [output] chooses among those known; empty where it is not there.
+/// The columns that [output] chooses among the known ones; empty without [output].
 [[nodiscard]] std::vector<std::string> read_output(Section& root,
                                                    const std::vector<std::string>& known);
 

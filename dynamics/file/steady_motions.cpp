@@ -112,7 +112,7 @@ bool stays(const StudySystem& system, const Linearization& linear, double t_end)
   const Tangent tangent = tangent_of(system, linear.state);
   const double fastest = linear.rate.cwiseAbs().maxCoeff();
   std::vector<double> times{0.31 * t_end, 0.77 * t_end};
-  // So that no angle happens to have gone whole turns.
+  // Later times, so that no angle has changed by full rotations by chance.
   if (fastest * t_end > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
   return std::all_of(times.begin(), times.end(), [&](double t) {
     const VectorXd later = tangent.moved(linear.state, VectorXd(t * linear.rate));
@@ -152,7 +152,7 @@ Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_en
   const Places cyclic = directions.cyclic(at_guess.A, linearized(system, 0, off(system, guess)).A);
   Places held = joined(directions.held, cyclic);
   for (const int first : directions.attitudes) {
-    // Else Newton's steps halve the angular velocity of a body that nothing holds, down to none.
+    // Newton's steps would otherwise halve the angular velocity of a free body down to 0.
     const int w = directions.rates + first;
     Eigen::Index most = 0;
     const double turns = guess.tail(directions.rates).segment(first, 3).cwiseAbs().maxCoeff(&most);
@@ -183,7 +183,7 @@ Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_en
 
 namespace {
 
-/// Why a scene has no steady motion whatever its bodies do; empty where it may have one.
+/// The reason why a scene has no steady motion at all; empty if it may have one.
 std::string changes(const SceneFile& scene) {
   if (scene.follows_log()) return "the guide follows a log";
   if (has_link<scene_guide::Harmonic>(scene)) {
@@ -200,7 +200,7 @@ std::string changes(const SceneFile& scene) {
   return "";
 }
 
-/// Rotors on which a torque acts that no friction balances, as the end of a reason.
+/// Rotors whose torque is not balanced by friction, as the end of a reason.
 std::string driven_rotors(const StudySystem& system) {
   std::string text;
   for (const auto& rotor : system.tree().rotors()) {
@@ -217,7 +217,7 @@ double growth(const StudySystem& system, const VectorXd& state) {
   return eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
 }
 
-/// The equilibrium next to a state; null where there is none.
+/// The equilibrium nearest to a state; null if there is none.
 const Equilibrium* nearest(const StudySystem& system, const Equilibria& equilibria,
                            const VectorXd& state) {
   const Equilibrium* best = nullptr;
@@ -254,7 +254,7 @@ Steady find_steady(const StudySystem& system, const SceneFile& scene, const Vect
     if (!steady.exists()) steady.reason += driven_rotors(system);
     return steady;
   }
-  // A family stands in the list with one member, and another may lie nearer.
+  // A family is listed once, and another member may be nearer.
   if (steady.exists() &&
       distance(system, start, steady.state) < distance(system, start, near->state) - 1e-6) {
     return steady;

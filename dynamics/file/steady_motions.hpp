@@ -15,19 +15,19 @@
 
 namespace kreisel {
 
-/// A state in which the motion does not change, but for angles on which nothing depends.
+/// A state in which the motion does not change, except for angles on which nothing depends.
 struct Steady {
   enum class Kind {
-    start,  ///< that of the file
-    found,  ///< one next to it
+    start,  ///< the start in the file
+    found,  ///< a state next to the start
     none
   };
   Kind kind = Kind::none;
-  std::string reason;     ///< why there is none
-  bool turns = false;     ///< more than rotors and drives do
-  Eigen::VectorXd state;  ///< of the system; empty where there is none
+  std::string reason;     ///< the reason if none exists
+  bool turns = false;     ///< bodies other than rotors and drives rotate
+  Eigen::VectorXd state;  ///< of the system; empty if none exists
   double distance = 0;    ///< from the file's start, greatest component
-  double residual = 0;    ///< of the rates that should be 0, greatest
+  double residual = 0;    ///< greatest of the rates that should be 0
 
   [[nodiscard]] bool exists() const { return kind != Kind::none; }
 };
@@ -48,8 +48,8 @@ using Places = std::vector<bool>;
 
 [[nodiscard]] Places joined(Places a, const Places& b);
 
-/// The directions of a state, first those of the coordinates, then of the rates, and what depends
-/// on them.
+/// The directions of a state: first coordinates, then rates, then the variables that depend on
+/// them.
 struct Directions {
   int rates;
   Places given, held, running;  ///< as RuledDirections has them
@@ -57,22 +57,23 @@ struct Directions {
 
   explicit Directions(const StudySystem& system);
 
-  /// Coordinates on which no acceleration depends: at a state and at another, for an equilibrium
+  /// Coordinates on which no acceleration depends. The test uses two states, because an equilibrium
   /// may hide a dependence.
   [[nodiscard]] Places cyclic(const Eigen::MatrixXd& here, const Eigen::MatrixXd& elsewhere) const;
 
-  /// Directions that can be left out, and those that stay keep their roots: what is given, which
-  /// depends on nothing else, and that on which nothing else depends.
+  /// Directions that can be left out without changing the roots of the others. They depend on no
+  /// other direction because they are given, or no other direction depends on them.
   [[nodiscard]] Places without_roots(const Eigen::MatrixXd& A) const;
 
  private:
   [[nodiscard]] Places set(const std::vector<int>& directions) const;
 
-  /// The angles of an attitude are taken as a whole: the first, and how many.
+  /// The first index and the number of a direction's group: the angles of an attitude are one
+  /// group.
   [[nodiscard]] std::pair<int, int> group(int direction) const;
 };
 
-/// A state that has nothing special.
+/// A state next to y without special values.
 [[nodiscard]] Eigen::VectorXd off(const StudySystem& system, const Eigen::VectorXd& y);
 
 template <class Kind>
@@ -81,20 +82,20 @@ template <class Kind>
                      [](const auto& link) { return std::holds_alternative<Kind>(link); });
 }
 
-/// Whether the linear equations stay what they are along the motion and with time.
+/// True if the linear equations stay the same along the motion and with time.
 [[nodiscard]] bool stays(const StudySystem& system, const Linearization& linear, double t_end);
 
-/// The steady motion at the guess, or next to it.
+/// The steady motion at the guess or next to it.
 [[nodiscard]] Steady find_steady(const StudySystem& system, const Eigen::VectorXd& guess,
                                  double t_end);
 
-/// Equilibria of a scene; none where its guide goes on changing.
+/// Equilibria of a scene; none if its guide keeps changing.
 [[nodiscard]] Equilibria find_equilibria(const StudySystem& system, const SceneFile& scene,
                                          const Eigen::VectorXd& start);
 
-/// The steady motion at a scene's start; else a turning one that Newton's method finds from there;
-/// else the nearest of the equilibria and of what Newton's method finds, of several at the same
-/// distance that whose neighbouring motions grow least.
+/// The steady motion at a scene's start, if there is one. Otherwise it is a steady rotation that
+/// Newton's method finds from there. Otherwise it is the nearest of the equilibria and of Newton's
+/// results. At equal distances the one whose neighbouring motions grow least is taken.
 [[nodiscard]] Steady find_steady(const StudySystem& system, const SceneFile& scene,
                                  const Eigen::VectorXd& start, const Equilibria& equilibria);
 [[nodiscard]] Steady find_steady(const StudySystem& system, const SceneFile& scene,

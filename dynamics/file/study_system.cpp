@@ -12,8 +12,8 @@
 
 namespace kreisel {
 
-/// A guide at rest too is one that a file has named: nothing here is called often enough to gain by
-/// a second type.
+/// The system of a scene for all guides, also for one at rest: studies evaluate too rarely to gain
+/// by a second type.
 class StudySystem::Bodies : public BodySystem<SceneGuide> {
  public:
   using BodySystem::BodySystem;
@@ -32,7 +32,7 @@ const char* reason(Obstacle obstacle) {
   return "";
 }
 
-/// Of the velocities without the rotors' speeds.
+/// True if the velocities, without the rotors' speeds, are 0.
 bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().maxCoeff() < 1e-9; }
 
 }  // namespace

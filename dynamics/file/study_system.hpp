@@ -14,22 +14,22 @@
 
 namespace kreisel {
 
-/// What precession equations are good for in a scene.
+/// The validity of the precession equations for a scene.
 struct PrecessionCheck {
   struct Root {
     std::complex<double> technical;
     std::complex<double> exact;
   };
 
-  /// Of a test by all roots about a rest.
+  /// A test by all roots about an equilibrium.
   struct Test {
     bool admissible = false;
-    std::string reason;  ///< why not
+    std::string reason;  ///< why not admissible
     double greatest_shift = 0;
     std::vector<Root> slow;
   };
 
-  /// Of the motion that begins as the file says.
+  /// The motion from the start in the file.
   struct Motion {
     double end = 0;
     double bound = 0;
@@ -41,15 +41,15 @@ struct PrecessionCheck {
   std::string beyond;  ///< why there is no answer at all
   int velocities = 0;
   int rank = 0;  ///< of G
-  int kept = 0;  ///< accelerations that the equations keep
+  int kept = 0;  ///< number of accelerations that the equations keep
   std::string not_tested;
   Test test;
   std::string no_motion;
   Motion motion;
 };
 
-/// The bodies of a scene on their guide, as studies take a system. BodySystem and what is a
-/// template on it are compiled in system.cpp alone.
+/// The bodies of a scene on their guide, as a system for studies. BodySystem and the templates that
+/// use it are compiled in system.cpp alone.
 class StudySystem {
   template <class N>
   using Numbers = Eigen::Matrix<N, Eigen::Dynamic, 1>;
@@ -57,7 +57,7 @@ class StudySystem {
  public:
   using Vector = Eigen::VectorXd;
 
-  /// The guide is known from 0 to the scene's t_end.
+  /// The guide is defined from 0 to the scene's t_end.
   explicit StudySystem(const SceneFile& scene);
   StudySystem(const StudySystem&) = delete;
   StudySystem& operator=(const StudySystem&) = delete;
@@ -68,24 +68,24 @@ class StudySystem {
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
 
-  /// In the dual numbers of the studies.
+  /// The rates in the dual numbers of the studies.
   template <class Dual>
   requires(!std::same_as<Dual, double>)
       [[nodiscard]] Numbers<Dual> rates(const Dual& t, const Numbers<Dual>& y) const;
 
   [[nodiscard]] JointReactions reactions(double t, const Vector& y) const;
 
-  /// How the state matrix changes with ln of all rotors' momenta.
+  /// The derivative of the state matrix by ln of all rotors' momenta.
   [[nodiscard]] Eigen::MatrixXd momenta_slope(double t, const Vector& y) const;
 
-  /// `rest` is empty where there is none to test the roots about.
+  /// `rest` is the equilibrium for the test of the roots; empty if there is none.
   [[nodiscard]] PrecessionCheck precession(const Vector& start, const Vector& rest,
                                            double t_end) const;
 
-  /// States by the precession equations at times in order, as far as they go: until the motion is
-  /// no longer slow. Angles of rotors stay what they are.
+  /// States by the precession equations at increasing times, until the motion is no longer slow.
+  /// Angles of rotors do not change.
   ///
-  /// Throws : InvalidInput where there are no such equations; ComputationFailed
+  /// Throws : InvalidInput if there are no such equations; ComputationFailed
   [[nodiscard]] std::vector<Vector> technical(const Vector& start,
                                               const std::vector<double>& times) const;
 

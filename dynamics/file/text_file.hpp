@@ -13,13 +13,13 @@
 
 namespace kreisel {
 
-/// Bytes; larger scene files are refused.
+/// Maximum size of scene files in bytes; larger ones are refused.
 inline constexpr std::size_t largest_scene_file = 64U << 20U;
 
-/// All bytes of a file, a pipe or, called "-", of standard input.
+/// All bytes of a file, of a pipe or, for the name "-", of standard input.
 ///
-/// Throws : InvalidInput naming the path and the reason if it cannot be read, or if it holds more
-///          than `most` bytes, as an endless device does
+/// Throws : InvalidInput naming the path and the reason if it cannot be read, or if it has more
+///          than `most` bytes (an endless device has)
 [[nodiscard]] inline std::string read_text(const std::filesystem::path& path, std::size_t most) {
   const auto refuse = [&path](const std::string& why) -> InvalidInput {
     return InvalidInput((path == "-" ? "standard input" : path.string()) + ": " + why);

@@ -24,7 +24,7 @@ using namespace steady_motion;
 
 namespace {
 
-/// Of roots, or of multipliers by what they are beyond 1.
+/// The verdict from roots, or from multipliers by their excess over 1.
 template <class Modes, class Growth>
 Verdict verdict(const Modes& modes, bool all_directions, const Growth& growth) {
   Verdict result = all_directions ? Verdict::stable : Verdict::marginal;
@@ -35,33 +35,30 @@ Verdict verdict(const Modes& modes, bool all_directions, const Growth& growth) {
   return result;
 }
 
-/// How many of a joint's rates, the first ones, turn the body.
-int turning_rates(kreisel::JointKind kind) {
-  using enum kreisel::JointKind;
-  switch (kind) {
-    case fixed:
-    case prismatic: return 0;
-    case revolute: return 1;
-    case universal: return 2;
-    case spherical:
-    case free: return 3;
+/// The greatest angular rate of a joint.
+double angular_rate(const kreisel::JointType& type, const double* rates) {
+  double greatest = 0;
+  for (const kreisel::JointQuantity& quantity : type.rates) {
+    for (int k = 0; k < quantity.count(); ++k, ++rates) {
+      if (quantity.unit == "rad/s") greatest = std::max(greatest, std::abs(*rates));
+    }
   }
-  return 0;
+  return greatest;
 }
 
-/// From where a mode about a steady motion is seen. Attitudes vary by angles on the body's own axes,
-/// which in a steady motion may turn; single coordinates vary against the parent.
+/// The frame in which a mode about a steady motion is observed. Attitudes vary by angles on the
+/// body's own axes, which may rotate in a steady motion. Single coordinates vary relative to the
+/// parent.
 std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) {
   const kreisel::BodyTree& tree = system.tree();
   std::string carriers;
   for (int body = 0; body < static_cast<int>(tree.bodies().size()); ++body) {
     const kreisel::BodyDescription& description = tree.body(body);
-    const int turning = turning_rates(description.joint.kind);
-    const int v = tree.coordinates() + tree.place(body).v;
-    if (description.rotor || turning == 0) continue;
-    if (state.segment(v, turning).cwiseAbs().maxCoeff() < 1e-9) continue;
+    const kreisel::JointType& type = kreisel::joint_type(description.joint.kind);
+    const double* const rates = state.data() + tree.coordinates() + tree.place(body).v;
+    if (description.rotor || angular_rate(type, rates) < 1e-9) continue;
     const std::string& name = description.name;
-    if (turning == 3) return "on body axes, which turn with '" + name + "'";
+    if (type.has_attitude()) return "on body axes, which turn with '" + name + "'";
     const bool carries = std::any_of(tree.bodies().begin(), tree.bodies().end(),
                                      [&name](const auto& other) { return other.parent == name; });
     if (carries && carriers.empty()) carriers = name;
@@ -91,7 +88,7 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
     mode.shape(kept) = own;
     linear.modes.push_back(std::move(mode));
   }
-  // What is neither held nor held back by anything drifts off, however slowly.
+  // A coordinate that is neither held nor restored drifts, however slowly.
   const std::vector<int> left_out = list(out);
   const bool drifts = std::any_of(left_out.begin(), left_out.end(), [&directions](int i) {
     return !directions.held[static_cast<std::size_t>(i)];
@@ -101,7 +98,7 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   return linear;
 }
 
-/// Whether a guide moves so that a body at rest on it has an energy: it rests or moves steadily.
+/// True if a body at rest on the guide has an energy: the guide is at rest or moves steadily.
 bool is_steady(const kreisel::SceneFile& scene) {
   using namespace kreisel::scene_guide;
   const auto* const orbit = std::get_if<kreisel::scene_guide::Orbit>(&scene.guide.front());
@@ -111,8 +108,8 @@ bool is_steady(const kreisel::SceneFile& scene) {
          !has_link<Motion>(scene) && is_circle;
 }
 
-/// Whether no force on the bodies at rest gives energy without end: all of it is gravity on guide
-/// axes or that of the earth the guide is on, springs, constant joint forces, loads with a
+/// True if the forces on bodies at rest cannot deliver unlimited energy. These forces are gravity
+/// on guide axes or that of the earth below the guide, springs, constant joint forces, loads with a
 /// potential, and dampers.
 bool has_potential(const kreisel::SceneFile& scene) {
   const auto* const planet = std::get_if<kreisel::OblateGravitation<>>(&scene.gravity);
@@ -132,10 +129,10 @@ bool has_potential(const kreisel::SceneFile& scene) {
   });
 }
 
-/// Whether the potential energy is least at an equilibrium, but along its own family. The matrix
-/// that turns displacements into accelerations is minus mass^-1 stiffness.
+/// True if the potential energy has a minimum at an equilibrium, except along its own family. The
+/// matrix from displacements to accelerations is minus mass^-1 stiffness.
 ///
-/// Source : Lagrange and Dirichlet; gyroscopic forces and dampers do not spoil it
+/// Source : Lagrange and Dirichlet; gyroscopic forces and dampers do not affect it
 bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibrium) {
   const kreisel::steady_motion::Linearization there = linearized(system, 0, equilibrium.state);
   const Directions directions(system);
@@ -176,8 +173,8 @@ std::vector<Rest> rests(const kreisel::StudySystem& system, const kreisel::Scene
 
 bool oscillates(const GyroscopicMode& mode) { return mode.root.imag() > mode.error; }
 
-/// Takes the modes of one more speed to the curves that they continue, the likest first; the others
-/// begin curves of their own.
+/// Appends the modes at one more speed to the most similar curves. The other modes start new
+/// curves.
 void connect(std::vector<Curve>& curves, std::vector<GyroscopicMode> modes) {
   struct Pair {
     double likeness;
@@ -209,7 +206,7 @@ void connect(std::vector<Curve>& curves, std::vector<GyroscopicMode> modes) {
   }
 }
 
-/// The place of the speed of a body among the state's components.
+/// The index of a body's speed in the state.
 Eigen::Index speed_of(const kreisel::StudySystem& system, const std::string& name) {
   const kreisel::BodyTree& tree = system.tree();
   const auto& bodies = tree.bodies();
@@ -250,7 +247,7 @@ Campbell sweep(const kreisel::StudySystem& system, const Sweep& asked, VectorXd 
   return campbell;
 }
 
-/// Of all oscillations of the guide, if there is but one.
+/// The frequency of all oscillations of the guide, if there is only one.
 std::optional<double> frequency_of_guide(const kreisel::SceneFile& scene) {
   std::optional<double> only;
   bool several = false;
@@ -275,7 +272,7 @@ std::optional<double> period_of(const kreisel::SceneFile& scene, const Request& 
   return w ? std::optional(2 * std::numbers::pi / *w) : std::nullopt;
 }
 
-/// By how much the field is another one after a period, relative.
+/// The relative change of the field after a period.
 double field_misses(const kreisel::StudySystem& system, const VectorXd& start, double period) {
   const Directions directions(system);
   const kreisel::Tangent tangent = tangent_of(system, start);
@@ -300,7 +297,7 @@ double field_misses(const kreisel::StudySystem& system, const VectorXd& start, d
 
 Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, double period,
                     double t_of_guide) {
-  constexpr double max_evaluations = 2e5;  // of one period: seconds, and 20 periods at the most
+  constexpr double max_evaluations = 2e5;  // for one period: seconds, and at most 20 periods
   Floquet floquet;
   floquet.period = period;
   const Directions directions(system);
@@ -332,7 +329,8 @@ Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, d
   return floquet;
 }
 
-/// A ball that turns at the start but in no equilibrium: what was meant was another motion.
+/// True if a ball joint rotates at the start but in no equilibrium, so that another motion was
+/// meant.
 bool lost_spin(const kreisel::StudySystem& system, const VectorXd& start, const Steady& steady) {
   if (steady.kind == Steady::Kind::start) return false;
   const int q = system.tree().coordinates();

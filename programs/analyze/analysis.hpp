@@ -16,16 +16,17 @@ enum class Verdict { stable, marginal, unstable };
 
 /// The linear equations about a steady motion.
 struct Linear {
-  /// Slowest first; of two conjugate ones that with root.imag() > 0. Shapes in all directions.
+  /// Slowest first; of two conjugate modes the one with root.imag() > 0. Shapes have all
+  /// directions.
   std::vector<kreisel::GyroscopicMode> modes;
   std::vector<std::string> names;     ///< of the directions
-  std::vector<std::string> left_out;  ///< those on which nothing depends here, or that are given
-  std::string frame;                  ///< from which the modes are seen: "against the guide", ..
-  bool has_rotors = false;            ///< so that modes are of some kind
+  std::vector<std::string> left_out;  ///< directions that are given or on which nothing depends
+  std::string frame;                  ///< in which the modes are observed: "against the guide", ..
+  bool has_rotors = false;            ///< so that modes have a kind
   Verdict verdict = Verdict::marginal;
 };
 
-/// Modes that belong together, one for each speed or none.
+/// Modes that form a curve, one or none for each speed.
 using Curve = std::vector<std::optional<kreisel::GyroscopicMode>>;
 
 struct Campbell {
@@ -35,13 +36,13 @@ struct Campbell {
   std::vector<Curve> curves;
 };
 
-/// Of a motion that repeats itself.
+/// The stability of a periodic motion.
 struct Floquet {
   double period = 0;
   std::string reason;  ///< why there are no multipliers
   Eigen::VectorXd start;
-  double residual = 0;                     ///< of the return
-  std::vector<kreisel::Mode> multipliers;  ///< greatest first, of two conjugate ones both
+  double residual = 0;                     ///< of the return after a period
+  std::vector<kreisel::Mode> multipliers;  ///< greatest first; both of two conjugate ones
   Verdict verdict = Verdict::marginal;
 };
 
@@ -50,27 +51,27 @@ struct Rest {
   kreisel::steady_motion::Equilibrium equilibrium;
   Linear linear;
 
-  /// By the roots; where they do not decide stable if the potential energy is least there.
+  /// The verdict by the roots; if they do not decide, stable if the potential energy has a minimum.
   Verdict stability = Verdict::marginal;
-  double distance = 0;  ///< of the coordinates from the file's start, greatest
+  double distance = 0;  ///< greatest distance of a coordinate from the file's start
 };
 
 struct Analysis {
   std::vector<Rest> equilibria;  ///< stable ones first, then by their distance from the start
-  int starts = 0;                ///< states from which they were searched
+  int starts = 0;                ///< number of starts of the search
   kreisel::Steady steady;
   std::optional<Linear> linear;
   std::optional<Campbell> campbell;
   std::optional<Floquet> floquet;
   kreisel::PrecessionCheck precession;
-  std::vector<std::string> notes;  ///< on what is beyond this program
+  std::vector<std::string> notes;  ///< on the limits of this program
 };
 
-/// The system of a scene, its guide known as long as the analysis looks at it.
+/// The scene with a guide that is defined for as long as the analysis needs it.
 [[nodiscard]] kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene,
                                                    const Request& request);
 
-/// Throws : kreisel::InvalidInput for what is asked of a body or period that does not fit the
-///          scene; kreisel::ComputationFailed where a sweep finds no steady motion
+/// Throws : kreisel::InvalidInput if a requested body or period does not fit the scene;
+///          kreisel::ComputationFailed if a sweep finds no steady motion
 [[nodiscard]] Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
                                const Request& request);

@@ -1,5 +1,4 @@
-// analyze: equilibrium, linear equations, stability and precession check of what a scene file
-// describes.
+// analyze: equilibria, linear equations, stability and precession check of a scene file.
 
 #include <cstdio>
 

@@ -22,7 +22,7 @@ const char* const verdicts[] = {"stable", "marginal", "unstable"};
 
 const char* name(Verdict verdict) { return verdicts[static_cast<int>(verdict)]; }
 
-/// The root as people see it: parts that are no larger than its error are 0.
+/// The root for display: parts that are no larger than its error are 0.
 std::complex<double> shown(const kreisel::Mode& mode) {
   const auto part = [&mode](double x) { return std::abs(x) > mode.error ? x : 0; };
   return {part(mode.root.real()), part(mode.root.imag())};
@@ -32,7 +32,7 @@ double damping_ratio(const std::complex<double>& root) {
   return root.real() != 0 ? -root.real() / std::abs(root) : 0;
 }
 
-/// The direction of a coordinate, or a rate, that moves most.
+/// The direction of the coordinate or rate with the greatest amplitude.
 std::string mostly(const GyroscopicMode& mode, const std::vector<std::string>& names) {
   const Eigen::Index half = mode.shape.size() / 2;
   Eigen::Index most = 0;
@@ -47,7 +47,7 @@ kreisel::JointState joints_of(const Result& result, const Eigen::VectorXd& state
   return {state.head(tree.coordinates()), state.tail(tree.rates())};
 }
 
-/// Sizes by a state and by what the joints carry there.
+/// Sizes from a state and from the reactions in this state.
 kreisel::SceneScale scale_of(const Result& result, const Eigen::VectorXd& state) {
   kreisel::SceneScale scale =
       ::scale_of(result.scene, result.system.tree(), {joints_of(result, state)});
@@ -190,7 +190,7 @@ ordered_json json(const kreisel::PrecessionCheck& check) {
   return result;
 }
 
-/// The coordinates of all joints that have some, in one line.
+/// The coordinates of all joints with coordinates, in one line.
 std::string coordinates_text(const ordered_json& joints) {
   std::string text;
   for (const auto& [body, values] : joints.items()) {

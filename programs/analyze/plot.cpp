@@ -18,7 +18,7 @@ using kreisel::GyroscopicMode;
 
 namespace {
 
-/// Okabe and Ito's colours and a mark each for nutations, precessions and the rest.
+/// Okabe and Ito's colours and a mark each for nutations, precessions and other modes.
 struct Look {
   const char* kind;
   const char* name;
@@ -35,7 +35,8 @@ std::string title_of(const Result& result, const std::string& what) {
   return quoted(title.empty() ? what : title + ": " + what);
 }
 
-/// A block of gnuplot's data for each look, never empty; `rows` writes those of the k-th.
+/// Writes a block of gnuplot's data for each look, never an empty one; `rows` writes those of the
+/// k-th.
 template <class Rows>
 void write_blocks(std::ostream& s, const Rows& rows) {
   for (std::size_t k = 0; k < std::size(looks); ++k) {
@@ -49,7 +50,7 @@ bool looks_so(const GyroscopicMode& mode, bool has_rotors, std::size_t k) {
   return std::string(looks[k].kind) == kind(mode, has_rotors);
 }
 
-/// Of the blocks that hold anything.
+/// The gnuplot clauses of all blocks with data.
 std::string points(const std::vector<bool>& shown, double size) {
   std::string list;
   for (std::size_t k = 0; k < std::size(looks); ++k) {
@@ -85,7 +86,7 @@ std::string roots(const Result& result, const Linear& linear) {
     << "set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
     << "set title " << title_of(result, "roots of the linear equations, seen " + linear.frame)
     << '\n';
-  // Rounding is no growth to be seen.
+  // Growth below rounding is not shown.
   if (growth < 1e-9 * size) fmt::print(s, "set xrange [{:.3g}:{:.3g}]\n", -0.1 * size, 0.1 * size);
   s << "plot " << points(shown, 1.4) << "\nunset output\n";
   return s.str();

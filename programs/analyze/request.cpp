@@ -11,7 +11,7 @@ using kreisel::InvalidInput;
 
 namespace {
 
-/// "100:3000:30": from, to and how many.
+/// The speeds of "100:3000:30": first, last and number.
 std::vector<double> speeds(const std::string& text) {
   const auto refuse = [&text](const char* why) {
     return InvalidInput(fmt::format("--speeds {}: {}", text, why));

@@ -11,7 +11,7 @@ struct Sweep {
   std::vector<double> speeds;  ///< rad/s, against its carrier
 };
 
-/// What the command line of analyze asks for.
+/// The options on the command line of analyze.
 struct Request {
   std::filesystem::path scene;
   std::optional<Sweep> campbell;
@@ -20,7 +20,7 @@ struct Request {
   std::optional<std::filesystem::path> plot;  ///< a folder
 };
 
-/// Nothing where only help was asked for.
+/// Reads the command line; nothing if only help was requested.
 ///
 /// Throws : kreisel::InvalidInput
 std::optional<Request> read_request(int argc, char** argv);

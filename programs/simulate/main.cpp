@@ -1,4 +1,4 @@
-// simulate: the motion that a scene file describes, computed to a tolerance of the global error.
+// simulate: integrates the motion of a scene file to a tolerance of the global error.
 
 #include <fmt/core.h>
 
@@ -33,19 +33,19 @@ using kreisel::RunStatus;
 
 constexpr double before_all = -std::numeric_limits<double>::infinity();
 
-/// Where a run begins, or goes on.
+/// The start of a run, or the point from which it continues.
 struct Begin {
   kreisel::SolveOptions options;
   kreisel::JointState state;
-  double latest = before_all;                  ///< time of the rows that are there
-  std::vector<std::vector<double>> rows = {};  ///< those that are kept
+  double latest = before_all;                  ///< time of the last existing row
+  std::vector<std::vector<double>> rows = {};  ///< the rows that are kept
 };
 
 Begin from_the_start(const kreisel::SceneFile& scene) {
   return {options_of(scene), start_of(scene)};
 }
 
-/// A run that begins with the state of a row.
+/// A run that starts with the state of a row.
 Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scene,
                const std::vector<double>& row) {
   Begin begin = from_the_start(scene);
@@ -57,7 +57,7 @@ Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scen
   return begin;
 }
 
-/// The rows and the checkpoint of a run, both kept while it is computed.
+/// The rows and the checkpoint of a run, both written during the computation.
 struct Record {
   Record(const Request& request, const std::string& scene_text, const kreisel::SceneFile& scene,
          const kreisel::SceneSolver& solver)
@@ -85,7 +85,7 @@ struct Record {
     return of_chosen(std::move(numbers));
   }
 
-  /// What stands in the chosen columns.
+  /// The entries of the chosen columns.
   template <class Entry>
   [[nodiscard]] std::vector<Entry> of_chosen(std::vector<Entry> all) const {
     if (chosen.empty()) return all;
@@ -94,7 +94,8 @@ struct Record {
     return result;
   }
 
-  /// Leaves the checkpoint of a run that begins behind these rows, or none of one from the start.
+  /// Writes the checkpoint of a run that starts after these rows, or removes it if the run starts
+  /// at 0.
   void begin_behind(double t, const RowFile::Mark& end) const {
     if (t > 0) {
       resume.write({t, t, end, {}});
@@ -103,15 +104,15 @@ struct Record {
     }
   }
 
-  /// The rows go first: a run that is killed between finds a checkpoint of rows that are not there,
-  /// and begins again too.
+  /// Starts again. Rows are removed first: after a kill in between, the checkpoint does not match
+  /// the rows, and the next run starts again too.
   void begin_again(double begin) {
     rows.begin_again();
     if (const auto end = rows.end()) begin_behind(begin, *end);
     next = {};
   }
 
-  /// Writes a checkpoint every 50 ms, or less often where that would take over 5 % of the time.
+  /// Writes a checkpoint every 50 ms, or less often if that would take over 5 % of the time.
   template <class Take>
   void offer(double begin, double t, const Take& take) {
     const auto end = rows.end();
@@ -127,14 +128,14 @@ void refuse_rows(const RowFile& file, const std::string& why) {
   throw kreisel::InvalidInput(file.place().string() + ": --resume: " + why);
 }
 
-/// The row of that time; nothing where there is none.
+/// The row at that time; nothing if there is none.
 const RowFile::Row* row_at(const std::vector<RowFile::Row>& rows, double t) {
   const auto found = std::find_if(rows.begin(), rows.end(),
                                   [t](const auto& row) { return row.values.front() == t; });
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// Goes on where a checkpoint was taken; nothing where the rows are not those that it stands for.
+/// Continues from a checkpoint; nothing if it does not match the rows.
 std::optional<Begin> from_checkpoint(const kreisel::SceneSolver& model,
                                      const kreisel::SceneFile& scene,
                                      const std::vector<RowFile::Row>& rows, RowFile& file,
@@ -151,9 +152,9 @@ std::optional<Begin> from_checkpoint(const kreisel::SceneSolver& model,
   return begin;
 }
 
-/// Goes on with the rows of a file, from the checkpoint if there is one of them.
+/// Continues the rows of a file, from its checkpoint if there is one.
 ///
-/// Throws : kreisel::InvalidInput where the file's rows are not of this scene
+/// Throws : kreisel::InvalidInput if the file's rows do not belong to this scene
 Begin from_rows(const kreisel::SceneSolver& model, Record& record,
                 const kreisel::SceneFile& scene) {
   const std::vector<RowFile::Row> rows = record.rows.read_rows();
@@ -192,7 +193,7 @@ Begin from_rows(const kreisel::SceneSolver& model, Record& record,
   return begin;
 }
 
-/// The states of rows before those of a run that went on with them.
+/// Inserts the states of earlier rows before those of a continued run.
 void put_before(kreisel::Trajectory<kreisel::JointState>& run, const kreisel::SceneSolver& model,
                 const std::vector<std::vector<double>>& rows) {
   std::vector<double> times;
@@ -208,8 +209,8 @@ void put_before(kreisel::Trajectory<kreisel::JointState>& run, const kreisel::Sc
   run.errors.insert(run.errors.begin(), times.size(), unknown);
 }
 
-/// Computes the run and writes its rows. After a signal it ends early, and `latest` is the time that
-/// was reached.
+/// Computes the run and writes its rows. After a signal it ends early, and `latest` is the time
+/// that was reached.
 kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene,
                                                  const kreisel::SceneSolver& model, Begin& begin,
                                                  std::optional<Record>& record, double& latest) {

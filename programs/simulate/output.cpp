@@ -41,7 +41,7 @@ std::string gravity_name(const kreisel::SceneFile& scene) {
   return names[scene.gravity.index()];
 }
 
-/// Whether gravity has the terms of the bodies' size; nothing where its kind knows none.
+/// True if gravity includes the terms of the bodies' size; nothing if its kind has no such terms.
 std::optional<bool> size_terms(const kreisel::SceneFile& scene) {
   return std::visit(
       []([[maybe_unused]] const auto& field) -> std::optional<bool> {
@@ -57,8 +57,9 @@ ordered_json json(const std::vector<TermLine>& terms) {
   return list;
 }
 
-/// The terms that the equation of motion holds, or those that it does not. Gravity is told apart, by
-/// the kind that the scene has: that of a place enters the equation as a load on each body.
+/// The terms that the equation of motion contains, or those that it does not. Gravity is a term of
+/// its own, by the kind in the scene: non-uniform gravity enters the equation as a load on each
+/// body.
 std::vector<TermLine> equation_terms(const Result& result, bool kept) {
   std::vector<TermLine> terms;
   for (const kreisel::Term& term : result.model.equation_terms()) {
@@ -69,7 +70,7 @@ std::vector<TermLine> equation_terms(const Result& result, bool kept) {
   return terms;
 }
 
-/// The parts of the error, the greatest of each. What the exact companion of an approximation errs by
+/// The parts of the error, each at its maximum. The error of the exact run beside an approximation
 /// is in the sum alone.
 struct ErrorParts {
   double integration = 0;
@@ -86,7 +87,8 @@ double whole_error(const Result& result) {
   return report(result).error_estimate + result.log_error.worst;
 }
 
-/// What logs make of the end, for each joint in its own units; no key for what does not move.
+/// The effect of log errors on the end, for each joint in its own units; no key for a fixed
+/// quantity.
 ordered_json log_errors(const Result& result) {
   ordered_json table = ordered_json::object();
   for (std::size_t i = 0; i < result.log_error.joints.size(); ++i) {
@@ -239,7 +241,7 @@ ordered_json summary(const Result& result) {
           {"final", final_state(result)}};
 }
 
-/// Keys that lead to the first number that is not finite, null in JSON; nothing if all are finite.
+/// The keys of the first number that is not finite (null in JSON); nothing if all are finite.
 std::optional<std::string> path_to_null(const ordered_json& value) {
   if (value.is_null()) return "";
   if (value.is_number_float() && !std::isfinite(value.get<double>())) return "";

@@ -8,7 +8,7 @@
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/scale.hpp>
 
-/// A run that came to its end.
+/// A complete run.
 struct Result {
   const kreisel::SceneFile& scene;
   const kreisel::SceneSolver& model;
@@ -18,10 +18,10 @@ struct Result {
   kreisel::LogError log_error = {};
 };
 
-/// Sizes by all states of a run, and by what the joints carry in the first and the last.
+/// Sizes from all states of a run, and from the reactions in the first and the last state.
 kreisel::SceneScale scale_of(const Result& result);
 
-/// A thing that the equations hold, or leave out, and why.
+/// A term that the equations contain or leave out, with the reason.
 struct TermLine {
   std::string name;
   std::string reason;
@@ -37,8 +37,8 @@ void require_finite(const Result& result);
 void print_summary(const Result& result);
 void print_json(const Result& result);
 
-/// Coordinates, rates, energy, error, reactions and the path of the last body's axis, each as SVG and PNG,
-/// and view.html, which shows the bodies moving.
+/// Draws coordinates, rates, energy, error, reactions and the path of the last body's axis, each as
+/// SVG and PNG, and view.html, which shows the bodies moving.
 ///
-/// Throws : kreisel::ComputationFailed where gnuplot is not installed or fails
+/// Throws : kreisel::ComputationFailed if gnuplot is not installed or fails
 void draw(const Result& result, const std::filesystem::path& folder);

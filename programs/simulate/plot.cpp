@@ -21,10 +21,10 @@ using gnuplot::quoted;
 
 namespace {
 
-/// A picture cannot show more.
+/// The maximum number of points that a picture can show.
 constexpr std::size_t most_points = 4000;
 
-/// Okabe and Ito's colours, told apart by all eyes; and dashes, told apart without colours.
+/// Okabe and Ito's colours, suited to colour-blind readers, and dashes for prints without colours.
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};
 constexpr const char* dashes[] = {"solid", "(14,5)", "(4,4)", "(14,4,3,4)"};
 
@@ -41,7 +41,7 @@ struct Panel {
   std::vector<Curve> curves;
 };
 
-/// Curves of the columns of a row that begin at `first`.
+/// Curves of the columns of a row, beginning at `first`.
 std::vector<Curve> curves(const std::vector<std::vector<double>>& rows, std::size_t first,
                           const std::vector<std::string>& names) {
   std::vector<Curve> result;
@@ -116,7 +116,7 @@ void write_block(std::ostream& s, const char* name, const std::vector<Series>& s
   s << "END\n";
 }
 
-/// All of what does not change at all, with room about it.
+/// The y range of a panel: automatic, or a margin about curves that are all constant and equal.
 std::string y_range(const Panel& panel) {
   double least = panel.curves.front().values.front();
   double most = least;
@@ -130,7 +130,7 @@ std::string y_range(const Panel& panel) {
   return fmt::format("set yrange [{:.9g}:{:.9g}]\n", least - room, most + room);
 }
 
-/// Panels over time, one below the other.
+/// Panels over time, one below another.
 std::string over_time(const std::string& title, const Series& times,
                       const std::vector<Panel>& panels) {
   std::ostringstream s;
@@ -166,7 +166,7 @@ std::string over_time(const std::string& title, const Series& times,
   return s.str();
 }
 
-/// What the states are off by, and what was asked for.
+/// The error of the states over time, and the tolerance.
 std::string error_over_time(const std::string& title, const Series& times, const Series& errors,
                             double tolerance) {
   std::ostringstream s;
@@ -183,7 +183,7 @@ std::string error_over_time(const std::string& title, const Series& times, const
   return s.str();
 }
 
-/// Directions on the unit sphere, the guide's axes; empty where nothing turns.
+/// Directions on the unit sphere, on the guide's axes; empty if nothing rotates.
 std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, std::string& what) {
   const int last = static_cast<int>(result.scene.bodies.size()) - 1;
   const auto& body = result.scene.bodies.back();
@@ -208,7 +208,7 @@ std::vector<Eigen::Vector3d> path(const Result& result, const Samples& samples, 
   return moves(way) ? way : std::vector<Eigen::Vector3d>();
 }
 
-/// Ranges of equal length that hold the points.
+/// Ranges of equal length that contain the points.
 std::string square_range(const std::vector<Eigen::Vector2d>& points) {
   Eigen::Vector2d least = points.front();
   Eigen::Vector2d most = points.front();
@@ -222,7 +222,7 @@ std::string square_range(const std::vector<Eigen::Vector2d>& points) {
                      middle.x() + half, middle.y() - half, middle.y() + half);
 }
 
-/// The whole sphere from the side on which the path lies, and the path from above.
+/// The whole sphere, seen from the side of the path, and the path from above.
 std::string on_sphere(const std::string& title, const std::string& what,
                       const std::vector<Eigen::Vector3d>& way) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -233,7 +233,7 @@ std::string on_sphere(const std::string& title, const std::string& what,
   mean.cwiseAbs().minCoeff(&across);
   const Eigen::Vector3d aside = (Eigen::Vector3d::Unit(across) - mean[across] * mean).normalized();
   const Eigen::Vector3d up = mean.cross(aside);
-  // The camera stands off the mean direction, lest the path be seen from above alone.
+  // The camera is off the mean direction, so that the path is not seen only from above.
   const Eigen::Vector3d eye = (mean - 0.45 * up + 0.3 * aside).normalized();
   const Eigen::Vector3d right = (aside - aside.dot(eye) * eye).normalized();
   const Eigen::Vector3d above = eye.cross(right);

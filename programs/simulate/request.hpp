@@ -5,7 +5,7 @@
 
 #include <dynamics/file/scene_file.hpp>
 
-/// What the command line of simulate asks for.
+/// The options on the command line of simulate.
 struct Request {
   std::filesystem::path scene;
   kreisel::SolveRequest solve;
@@ -17,7 +17,7 @@ struct Request {
   std::optional<std::filesystem::path> plot;  ///< a folder
 };
 
-/// Nothing where only help was asked for.
+/// Reads the command line; nothing if only help was requested.
 ///
 /// Throws : kreisel::InvalidInput
 std::optional<Request> read_request(int argc, char** argv);

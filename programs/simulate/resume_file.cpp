@@ -20,21 +20,22 @@ namespace {
 
 constexpr std::size_t largest_checkpoint = std::size_t(1) << 30U;
 
-/// The last line is the hash of all lines before it.
+/// The text with the hash of all its lines as its last line.
 std::string with_sum(const std::string& text) {
   Hash hash;
   hash.add(text);
   return fmt::format("{}sum {}\n", text, hash.value());
 }
 
-/// What stands before the last line; nothing where that is not its hash.
+/// The text before the last line; nothing if that line is not its hash.
 std::optional<std::string> without_sum(const std::string& text) {
   const std::size_t sum = text.rfind("sum ");
   if (sum == std::string::npos || with_sum(text.substr(0, sum)) != text) return std::nullopt;
   return text.substr(0, sum);
 }
 
-/// Of a table that can be read once only, as from a pipe, a number that does not come again.
+/// Adds a table to the hash. A table that can be read only once, as from a pipe, gets a random
+/// number.
 void add_table(Hash& hash, const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) {
@@ -101,11 +102,11 @@ void ResumeFile::write(const Checkpoint& checkpoint) const {
     file.stream() << with_sum(text);
     file.commit();
   } catch (const kreisel::Error&) {
-    // As long as the rows can be written the run has no reason to end.
+    // The run continues as long as the rows can be written.
   }
 }
 
 void ResumeFile::remove() const {
-  std::error_code ignored;  // what stays is overwritten by the next run
+  std::error_code ignored;  // a file that remains is overwritten by the next run
   std::filesystem::remove(place_, ignored);
 }

@@ -11,13 +11,14 @@
 
 #include "row_file.hpp"
 
-/// A number that differs between runs whose steps differ: it depends on the version of the program,
-/// the texts of the scene and of its tables, end, tolerance, method, output times and columns.
+/// A number that differs between runs with different steps. It depends on the version of the
+/// program, the texts of the scene and its tables, end, tolerance, method, output times and
+/// columns.
 [[nodiscard]] std::uint64_t identity(std::string_view scene_text, const kreisel::SceneFile& scene);
 
-/// A place in a run from which it goes on to the same last bit.
+/// A point of a run from which the run continues exactly, to the last bit.
 struct Checkpoint {
-  double begin = 0;   ///< of the run: 0, or the time of the row that it was begun from
+  double begin = 0;   ///< of the run: 0, or the time of the row from which it started
   double t = 0;       ///< of the last row
   RowFile::Mark row;  ///< the end of that row
   std::vector<double> numbers;
@@ -30,10 +31,12 @@ class ResumeFile {
 
   [[nodiscard]] const std::filesystem::path& place() const { return place_; }
 
-  /// Nothing where there is none of this run that is whole; `why_not` says then why.
+  /// Reads the checkpoint; nothing if there is no valid one of this run. `why_not` then has the
+  /// reason.
   [[nodiscard]] std::optional<Checkpoint> read(std::string& why_not) const;
 
-  /// Where the file cannot be written the one before stays, which serves as well.
+  /// Writes the checkpoint. If the file cannot be written, the previous checkpoint stays and is
+  /// valid.
   void write(const Checkpoint& checkpoint) const;
 
   void remove() const;

@@ -22,7 +22,7 @@
 
 namespace {
 
-/// Of a file of rows that is gone on with: what memory holds.
+/// Maximum size of a file of rows to continue: the rows must fit in memory.
 constexpr std::size_t largest_table = std::size_t(4) << 30U;
 
 std::string line(const std::vector<std::string>& fields) {
@@ -184,7 +184,7 @@ void RowFile::begin_again() {
 }
 
 void RowFile::write_held() {
-  // After a signal a reader that takes nothing is not waited for.
+  // After a signal the program does not wait for a reader that has stopped reading.
   if (signals::caught() != 0) ::fcntl(file_, F_SETFL, O_WRONLY | O_NONBLOCK);  // NOLINT: variadic
   for (std::size_t done = 0; done < held_.size();) {
     const ssize_t n = ::write(file_, held_.data() + done, held_.size() - done);

@@ -8,15 +8,15 @@
 
 #include "../shared/hash.hpp"
 
-/// A CSV file that grows row by row and holds whole rows at any time: when the program is killed at
-/// most the row being written is cut off, when the disk is full the last whole row is the last of
-/// the file. A pipe, a device or standard output, called "-", gets all rows at once in the end.
+/// A CSV file that grows row by row and contains whole rows at any time. If the program is killed,
+/// at most the current row is cut off. If the disk is full, the last whole row is the end of the
+/// file. A pipe, a device or standard output, called "-", receives all rows at the end.
 class RowFile {
  public:
-  /// The end of a row, or of the head, in the file.
+  /// The end of a row, or of the header, in the file.
   struct Mark {
-    long long bytes = 0;  ///< up to there
-    Hash hash;            ///< of these
+    long long bytes = 0;  ///< up to the mark
+    Hash hash;            ///< of these bytes
 
     void advance(std::string_view text);
 
@@ -28,7 +28,7 @@ class RowFile {
     Mark end;
   };
 
-  /// Nothing is opened or written before the first row.
+  /// The file is opened and written at the first row, not earlier.
   RowFile(std::filesystem::path place, std::vector<std::string> columns);
   RowFile(const RowFile&) = delete;
   RowFile& operator=(const RowFile&) = delete;
@@ -36,24 +36,24 @@ class RowFile {
 
   [[nodiscard]] const std::filesystem::path& place() const { return place_; }
 
-  /// The rows that are there, but for a last one cut off.
+  /// The rows in the file, without an incomplete last one.
   ///
-  /// Throws : kreisel::InvalidInput where the file cannot be read, is in use, has other columns, a
+  /// Throws : kreisel::InvalidInput if the file cannot be read, is in use, has other columns, a
   ///          damaged row, or times that do not increase
   std::vector<Row> read_rows();
 
-  /// Has rows written behind `begin`; begin_again() goes back to `kept`. Without a mark: behind the
-  /// head.
+  /// Starts writing rows after `begin`; begin_again() goes back to `kept`. Without a mark rows
+  /// follow the header.
   void go_on(const std::optional<Mark>& kept, const std::optional<Mark>& begin);
 
-  /// The end of the rows that have been written; nothing where the file is none that grows.
+  /// The end of the written rows; nothing if the file does not grow row by row.
   [[nodiscard]] std::optional<Mark> end() const;
 
-  /// Throws : kreisel::InvalidInput where the file cannot be opened or is in use,
-  ///          kreisel::ComputationFailed where a value is not finite or the file does not take it
+  /// Throws : kreisel::InvalidInput if the file cannot be opened or is in use,
+  ///          kreisel::ComputationFailed if a value is not finite or cannot be written
   void write(const std::vector<double>& row);
 
-  /// Takes back all rows but those kept.
+  /// Removes all rows except the kept ones.
   void begin_again();
 
   /// Throws : kreisel::ComputationFailed
@@ -71,10 +71,10 @@ class RowFile {
   std::filesystem::path place_;
   std::vector<std::string> columns_;
   std::string head_;
-  std::string held_;  ///< where all is written in the end
+  std::string held_;  ///< if everything is written at the end
   int file_ = -1;
-  bool is_ready_ = false;    ///< to be written to
-  bool is_regular_ = false;  ///< and grows row by row
-  Mark kept_;                ///< these rows stay
-  Mark written_;             ///< whole rows; before the first one those to go on behind
+  bool is_ready_ = false;    ///< ready for writing
+  bool is_regular_ = false;  ///< it grows row by row
+  Mark kept_;                ///< rows up to here stay
+  Mark written_;             ///< whole rows; before the first one the rows to continue
 };

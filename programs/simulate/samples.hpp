@@ -6,7 +6,7 @@
 
 #include "output.hpp"
 
-/// Output times and states of a run, no more of them than a picture shows.
+/// Output times and states of a run, at most as many as a picture shows.
 class Samples {
  public:
   Samples(const Result& result, std::size_t most) : result_(result) {
@@ -16,7 +16,7 @@ class Samples {
     if (chosen_.back() != n - 1) chosen_.push_back(n - 1);
   }
 
-  /// What `value` gives of each time and state.
+  /// The values of a function at each time and state.
   template <class Value>
   [[nodiscard]] auto all(const Value& value) const {
     std::vector<decltype(value(0.0, kreisel::JointState{}))> list;
@@ -26,7 +26,7 @@ class Samples {
     return list;
   }
 
-  /// Those of a list that has one for each output.
+  /// The sampled entries of a list with one entry for each output.
   [[nodiscard]] std::vector<double> of(const std::vector<double>& values) const {
     std::vector<double> list;
     for (const std::size_t i : chosen_) list.push_back(values[i]);

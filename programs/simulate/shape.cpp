@@ -17,7 +17,8 @@ using kreisel::JointKind;
 
 namespace {
 
-/// A joint this near to a body's centre, as a share of what turns there, is at its centre.
+/// The greatest distance between a joint and a body's centre that counts as 0, as a share of the
+/// parts that rotate there.
 constexpr double at_centre = 0.05;
 
 std::size_t slot(int i) { return static_cast<std::size_t>(i); }
@@ -26,7 +27,7 @@ kreisel::detail::JointParts parts(const kreisel::Joint& joint) {
   return kreisel::joint_type(joint.kind).parts(joint);
 }
 
-/// Whether a body turns about axes alone.
+/// True if a body rotates about axes alone.
 bool turns(const BodyDescription& body) {
   const auto all = parts(body.joint);
   return std::all_of(all.begin(), all.end(), [](const auto& part) {
@@ -39,7 +40,7 @@ Vector3d centre(const BodyDescription& body) {
   return T.mass > 0 ? Vector3d(T.first_moment / T.mass) : Vector3d(Vector3d::Zero());
 }
 
-/// Whether a body is drawn as a wheel on the axis of its joint.
+/// True if a body is drawn as a wheel on the axis of its joint.
 bool is_wheel(const BodyDescription& body, bool has_children) {
   if (body.rotor) return true;
   if (body.joint.kind != JointKind::revolute || has_children) return false;
@@ -49,16 +50,16 @@ bool is_wheel(const BodyDescription& body, bool has_children) {
          (tensor * axis).cross(axis).norm() <= 1e-6 * tensor.trace();
 }
 
-/// The solid with the body's mean squares of the coordinates of its mass: half the trace of the
-/// tensor less the moment about the axis, by the mass. A box has 3 of it as half its side squared,
-/// an ellipsoid 5; a cylinder 4 across, 3 along.
+/// The solid with the body's mean squares of mass coordinates. These are half the trace of the
+/// tensor minus the moment about the axis, divided by the mass. Half the side squared is 3 of them
+/// in a box, 5 in an ellipsoid; in a cylinder 4 across, 3 along.
 Shape solid(const BodyDescription& body, bool wheel) {
   const auto& T = body.inertia.value;
   Shape shape{"ellipsoid", Matrix3d::Identity(), centre(body), Vector3d::Zero()};
   if (!(T.mass > 0)) return shape;
   const Matrix3d tensor =
       T.tensor.matrix() - T.mass / 2 * kreisel::offset_product(shape.centre, shape.centre).matrix();
-  // The largest moment is the last, so that a wheel gets its axis as third.
+  // The largest moment is the last, so that a wheel gets its axis as the third one.
   const Vector3d axis = wheel ? last_axis(body) : Vector3d(Vector3d::Zero());
   const Matrix3d marked = tensor + 2 * tensor.trace() * axis * axis.transpose();
   shape.axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(marked).eigenvectors();
@@ -85,7 +86,7 @@ Shape solid(const BodyDescription& body, bool wheel) {
   return shape;
 }
 
-/// How far from the body's origin it reaches.
+/// The greatest distance of its points from the body's origin.
 double reach(const Shape& shape) {
   const Vector3d& half = shape.half;
   if (shape.form == "cylinder") {
@@ -94,7 +95,8 @@ double reach(const Shape& shape) {
   return shape.centre.norm() + (shape.form == "box" ? half.norm() : half.maxCoeff());
 }
 
-/// In the plane of its own axis and of that which it holds, where the bearings of both are.
+/// A ring in the plane of its own axis and of the axis of the held body, which contains both
+/// bearings.
 Shape ring(const BodyDescription& body, const Vector3d& held_axis, double inside) {
   const Vector3d axis = last_axis(body);
   Vector3d normal = axis.cross(held_axis);

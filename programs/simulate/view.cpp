@@ -22,10 +22,10 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// 20 s at 100 frames a second; the page finds what lies between by coordinates and rates.
+/// 20 s at 100 frames a second; the page interpolates between frames by coordinates and rates.
 constexpr std::size_t most_frames = 2000;
 
-/// What one cannot see is left out of the file.
+/// A number rounded to the digits that are visible.
 double rounded(double x, int digits) {
   return std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr);
 }
@@ -37,18 +37,18 @@ ordered_json rounded(const Numbers& all, int digits) {
   return list;
 }
 
-constexpr int row_digits = 9;    ///< of what is moved by it
-constexpr int arrow_digits = 4;  ///< of what is only drawn
+constexpr int row_digits = 9;    ///< of numbers that move a body
+constexpr int arrow_digits = 4;  ///< of numbers that are only drawn
 
 ordered_json numbers(const Eigen::Vector3d& v) { return rounded(v, row_digits); }
 
-/// Row by row.
+/// The entries of a matrix, row by row.
 ordered_json numbers(const Eigen::Matrix3d& m) {
   return rounded(m.transpose().reshaped(), row_digits);
 }
 
-/// The motions of a joint that have single coordinates: by one of it about the axis by `turns`,
-/// along it by `slides`.
+/// The motions of a joint with single coordinates: rotation about the axis by `turns` of one
+/// coordinate, displacement along it by `slides`.
 ordered_json parts(const kreisel::Joint& joint) {
   using kreisel::detail::LinkKind;
   ordered_json list = ordered_json::array();
@@ -72,7 +72,7 @@ ordered_json named(const std::vector<kreisel::JointQuantity>& quantities) {
   return list;
 }
 
-/// Against gravity, where the scene has a direction of it.
+/// The direction opposite to gravity, if the scene has one.
 Eigen::Vector3d up(const kreisel::SceneFile& scene) {
   Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
   if (std::holds_alternative<kreisel::scene_guide::Earth>(scene.guide.front())) {
@@ -134,7 +134,7 @@ std::vector<double> terms_row(const Result& result, double t, const kreisel::Joi
   return values;
 }
 
-/// JSON that may stand in a script element, which "</script" or "<!--" in a name would end.
+/// JSON for a script element, which "</script" or "<!--" in a name would end.
 std::string text(const ordered_json& values) {
   std::string result;
   for (const char c : values.dump())

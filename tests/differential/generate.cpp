@@ -335,7 +335,7 @@ void add_mass(Random& r, Body& body) {
   if (r.chance(0.7)) body.centre = vector(r, 0.01, 1);
 }
 
-/// Of the kinds of joints after `free` the one at that share of the list, from 0 to 1.
+/// The kind of joint after `free` at a share of the list, from 0 to 1.
 JointKind later_kind(double share) {
   const auto& types = kreisel::joint_types();
   const auto first = static_cast<std::size_t>(JointKind::free) + 1;
@@ -721,7 +721,7 @@ Sensor sensor(Random& r, const Scene& scene) {
   result.at_by_name = !is_attitude && r.chance(0.3);
   if (!is_point && !is_attitude && r.chance(0.3)) result.axes = attitude(r);
   if (is_point || is_attitude) result.against = frame(r, scene);
-  // Logged rates leave open where the guide is in the inertial frame.
+  // With logged rates the position of the guide in the inertial frame is unknown.
   const bool is_lost = !scene.guide.empty() && scene.guide.front().kind == LinkKind::rates;
   if (is_point && is_lost && result.against == inertial_frame) result.against = guide_frame;
   result.on = is_point && r.chance(0.5) ? frame(r, scene) : result.against;

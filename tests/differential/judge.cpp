@@ -132,7 +132,7 @@ class Judge {
     SensorKind kind;
     std::size_t begin;
     std::size_t count;
-    bool is_place;  ///< or a velocity, which on the earth are great
+    bool is_place;  ///< or a velocity, which is large on the earth
     bool is_force;  ///< or an acceleration
   };
 
@@ -153,15 +153,15 @@ class Judge {
     return parts;
   }
 
-  /// Forces of springs that are much stiffer cancel to more than what is judged.
+  /// True if springs are so stiff that their cancelling forces exceed the judged differences.
   [[nodiscard]] bool is_stiff() const {
     return std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& body) {
       return !body.stiffness.empty() && body.stiffness.front() > 1e6;
     });
   }
 
-  /// What sensors read at the start. A vector errs in proportion to its size and, as the terms of
-  /// accelerations may cancel, to that of all others but places.
+  /// Judges the readings of sensors at the start. A vector's error is in proportion to its size. As
+  /// terms of accelerations may cancel, it also grows with the size of all others except positions.
   void judge_readings() {
     if (answers_.readings.empty()) return;
     const std::vector<double> right = start_readings(scene_);

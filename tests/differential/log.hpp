@@ -41,7 +41,7 @@ struct Spelling {
   bool in_degrees = false;      ///< angles and angular rates
   bool ends_with_cr = false;    ///< lines
   std::int64_t time_zero = 0;   ///< ns
-  bool begins_at_zero = false;  ///< time_zero is that of the first row
+  bool begins_at_zero = false;  ///< time_zero is the time of the first row
   bool has_window = false;
   std::string longest_gap = {};  ///< as in the file; empty: not given
   std::string duplicates = {};   ///< which of two rows of one time is right

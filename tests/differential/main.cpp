@@ -39,7 +39,7 @@ using Clock = std::chrono::steady_clock;
 volatile std::sig_atomic_t interrupted = 0;
 extern "C" void on_interrupt(int /*signal*/) { interrupted = 1; }
 
-/// A known kind of faults that is not mended yet.
+/// A known kind of faults that is not repaired yet.
 struct Known {
   double most;        ///< scenes of 400 that may have it
   std::string begin;  ///< of its name

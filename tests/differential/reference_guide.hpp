@@ -4,8 +4,8 @@
 
 #include "scene.hpp"
 
-/// Guides and gravity of the independent integrator, from the definitions in docs/scene_files.md and
-/// nothing of dynamics/.
+/// Guides and gravity of the independent integrator, from the definitions in docs/scene_files.md,
+/// without any code of dynamics/.
 
 namespace differential::reference {
 
@@ -43,10 +43,10 @@ class Guide {
   /// Gravity on inertial axes, at a position on inertial axes from the guide's origin.
   [[nodiscard]] Vec gravity(Real t, const Motion& motion, const Vec& place) const;
 
-  /// Whether gravity acts on all parts of a body, not on its centre of mass alone.
+  /// True if gravity acts on all parts of a body, not on its centre of mass alone.
   [[nodiscard]] bool has_gradient() const;
 
-  /// The way to where the potential of gravity is 0, on which it has about its strength.
+  /// The distance to the zero of gravity's potential, over which gravity has about its strength.
   [[nodiscard]] Real depth(const Motion& motion, const Vec& place) const;
 
  private:

@@ -41,7 +41,7 @@ std::pair<Vec, Vec> across(const Vec& axis) {
   return {first, axis.cross(first)};
 }
 
-/// From e2 to its image, about e1.
+/// The angle of rotation from `from` to `to` about `axis`.
 Real turn_between(const Vec& axis, const Vec& from, const Vec& to) {
   const Vec a = from - axis.dot(from) * axis;
   const Vec b = to - axis.dot(to) * axis;
@@ -76,7 +76,7 @@ int rows_of(const Body& body, bool held, bool driven) {
   return 0;
 }
 
-/// Whether a joint turns about `axis` alone.
+/// True if a joint rotates about `axis` alone.
 bool is_hinge(JointKind kind) {
   return kind == JointKind::revolute || kind == JointKind::cylindrical ||
          kind == JointKind::planar || kind == JointKind::screw;
@@ -87,8 +87,8 @@ int angle_count(JointKind kind) {
   return is_hinge(kind) ? 1 : 0;
 }
 
-/// The first direction in the plane of a planar joint: across its axis, along the second axis or the
-/// unit vector after the one nearest to the axis.
+/// The first direction in the plane of a planar joint, perpendicular to its axis. It is along the
+/// second axis or along the unit vector after the one nearest to the axis.
 Vec first_in_plane(const Vec& axis, const Vector& second_axis) {
   Vec along = wide(second_axis);
   if (second_axis.isZero(0)) {
@@ -100,7 +100,7 @@ Vec first_in_plane(const Vec& axis, const Vector& second_axis) {
   return axis.cross(along).cross(axis).normalized();
 }
 
-/// Along the principal axes, so that the sum of m x x^t is that of the tensor.
+/// Six masses along the principal axes; the sum of m x x^t is that of the tensor.
 Mat six_masses(const Mat& inertia, Real mass) {
   if (!(mass > 0)) return Mat::Zero();
   const Mat second = inertia.trace() / 2 * Mat::Identity() - inertia;
@@ -407,7 +407,8 @@ void Tree::assemble(const Motion& guide) {
   matrix_.topRightCorner(N, rows_) = matrix_.bottomLeftCorner(rows_, N).transpose();
 }
 
-/// On the centre of mass, or on six masses: what these have more is of fourth order in the size.
+/// Gravity on the centre of mass, or on six masses: the neglected terms are of fourth order in the
+/// size.
 void Tree::add_gravity(int body, Real t, const Motion& guide) {
   const Part& part = parts_[static_cast<std::size_t>(body)];
   const Pose& b = poses_[static_cast<std::size_t>(body)];
@@ -638,7 +639,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
   const Motion guide = guide_.at(t, y, rate);
   const auto n = static_cast<Eigen::Index>(poses_.size());
   const State accelerations = solution_.head(6 * n);
-  // The rest of each body's balance without its joints, about its centre of mass.
+  // The remaining terms of each body's balance without its joints, about its centre of mass.
   right_.setZero();
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at_body = static_cast<std::size_t>(i);

@@ -7,11 +7,11 @@
 
 namespace differential::reference {
 
-/// The bodies of a scene in a frame that does not turn, with the guide's origin as its origin.
+/// The bodies of a scene in a frame that does not rotate, with the guide's origin as its origin.
 ///
-/// State  : that of the guide; of each body place of the centre of mass, attitude (x, y, z, w),
-///          velocity, and angular velocity on body axes; angles of joints about axes, for whole
-///          turns count in springs and on screws
+/// State  : the guide's state. For each body: position of the centre of mass, attitude (x, y, z,
+///          w), velocity, and angular velocity on body axes. Angles of joints about axes, because
+///          full rotations count in springs and screws
 /// Method : M a + J^t l = f, J a = g, solved as one system; g from differentiating each joint's
 ///          conditions twice
 class Tree {

@@ -189,7 +189,7 @@ std::vector<double> reactions(const kreisel::SceneSolver& model, const kreisel::
   return result;
 }
 
-/// What the sensors read, quaternions as x, y, z, w.
+/// The readings of sensors, quaternions as x, y, z, w.
 std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& model,
                              const kreisel::SceneFile& file) {
   std::vector<double> result = kreisel::SensorReadings(file).row(model, 0, start_of(file));

@@ -61,7 +61,7 @@ std::string series(const Series& s) {
   return table.text();
 }
 
-/// Numbers of which the x component alone counts are written by `value`.
+/// Writes a signal; numbers for which the x component alone counts are written by `value`.
 std::string signal(const Signal& s, const std::function<std::string(const Vector&)>& value) {
   Inline table;
   std::string pairs;
@@ -223,7 +223,7 @@ std::string joint(const Body& body) {
   return table.text();
 }
 
-/// The next numbers of a list, or none where there are not so many.
+/// The next numbers of a list, or none if there are too few.
 template <class T>
 std::vector<T> taken(const std::vector<T>& list, std::ptrdiff_t& at, int count) {
   if (static_cast<std::ptrdiff_t>(list.size()) < at + count) return {};

@@ -16,8 +16,8 @@
 ///
 /// A new feature of scene files has four places: a member here, its text in to_toml(), a function
 /// of generate.cpp that adds it, and its physics in reference*.cpp. shrink.cpp gets a line that
-/// removes it. A new kind of joint has one place, reference_tree.cpp: the names and the number of its
-/// coordinates are those of the library's list.
+/// removes it. A new kind of joint has one place, reference_tree.cpp: the names and the number of
+/// its coordinates are those of the library's list.
 
 namespace differential {
 
@@ -40,14 +40,14 @@ struct Series {
   std::vector<Term> terms = {};
 };
 
-/// A function of time that jumps, or whose rate does; of a number the x component counts.
+/// A function of time whose value or rate jumps; for a number the x component counts.
 struct Jumps {
   bool is_broken_line = false;  ///< else steps
   std::vector<double> times = {};
   std::vector<Vector> values = {};
 };
 
-/// A function of time as the file has it; nothing where neither member holds anything.
+/// A function of time as in the file; nothing if both members are empty.
 struct Signal {
   Series series = {};
   Vector rate = Vector::Zero();
@@ -189,13 +189,13 @@ struct Scene {
   [[nodiscard]] std::vector<double> times() const;
 };
 
-/// A vector as the file has it, in radian.
+/// A vector of the file, in radian.
 [[nodiscard]] Vector radian(const Vector& v, bool degrees);
 
 /// The number of coordinates of a joint that have single numbers.
 [[nodiscard]] int single_coordinates(JointKind kind);
 
-/// Whether one of them is a displacement.
+/// True if one of the coordinates is a displacement.
 [[nodiscard]] bool slides(JointKind kind);
 
 /// The same scene nearer to the limit in which its model is exact. All motions except those of

@@ -1,4 +1,4 @@
-// Sensors in what simulate writes: columns of CSV, keys of JSON, text.
+// Sensors in the output of simulate: columns of CSV, keys of JSON, text.
 
 #include <boost/test/unit_test.hpp>
 
@@ -124,7 +124,8 @@ BOOST_AUTO_TEST_CASE(end_of_a_run_in_json) {
   check_near(sensors.at("attitude").at("value"), {std::cos(1.0), 0, 0, std::sin(1.0)}, 1e-10);
 }
 
-// The last row is what JSON has; a sensor that is called like a point or a body is one of its own.
+// The last row equals the JSON values; a sensor with the name of a point or a body is separate from
+// it.
 BOOST_AUTO_TEST_CASE(columns_of_csv) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", wheel).string();
@@ -165,7 +166,7 @@ BOOST_AUTO_TEST_CASE(columns_that_are_chosen) {
              std::string::npos);
 }
 
-// The noise of a row is that of its time, whether the run began there or at 0.
+// The noise of a row depends on its time, whether the run began there or at 0.
 BOOST_AUTO_TEST_CASE(noise_goes_on_after_a_resume) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", wheel).string();

@@ -616,7 +616,7 @@ BOOST_AUTO_TEST_CASE(linear_equations_report_their_error) {
   }
 }
 
-// A quarter of a swing from rest: early outputs are small, but errors are relative to the whole motion.
+// A quarter of a swing from rest: early outputs are small, errors are relative to the whole motion.
 BOOST_AUTO_TEST_CASE(model_errors_whatever_the_outputs) {
   const Scratch folder;
   const double begin = 0.005;

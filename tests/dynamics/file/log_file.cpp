@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(columns_are_given_by_name_or_number) {
   BOOST_TEST((rows(read("#stamp, M_x [Nm], M_y [Nm]\n0,1.5,7\n0.1,-2,7\n", names)) == two));
   names.columns = {{"t", "stamp"}, {"value", std::size_t(3)}};
   BOOST_TEST((rows(read("stamp,M,M\n0,7,1.5\n0.1,7,-2\n", names)) == two));
-  // The array of a program, alike but for its brackets.
+  // The array of a program: names that differ only in brackets.
   names.columns = {{"t", "timestamp"}, {"value", "q[1]"}};
   BOOST_TEST((rows(read("timestamp,q[0],q[1]\n0,7,1.5\n0.1,7,-2\n", names)) == two));
   const std::string below_two_rows = "Time;IMU;;\r\ns;X;Y;Z\r\n0;7;1.5;8\r\n0.1;7;-2;8\r\n";
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(nanoseconds_since_1970_keep_their_digits) {
   BOOST_TEST((rows(read("t,value\n0.2,1\n", options)) == Rows{{0.3e-6, 1}}));
   options.time_zero = "1e-300";
   BOOST_TEST((rows(read("t,value\n1e20,1\n", options)) == Rows{{1e14, 1}}));
-  // The double nearest to the written number, without any subtraction.
+  // The double nearest to the written number, if nothing is subtracted.
   for (const std::string t : {"0.1", "1.000000000000000056e-01", "123456789.123456789", "4.9e-324",
                               "1.7976931348623157e308", "9007199254740993"}) {
     BOOST_TEST((rows(read("t,value\n" + t + ",1\n")) == Rows{{std::strtod(t.c_str(), nullptr), 1}}),
@@ -211,7 +211,7 @@ BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_ignored) {
   BOOST_TEST(complaint("t,ax [g]\n0,1\n", options, rates).find("is read in m/s^2") !=
              std::string::npos);
   BOOST_TEST(complaint("t,ax [m/s^2]\n0,1\n", options, rates) == "");
-  // The unit may stand in a line of its own.
+  // The unit may be in a line of its own.
   options = {};
   options.skip_after_header = 1;
   const std::string own_line = "Time yaw pitch roll\n(s) (deg) (deg) (deg)\n0 90 -45 1\n";
@@ -256,7 +256,7 @@ BOOST_AUTO_TEST_CASE(headers_that_do_not_fit_are_refused) {
           .ends_with("columns = { t = \"timestamp\", qw = \"q_RS_w []\", qx = \"q_RS_x []\", "
                      "qy = \"q_RS_y []\", qz = \"q_RS_z []\", x = \"p_RS_R_x [m]\", y = "
                      "\"p_RS_R_y [m]\", z = \"p_RS_R_z [m]\" }"));
-  // ROS: a comment above rows that hold text.
+  // ROS: a comment above rows that contain text.
   BOOST_TEST(complaint("%time,field.frame_id,field.moment\n1,imu,2\n")
                  .ends_with("columns = { t = \"time\", value = 2 }"));
   BOOST_TEST(complaint("Time,PtfmRoll,PtfmPitch,PtfmYaw\n0,1,2,3\n", {}, motion)

@@ -20,7 +20,7 @@ const std::string rest =
 
 const std::string plain = "t,qw,qx,qy,qz\n0,1,0,0,0\n0.1,1,0,0,0\n0.2,1,0,0,0\n0.3,1,0,0,0\n";
 
-/// The motion that a guide with these keys reads from the text of a log.
+/// The motion of a guide with these keys and a log with this text.
 MotionLog<> motion(const std::string& log, const std::string& keys = "") {
   const Scratch folder;
   folder.write("log.csv", log);

@@ -47,7 +47,7 @@ std::string mistakes(const std::string& text) {
   return "none";
 }
 
-/// All kinds of joints, as a message lists them.
+/// All kinds of joints, as listed in a message.
 std::string joint_names() {
   std::string names;
   for (const JointType& type : joint_types()) {
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(follow_a_log_beside_the_scene) {
   const std::string text = "[guide]\nkind = \"table\"\nfile = \"log.csv\"\n" + body + run;
   const SceneFile read = parse_scene(text, folder.path() / "scene.toml");
   check_same(make_guide(read), TabulatedFrame<>(read_motion_log(file).motion));
-  // It ends at 5 s.
+  // The log ends at 5 s.
   BOOST_CHECK_THROW((void)parse_scene(text, folder.path() / "scene.toml", {.t_end = 5.1}),
                     SceneMistakes);
 }
@@ -250,7 +250,7 @@ BOOST_AUTO_TEST_CASE(points_in_the_given_direction) {
   };
   BOOST_TEST(std::abs(acceleration(uniform("uniform"))[0] + 9 * lever) < 1e-14);
   BOOST_TEST(std::abs(acceleration(uniform("inertial"))[0] + 9 * lever) < 1e-14);
-  // A guide that has turned by 0.3 rad about z: the inertial field has turned back.
+  // A guide that has rotated by 0.3 rad about z: the inertial field has rotated back.
   const std::string turning = "[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 1]\n";
   BOOST_TEST(std::abs(acceleration(turning + uniform("uniform"))[0] + 9 * lever) < 1e-14);
   BOOST_TEST(std::abs(acceleration(turning + uniform("inertial"))[0] + 9 * lever * std::cos(0.3)) <
@@ -271,7 +271,7 @@ BOOST_AUTO_TEST_CASE(points_to_a_planets_centre) {
   BOOST_TEST(std::abs(planet(j2) + g * (1 + k) * lever) < 1e-13);
   BOOST_TEST(std::abs(planet(j2 + "pole = [0, 0, 2]\n") - planet(j2)) < 1e-15);
   BOOST_TEST(planet(j2 + "pole = [1, 0, 0]\n") > planet(j2));
-  // Of a body that is no sphere its size counts where that is asked for.
+  // The size of a body that is not a sphere counts if `gradient` is set.
   const auto rod = [&](const std::string& keys) {
     return acceleration("[gravity]\nkind = \"point\"\nmu = 1e5\ncentre = [100, 0, 0]\n" + keys +
                         "[[body]]\nname = \"rod\"\njoint = { kind = \"revolute\", axis = [0, 0, 1] "
@@ -282,8 +282,8 @@ BOOST_AUTO_TEST_CASE(points_to_a_planets_centre) {
   BOOST_TEST(rod("gradient = false\n") == rod(""));
 }
 
-// Along the orbit the origin is free of weight, and what lies across it is drawn back by mu/r^3.
-BOOST_AUTO_TEST_CASE(of_an_orbit_is_the_planets) {
+// The origin of the orbit is weightless, and gravity across the orbit is restoring with mu/r^3.
+BOOST_AUTO_TEST_CASE(on_an_orbit_is_the_planets) {
   const std::string text =
       "[guide]\nkind = \"orbit\"\nsemi_major_axis = 7e6\n[gravity]\nkind = "
       "\"orbit\"\n";
@@ -292,20 +292,20 @@ BOOST_AUTO_TEST_CASE(of_an_orbit_is_the_planets) {
       "inertia = [1, 1, 1]\ncentre = [0, 0, 3]\n";
   const double rate2 = 3.986004418e14 / (7e6 * 7e6 * 7e6);
   BOOST_TEST(std::abs(acceleration(text + slide + run)[0] + 3 * rate2) < 1e-12 * rate2);
-  // Seen from space gravity is the same, but for eight digits.
+  // In the inertial frame gravity is the same, up to eight digits.
   const std::string point =
       "[guide]\nkind = \"orbit\"\nsemi_major_axis = 7e6\n[gravity]\nkind = "
       "\"point\"\nmu = 3.986004418e14\n";
   BOOST_TEST(std::abs(acceleration(point + slide + run)[0] + 3 * rate2) < 1e-8 * rate2);
-  // In a chain it stays that of the orbit.
+  // In a chain gravity remains that of the orbit.
   const std::string chain =
       "[guide]\nkind = \"chain\"\nlinks = [{ kind = \"orbit\", semi_major_axis = 7e6 }, { kind = "
       "\"rotating\", angular_velocity = [0, 0, 1] }]\n[gravity]\nkind = \"orbit\"\n";
   BOOST_TEST(std::abs(acceleration(chain + slide + run)[0] + 3 * rate2) < 1e-12 * rate2);
 }
 
-// NESC check case 1: a sphere dropped from 30000 ft over the equator. J2 counts, the ellipsoid's
-// gravitation ends 0.064 ft lower. The altitude is printed to 1e-7 ft.
+// NESC check case 1: a sphere dropped from 30000 ft over the equator. J2 is included; with the
+// ellipsoid's gravitation the sphere ends 0.064 ft lower. The altitude is printed to 1e-7 ft.
 //
 // Source : E. B. Jackson et al., Check-Cases for Verification of 6-Degree-of-Freedom Flight Vehicle
 //          Simulations, NASA/TM-2015-218675
@@ -346,7 +346,7 @@ BOOST_AUTO_TEST_CASE(is_effective_gravity_on_the_earth) {
   }
   const std::string number = "[guide]\n" + site + "gravity = 9.5\n";
   BOOST_TEST(std::abs(acceleration(number + arm + run)[0] + 9.5 * lever) < 1e-8);
-  // Along a chain it stays on the axes of the earth.
+  // Along a chain gravity remains on the axes of the earth.
   const std::string chain = "[guide]\nkind = \"chain\"\n[[guide.links]]\n" + site +
                             "gravity = 9.5\n[[guide.links]]\nkind = \"rotating\"\n"
                             "angular_velocity = [0, 0, 1]\n";
@@ -383,7 +383,7 @@ BOOST_AUTO_TEST_CASE(have_springs_dampers_and_forces) {
 }
 
 BOOST_AUTO_TEST_CASE(start_relative_to_their_parent) {
-  // The joint's frame is turned by a quarter about z and lies at x = 1.
+  // The joint's frame is rotated by a quarter turn about z, with its origin at x = 1.
   const auto read = scene(one_body(
       "joint = { kind = \"free\", position = [1, 0, 0], orientation = [0.70710678118654757, 0, 0, "
       "0.70710678118654757] }\ninitial = { attitude = [0.70710678118654757, 0, 0, "
@@ -405,7 +405,8 @@ BOOST_AUTO_TEST_CASE(carry_loads) {
   BOOST_TEST((P.value.moment == Vector3<double>(0, 0, 5)));
 }
 
-// The body is turned by a quarter about z against the guide, and the guide against the inertial frame.
+// The body is rotated by a quarter turn about z relative to the guide, as is the guide in the
+// inertial frame.
 BOOST_AUTO_TEST_CASE(carry_loads_on_any_axes) {
   const auto read = scene(
       one_body("joint = { kind = \"free\" }\nload = [ { force = [1, 0, 0], axes = \"guide\" }, "
@@ -442,7 +443,7 @@ BOOST_AUTO_TEST_CASE(may_be_rotors) {
   BOOST_TEST((regulated.bodies.at(0).rotor->mode == RotorMode::regulated));
   const auto torque = with("rotor = { mode = \"torque\", torque = 2 }");
   BOOST_TEST(torque.bodies.at(0).rotor->torque == 2);
-  // A torque of friction or a constant one makes a free rotor a driven one.
+  // Friction or a constant torque makes a free rotor a driven one.
   const auto rubbed = with("rotor = { mode = \"free\", speed = 3 }\ndamping = 0.1");
   BOOST_TEST((rubbed.bodies.at(0).rotor->mode == RotorMode::torque));
   BOOST_TEST(rubbed.bodies.at(0).rotor->torque == 0);
@@ -568,7 +569,7 @@ BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
   }
 }
 
-// Each place at which a scene may be inconsistent.
+// Every part of a scene that may be inconsistent.
 BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
   const std::string revolute = "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n";
   const std::string prismatic = "joint = { kind = \"prismatic\", axis = [0, 0, 1] }\n";

@@ -34,7 +34,7 @@ const std::string ball = "joint = { kind = \"spherical\" }\n";
 const std::string floating = "joint = { kind = \"free\" }\n";
 const std::string weight = "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n";
 
-/// One body, with its keys before all tables, and the rest.
+/// One body, with its keys before all tables, then further tables.
 std::string one(const std::string& keys, const std::string& rest = "") {
   const bool has_inertia = keys.find("inertia") != std::string::npos;
   return "[[body]]\nname = \"a\"\nmass = 2\n" +
@@ -59,7 +59,7 @@ test::Outcome simulate(const std::string& text, const std::string& options = "")
                    " " + options);
 }
 
-/// The method that simulate chooses.
+/// The method chosen by simulate.
 std::string method(const std::string& text) {
   const test::Outcome outcome = simulate(text, "--json");
   BOOST_TEST_REQUIRE(outcome.status == 0, text << outcome.err);
@@ -97,7 +97,7 @@ std::vector<std::string> texts_of_the_page() {
   return blocks;
 }
 
-/// A system at rest, in motion or turned, with the values of a scene at t = 0.
+/// A system at rest, in motion or rotated, with the values of a scene at t = 0.
 class AtStart {
  public:
   explicit AtStart(const std::string& text)
@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(angles_and_their_rates_in_degrees) {
                       "is given in radian too"));
 }
 
-// "The start of rotating and harmonic": against the frame before it, on its axes.
+// The start of rotating and harmonic: relative to the previous frame, on its axes.
 BOOST_AUTO_TEST_CASE(guides_start_as_stated) {
   const std::string begin =
       "attitude = [0.6, 0.8, 0, 0]\norigin_position = [1, 2, 3]\norigin_velocity = [4, 5, 6]\n";
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_CASE(guides_start_as_stated) {
                       "origin_velocity: is no key here"));
 }
 
-// "against the frame before it and on its axes", in a chain.
+// The same in a chain.
 BOOST_AUTO_TEST_CASE(links_start_on_the_link_before) {
   struct Ship;
   const SceneGuide guide = make_guide(scene(one(hinge, R"([guide]
@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(heave_with_its_velocity_does_not_drift) {
   BOOST_TEST(greatest("") > 3000);
 }
 
-// "attitude guide to inertial, place on inertial axes".
+// Logs: the attitude from guide to inertial axes, the position on inertial axes.
 BOOST_AUTO_TEST_CASE(logs_give_the_guide_on_inertial_axes) {
   std::string log = "t,qw,qx,qy,qz,x,y,z\n";
   for (int i = 0; i <= 20; ++i) {
@@ -277,7 +277,7 @@ BOOST_AUTO_TEST_CASE(logs_give_the_guide_on_inertial_axes) {
   BOOST_TEST((X.translation - Vector3<double>(0.55, 2, 3)).norm() <= 1e-14);
 }
 
-// "those at the log's first time, or at the first in window"; a turn of 1 rad/s from -1 s on.
+// Rates start at the log's first time, or at the first one in window: 1 rad/s from -1 s on.
 BOOST_AUTO_TEST_CASE(rates_start_with_the_window) {
   std::string log = "t,wx,wy,wz\n";
   for (int i = -10; i <= 20; ++i) log += row({std::to_string(0.1 * i), "0", "0", "1"}, ",");
@@ -291,8 +291,8 @@ BOOST_AUTO_TEST_CASE(rates_start_with_the_window) {
                       2 * std::atan2(0.6, 0.8)) <= 1e-12);
 }
 
-// "sigma .. [a, b]: of the attitude's quaternion, and of the position", "0: no smoothing": without
-// smoothing the motion passes through its rows.
+// `sigma` is [a, b]: of the attitude's quaternion and of the position. With 0 there is no
+// smoothing, and the motion passes through its rows.
 BOOST_AUTO_TEST_CASE(sigma_is_for_attitude_and_position) {
   std::string log = "t,yaw,pitch,roll,x,y,z\n";
   for (int i = 0; i <= 100; ++i) {
@@ -311,7 +311,7 @@ BOOST_AUTO_TEST_CASE(sigma_is_for_attitude_and_position) {
   BOOST_TEST((goes_through("[0, 0.01]") == std::pair(true, false)));
 }
 
-// "give it .. as a text where it has more than 15 digits", and "window: in seconds after time_zero".
+// Times of more than 15 digits are given as a text, and window is in seconds after time_zero.
 BOOST_AUTO_TEST_CASE(time_zero_keeps_nanoseconds_as_a_text) {
   std::string log = "t,qw,qx,qy,qz\n";
   for (int i = 0; i <= 30; ++i) {
@@ -330,7 +330,7 @@ BOOST_AUTO_TEST_CASE(time_zero_keeps_nanoseconds_as_a_text) {
   BOOST_TEST(part.back() == 1.2);
 }
 
-// The blocks of keys at the end of "Logs", each with a log that its comment describes.
+// The examples at the end of "Logs", each with a log as its comment describes.
 BOOST_AUTO_TEST_CASE(logs_are_read_as_the_page_shows) {
   std::map<std::string, std::string> logs{
       {"state_groundtruth_estimate0.csv",
@@ -366,8 +366,8 @@ BOOST_AUTO_TEST_CASE(logs_are_read_as_the_page_shows) {
   }
 }
 
-// "At zero coordinates all axes are parallel to those of the guide, unless a joint turns them".
-// "position and axes are on the parent's axes; orientation turns the body's axes".
+// At zero coordinates all axes are parallel to those of the guide, unless a joint rotates them.
+// Position and axes are on the parent's axes; orientation rotates the body's axes.
 BOOST_AUTO_TEST_CASE(bodies_are_placed_on_their_parent) {
   const std::string child =
       "[[body]]\nname = \"b\"\nparent = \"a\"\nmass = 1\ninertia = [1, 1, 1]\n";
@@ -377,7 +377,7 @@ BOOST_AUTO_TEST_CASE(bodies_are_placed_on_their_parent) {
     AtStart rest(one(joint, child + joint));
     BOOST_TEST((rest.pose(1).rotation - Matrix3<double>::Identity()).norm() == 0, joint);
   }
-  // A quarter about z, then one about the new x: the child's joint lies along the turned x.
+  // A quarter turn about z, then one about the new x: the child's joint is along the rotated x.
   const std::string quarter = "0.70710678118654757";
   AtStart turned(
       one("joint = { kind = \"fixed\", orientation = [" + quarter + ", 0, 0, " + quarter + "] }\n",
@@ -392,8 +392,8 @@ BOOST_AUTO_TEST_CASE(bodies_are_placed_on_their_parent) {
   BOOST_TEST((X.rotation - wanted).norm() <= 1e-15);
 }
 
-// "joint force -stiffness (q - rest)", "-damping q', and a constant one"; "load: torque about its
-// origin". The moment of inertia about the joint is 0.25.
+// Joint forces -stiffness (q - rest), -damping q' and a constant one; loads have their torque about
+// the body's origin. The moment of inertia about the joint is 0.25.
 BOOST_AUTO_TEST_CASE(joint_forces_follow_the_formulas) {
   const std::pair<std::string, double> cases[] = {
       {"spring = { stiffness = 3, rest = 0.5 }\ninitial = { angle = 0.7 }", -3 * 0.2},
@@ -408,7 +408,7 @@ BOOST_AUTO_TEST_CASE(joint_forces_follow_the_formulas) {
   }
 }
 
-// Each kind of joint, guide and load has the keys of its row, and no others.
+// Each kind of joint, guide and load has the keys in its row, and no others.
 BOOST_AUTO_TEST_CASE(keys_of_another_kind_are_refused) {
   const std::string site = "[guide]\nkind = \"earth\"\nheight = 0\n";
   const std::string fixed = "joint = { kind = \"fixed\" }\n";
@@ -445,7 +445,7 @@ BOOST_AUTO_TEST_CASE(keys_of_another_kind_are_refused) {
   }
 }
 
-// "of several coordinates a number for each of them or a list"; "of a ball damping alone".
+// For several coordinates one number or a list; a ball joint has damping alone.
 BOOST_AUTO_TEST_CASE(two_coordinates_take_a_number_for_both) {
   const auto forces = [](const std::string& keys) {
     return scene(one(universal + keys)).bodies.at(0).forces;
@@ -472,8 +472,8 @@ BOOST_AUTO_TEST_CASE(two_coordinates_take_a_number_for_both) {
   BOOST_TEST(contains(mistakes(one(ball + "damping = [1, 1, 1]")), "must be a number"));
 }
 
-// The rows of cylindrical, planar and screw joints: coordinates and rates in the order of their row,
-// springs for each, "`rest` has no _deg"; "`pitch` metres a RADIAN".
+// The rows of cylindrical, planar and screw joints: coordinates and rates in the order of their
+// row, springs for each, `rest` without _deg, `pitch` in metres per RADIAN.
 BOOST_AUTO_TEST_CASE(joints_of_several_units_take_their_row) {
   const std::string axis = "axis = [0, 0, 1] }\n";
   const auto start = [](const std::string& keys) { return scene(one(keys)).start.at(0); };
@@ -505,7 +505,7 @@ BOOST_AUTO_TEST_CASE(joints_of_several_units_take_their_row) {
                       "initial.displacement: is no key here"));
 }
 
-// "Numbers that no mass can have": catalogue numbers rounded in the last digit.
+// Impossible numbers: those of a catalogue, rounded in the last digit.
 BOOST_AUTO_TEST_CASE(rounded_inertia_gets_the_nearest_legal) {
   const std::string told = mistakes(one("inertia = [0.0795775, 0.0795775, 0.1591551]\n" + hinge));
   const std::size_t begin = told.find("nearest legal tensor: [");
@@ -533,7 +533,7 @@ BOOST_AUTO_TEST_CASE(defaults_agree_with_the_page) {
   BOOST_TEST(scenes == 20);
 }
 
-// "A scene that is no more than a pendulum or a top goes by its closed form under auto".
+// A scene that is only a pendulum or a top uses its closed form with method auto.
 BOOST_AUTO_TEST_CASE(closed_forms_are_used_if_they_exist) {
   const std::string off = "centre = [0, 0, -0.4]\n";
   const std::string swung = "initial = { angle = 0.3 }\n";
@@ -560,7 +560,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_are_used_if_they_exist) {
   }
 }
 
-// "a year of it costs what a second does", and "after a year .. an error of 3e-8 .. in 3.4 s".
+// A year costs as much as a second, with an error of 1.3e-8 after a year of swings of 3.4 s.
 BOOST_AUTO_TEST_CASE(closed_forms_cost_the_same_for_a_year) {
   const auto run = [](const std::string& t_end) {
     const test::Outcome outcome =
@@ -577,7 +577,7 @@ BOOST_AUTO_TEST_CASE(closed_forms_cost_the_same_for_a_year) {
   BOOST_TEST(std::abs(year.at("error_estimate").get<double>() - 1.3e-8) < 3e-9);
 }
 
-// "No step has to resolve its angle".
+// No step has to resolve a rotor's angle.
 BOOST_AUTO_TEST_CASE(fast_rotors_need_no_more_steps) {
   const auto steps = [](const std::string& speed) {
     const test::Outcome outcome =
@@ -603,7 +603,7 @@ BOOST_AUTO_TEST_CASE(methods_have_the_names_of_the_page) {
   BOOST_TEST(!method_named("euler"));
 }
 
-// "All others go by the Taylor series of their motion, unless ..".
+// All other scenes use the Taylor series of their motion, with the exceptions of the page.
 BOOST_AUTO_TEST_CASE(series_are_used_if_they_are_known) {
   const std::string swung = hinge + "centre = [0, 0, -0.4]\ndamping = 0.1\n";
   const std::string turning = "[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 1]\n";
@@ -634,7 +634,7 @@ BOOST_AUTO_TEST_CASE(series_are_used_if_they_are_known) {
                         "azimuth_deg = 0\ngravity = \"normal\"\n")) != "taylor");
 }
 
-// "splitting is .. refused for scenes of a file", and models that do not fit, with the reason.
+// Splitting is refused for scenes of a file, as are models that do not fit, with the reason.
 BOOST_AUTO_TEST_CASE(models_and_methods_are_refused_with_a_reason) {
   const auto refused = [](const std::string& text, const std::string& reason) {
     const test::Outcome outcome = simulate(text);
@@ -656,7 +656,7 @@ BOOST_AUTO_TEST_CASE(models_and_methods_are_refused_with_a_reason) {
       "no steady motion");
 }
 
-// "its torque is reported".
+// The torque of a drive is reported.
 BOOST_AUTO_TEST_CASE(drives_report_their_torque) {
   const test::Outcome outcome = simulate(
       one(hinge + "centre = [0, 0, -0.4]\ndrive = \"constant-rate\"\ninitial = { rate = 1 }\n",

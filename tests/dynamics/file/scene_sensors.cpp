@@ -1,4 +1,4 @@
-// Points and sensors of scene files: what is read, what is refused, and what the readings are.
+// Points and sensors of scene files: what is read, what is refused, and the readings.
 
 #include <boost/test/unit_test.hpp>
 
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(are_told_at_their_keys) {
   });
 }
 
-BOOST_AUTO_TEST_CASE(of_their_errors) {
+BOOST_AUTO_TEST_CASE(are_found_in_error_keys) {
   const auto gyro = [](const std::string& key) {
     return with("kind = \"gyro\"\nbody = \"a\"\n" + key);
   };
@@ -240,8 +240,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(readings_of_a_scene)
 
-// "at" left out is the origin; a point is seen from the guide, on the axes of what it is seen from.
-BOOST_AUTO_TEST_CASE(of_points_without_further_keys) {
+// The default of "at" is the origin; a point is seen from the guide, on the axes of its observer.
+BOOST_AUTO_TEST_CASE(points_without_further_keys) {
   const std::string moving =
       body("a", hinge + "initial = { angle_deg = 90, rate = 2 }\npoints = { tip = [0, 0, 1.5] }");
   const auto check_near = [](const std::vector<double>& found, const std::vector<double>& wanted) {
@@ -251,7 +251,7 @@ BOOST_AUTO_TEST_CASE(of_points_without_further_keys) {
   };
   const std::string point = "kind = \"point\"\nbody = \"a\"\n";
   check_near(at_start(moving + sensor(point) + run), {0, 0, 0, 0, 0, 0, 0, 0, 0});
-  // The tip lies at x and moves along -z; no moment acts, so that it is held back by w^2 r alone.
+  // The tip is at x and moves along -z; without moments its acceleration is w^2 r alone.
   const std::string tip = point + "at = \"tip\"\n";
   check_near(at_start(moving + sensor(tip) + run), {1.5, 0, 0, 0, 0, -3, -6, 0, 0});
   check_near(at_start(moving + sensor(point + "at = [0, 0, 1.5]") + run), {1.5, 0, 0, 0, 0, -3});
@@ -279,7 +279,7 @@ BOOST_AUTO_TEST_CASE(have_columns_of_their_kinds) {
        Names{"s.force x", "s.force y", "s.force z", "s.torque x", "s.torque y", "s.torque z"}));
 }
 
-// Upwards is -x; the centrifugal part comes from the motion of the guide, gravitation from the ellipsoid.
+// Up is -x; the centrifugal part comes from the guide's motion, gravitation from the ellipsoid.
 BOOST_AUTO_TEST_CASE(at_rest_on_the_earth_are_gravity) {
   const double g = normal_gravity({50, 30, 100}).magnitude;
   const std::string fixed =
@@ -304,8 +304,8 @@ BOOST_AUTO_TEST_CASE(at_rest_on_the_earth_are_gravity) {
                 g);
 }
 
-// A body that is held 10 m above the origin of a circular orbit. What is left of gravity is the tide
-// 2 n^2 x, to the order x/a; the inertial frame still sees the motion about the planet.
+// A body that is held 10 m above the origin of a circular orbit. The remaining gravity is the tide
+// 2 n^2 x, to the order x/a; the inertial frame still has the motion about the planet.
 BOOST_AUTO_TEST_CASE(on_an_orbit) {
   const double a = 7e6;
   const double n2 = 3.986004418e14 / (a * a * a);
@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(on_an_orbit) {
   check(6, {-n2 * r, 0, 0});
 }
 
-// Without gravity on the earth what is left is the centripetal part at the site.
+// Without gravity on the earth the centripetal part at the site remains.
 BOOST_AUTO_TEST_CASE(without_gravity_are_centripetal) {
   const NormalGravity gravity = normal_gravity({50, 30, 100});
   const auto f = at_start("[guide]\n" + site + body("a", hinge + "hold = true") +
@@ -337,7 +337,7 @@ BOOST_AUTO_TEST_CASE(without_gravity_are_centripetal) {
   BOOST_TEST(std::abs(size - gravity.centrifugal.norm()) <= 1e-14 * size);
 }
 
-BOOST_AUTO_TEST_CASE(of_uniform_gravity_on_either_axes) {
+BOOST_AUTO_TEST_CASE(uniform_gravity_on_either_axes) {
   for (const std::string kind : {"uniform", "inertial"}) {
     const auto f = at_start("[gravity]\nkind = \"" + kind + "\"\nvector = [0, 0, -9.75]\n" +
                             body("a", hinge + "hold = true\ninitial = { angle_deg = 90 }") +
@@ -347,7 +347,7 @@ BOOST_AUTO_TEST_CASE(of_uniform_gravity_on_either_axes) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(of_an_attitude) {
+BOOST_AUTO_TEST_CASE(an_attitude) {
   const std::string turned =
       "joint = { kind = \"free\" }\ninitial = { attitude = [-0.6, 0, 0, 0.8] }";
   const auto q = at_start(body("a", turned) + sensor("kind = \"attitude\"\nbody = \"a\"") + run);
@@ -359,7 +359,7 @@ BOOST_AUTO_TEST_CASE(of_an_attitude) {
   BOOST_TEST(std::abs(angles.at(0) + 2 * std::atan2(0.8, 0.6)) <= 1e-15);
 }
 
-BOOST_AUTO_TEST_CASE(of_a_joint_are_its_columns) {
+BOOST_AUTO_TEST_CASE(joints_read_their_columns) {
   const auto numbers = at_start(body("a", hinge + "initial = { angle = 0.5, rate = -2 }") +
                                 sensor("kind = \"joint\"\njoint = \"a\"") + run);
   BOOST_TEST(numbers == (std::vector<double>{0.5, -2}));
@@ -378,7 +378,7 @@ BOOST_AUTO_TEST_CASE(in_degrees_are_turned_into_radian) {
   BOOST_TEST(errors.seed == 12U);
 }
 
-// The noise of a row depends on the row, not on which rows were asked for before.
+// The noise of a row depends on the row, not on the rows requested before.
 BOOST_AUTO_TEST_CASE(noise_of_rows_in_any_order) {
   const SceneFile file = scene(with("kind = \"gyro\"\nbody = \"a\"\nnoise = 1\ndrift = 1"));
   const auto model = make_model(file);

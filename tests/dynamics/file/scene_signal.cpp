@@ -1,4 +1,4 @@
-// Functions of time in scene files: what they mean, and what is refused.
+// Functions of time in scene files: their meaning, and what is refused.
 
 #include <boost/test/unit_test.hpp>
 
@@ -153,12 +153,12 @@ BOOST_AUTO_TEST_CASE(guide_is_a_link_of_chains) {
   BOOST_TEST(
       (now.X.value.translation - x * Vector3<double>(std::cos(0.35), std::sin(0.35), 0)).norm() <=
       1e-15);
-  // v' = x', and Coriolis: the acceleration on the turned axes is x'' - w^2 x, 2 w x'.
+  // v' = x', and Coriolis: the acceleration on the rotated axes is x'' - w^2 x, 2 w x'.
   const Vector3<double> a(-4 * x - 0.25 * x, 2 * 0.5 * 2 * std::cos(1.4), 0);
   BOOST_TEST((now.origin_acceleration() - a).norm() <= 1e-14);
 }
 
-BOOST_AUTO_TEST_CASE(what_is_wrong_is_told) {
+BOOST_AUTO_TEST_CASE(mistakes_are_reported) {
   const std::pair<std::string, std::string> cases[] = {
       {body("force = {}"),
        "s.toml:6:9: body 'a'.force: is a function of time: give 'constant', 'rate' and 'terms', or "

@@ -114,7 +114,8 @@ BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
     auto start = system.rest();
     for (double& q : start.coordinates) q += sample.uniform(-0.5, 0.5);
     for (double& v : start.rates) v = sample.uniform(-1, 1);
-    // So often that the reference sizes, those of all steps, equal those of the outputs.
+    // The outputs are so dense that the reference sizes, those of all steps, equal those of the
+    // outputs.
     SolveOptions options{.output_times = {}, .tolerance = 1e-13, .method = Method::verner98};
     for (int i = 0; i <= 200; ++i) options.output_times.push_back(0.01 * i);
     const auto truth = solve(system, start, options);
@@ -129,7 +130,7 @@ BOOST_AUTO_TEST_CASE(reports_its_error_by_series) {
             error, distance(Scene::to_vector(found.states[i]), Scene::to_vector(truth.states[i])));
       }
       const double ratio = error / found.report.error_estimate;
-      // Below that it is rounding that is told, in trees that hardly move.
+      // Below this limit the estimate is rounding, in trees that hardly move.
       const bool by_steps = found.report.error_estimate > 1e-13;
       runs += by_steps ? 1 : 0;
       within += by_steps && ratio >= 0.1 && ratio <= 1 ? 1 : 0;
