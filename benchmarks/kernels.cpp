@@ -20,7 +20,6 @@
 
 namespace {
 
-
 /// The greatest difference, relative to the greatest number.
 double difference(const std::vector<double>& found, const std::vector<double>& expected) {
   if (found.size() != expected.size()) return HUGE_VAL;

@@ -365,7 +365,8 @@ PYBIND11_MODULE(kreisel, m) {
       .def(py::init(&scene_of_file), "path"_a, "Reads a scene file (TOML).")
       .def(py::init(&scene_of_keywords),
            "Builds a scene from keyword arguments: title, guide, gravity, body, sensor, solve, "
-           "report, as in a\nscene file. Tables are dicts, body and sensor are lists of dicts; numpy "
+           "report, as in a\nscene file. Tables are dicts, body and sensor are lists of dicts; "
+           "numpy "
            "arrays are lists.\n\n"
            "    Scene(gravity={'kind': 'uniform', 'vector': [0, 0, -9.81]},\n"
            "          body=[{'name': 'rod', 'joint': {'kind': 'revolute', 'axis': [0, 1, 0]},\n"

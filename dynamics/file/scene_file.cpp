@@ -171,8 +171,8 @@ class SceneReader {
   }
 
   void read_links(Section& guide, int depth) {
-    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth",
-                                         "table",    "rates",    "motion",   "orbit", "chain"};
+    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth", "table",
+                                         "rates",    "motion",   "orbit",    "chain"};
     const std::string kind =
         depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
     if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||

@@ -145,10 +145,10 @@ struct SceneFile {
   double tolerance = 1e-10;
   Method method = Method::automatic;
   SceneModel model = SceneModel::exact;
-  std::vector<double> output_times;  ///< in order, within [0, t_end]
+  std::vector<double> output_times;     ///< in order, within [0, t_end]
   std::vector<double> discontinuities;  ///< times of jumps of forces, in order, within (0, t_end]
   bool forces_change = false;           ///< loads, joint forces or rotor speeds change with time
-  std::vector<std::string> columns;  ///< chosen columns or groups of columns; empty: all
+  std::vector<std::string> columns;     ///< chosen columns or groups of columns; empty: all
   bool reactions = false;
   bool terms = false;
 

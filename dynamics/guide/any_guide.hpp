@@ -11,8 +11,8 @@
 
 namespace kreisel {
 
-/// A guide motion of any kind, which is chosen at run time: a value that can be a plain member, stand in
-/// a container, and be given another motion.
+/// A guide motion of any kind that is chosen at run time. The value can be a member, an element of a
+/// container, and can be assigned another motion.
 ///
 ///   struct Vehicle {
 ///     AnyGuide guide = RestingFrame<>{};
@@ -20,12 +20,12 @@ namespace kreisel {
 ///   vehicle.guide = RotatingFrame<>{.angular_velocity = {0, 0, 0.1}};
 ///   const BodySystem system(vehicle.guide, bodies);
 ///
-/// Numbers are those of the motion itself to the last bit. Copies share the motion, which is const.
+/// Results equal those of the motion itself to the last bit. Copies share the motion, which is const.
 ///
-/// Series : those of the motion, if it is an AnalyticGuide; or the function given beside it
-/// Limits : by type it is no guide at rest, and no SteadyGuide, so that no term is left out for that; in
-///          dual numbers it is known as a guide that takes doubles alone (detail::guide_at)
-/// Cost   : 15 instructions each evaluation besides those of the motion, of which a RotatingFrame takes 818
+/// Series : the series of an AnalyticGuide, or the function given with the motion
+/// Limits : its type is neither a guide at rest nor a SteadyGuide, so no terms are left out. It takes
+///          doubles; dual numbers go through detail::guide_at
+/// Cost   : 15 instructions in each evaluation beside those of the motion; a RotatingFrame has 818
 ///          (g++ 12 -O2, callgrind)
 class AnyGuide {
  public:
@@ -33,10 +33,10 @@ class AnyGuide {
                                            const detail::Components<double>& g)>;
 
   template <GuideMotion M>
-  requires(!std::derived_from<M, AnyGuide>) AnyGuide(M motion)  // NOLINT: any kind is one
+  requires(!std::derived_from<M, AnyGuide>) AnyGuide(M motion)  // NOLINT: implicit, any kind is accepted
       : AnyGuide(std::make_shared<const M>(std::move(motion))) {}
 
-  /// A motion whose series, as AnalyticGuide asks for them, are not its own.
+  /// A motion with the series of AnalyticGuide given as a function.
   template <GuideMotion M>
   AnyGuide(M motion, Series series) : AnyGuide(std::move(motion)) {
     series_ = std::move(series);
@@ -44,10 +44,10 @@ class AnyGuide {
 
   [[nodiscard]] FrameMotion<Guide, Inertial> operator()(double t) const { return motion_(t); }
 
-  /// Whether there are series() of this motion.
+  /// True if this motion has series().
   [[nodiscard]] bool knows_series() const { return static_cast<bool>(series_); }
 
-  /// As AnalyticGuide asks for.
+  /// The series required by AnalyticGuide.
   ///
   /// Throws : InvalidInput if there are none
   [[nodiscard]] GuideSeries series(double t, double h, int order,

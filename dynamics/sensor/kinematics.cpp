@@ -6,7 +6,8 @@ namespace kreisel::detail {
 
 SystemKinematics kinematics(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                             const BodyLoad* gravitation, BodyWorkspace& w) {
-  SystemKinematics result{now.t, now.guide, now.guide, {field(now.gravity, now.guide), gravitation}};
+  SystemKinematics result{
+      now.t, now.guide, now.guide, {field(now.gravity, now.guide), gravitation}};
   reactions(tree, now, y, result.reactions, w);
   const double* const v = y.data() + tree.coordinates();
   const double* const dv = w.acceleration.data();

@@ -78,8 +78,9 @@ class BlockDistance {
 
 }  // namespace detail
 
-/// The distance of two states of a scene in the measure of RunReport::error_estimate: attitudes by the
-/// angle between them in radian, other blocks relative to their greatest size in the states given so far.
+/// The distance of two states of a scene in the measure of RunReport::error_estimate. Attitudes are
+/// measured by the angle between them in radian, other blocks relative to their greatest size in the
+/// states given so far.
 ///
 /// absolute_scale : as SolveOptions::absolute_scale
 template <class Scene>

@@ -96,17 +96,17 @@ template <class Scene>
   return detail::solve_watched(detail::SceneRuns<Scene>(scene), scene, start, options, nullptr);
 }
 
-/// The same with a function that watches the states as they are computed, and may end the run.
+/// Solves a scene and calls on_output with each state at an output time; on_output may end the run.
 ///
 ///   const auto run = solve(top, start, {.t_end = 60, .output_step = 0.1},
 ///                          [](double t, const EulerTop::State& state) {
 ///     return state.attitude.z() > 0.5 ? OutputAction::stop : OutputAction::proceed;
 ///   });
 ///
-/// A time not after the one before says that the run has begun again, in shorter steps or by another
-/// method: states seen before are then worth nothing. Those seen last are those returned.
+/// If a time does not follow the one before, the run has begun again, with shorter steps or another
+/// method. Earlier states are then void: the result contains the states of the last begin.
 ///
-/// Throws : besides, what on_output throws
+/// Throws : as solve() without on_output, and the exceptions of on_output
 template <class Scene, OutputFunction<typename Scene::State> OnOutput>
 [[nodiscard]] Trajectory<typename Scene::State> solve(const Scene& scene,
                                                       const typename Scene::State& start,

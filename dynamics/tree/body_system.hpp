@@ -36,7 +36,8 @@ namespace kreisel {
 ///          naming body and direction, if a motion of a joint moves no inertia
 template <class M>
 class BodySystem {
-  static_assert(detail::is_guide<M>, "the guide of a system must return a FrameMotion<Guide, Inertial>");
+  static_assert(detail::is_guide<M>,
+                "the guide of a system must return a FrameMotion<Guide, Inertial>");
 
  public:
   using S = double;

@@ -24,7 +24,8 @@ BOOST_AUTO_TEST_CASE(agrees_with_other_libraries) {
 }
 
 BOOST_AUTO_TEST_CASE(preserves_numbers_and_power) {
-  for (const SpatialVectorOrder order : {SpatialVectorOrder::angular_first, SpatialVectorOrder::linear_first}) {
+  for (const SpatialVectorOrder order :
+       {SpatialVectorOrder::angular_first, SpatialVectorOrder::linear_first}) {
     const Six v = velocity_numbers(V, order);
     const Six f = force_numbers(F, order);
     const Motor<> again = velocity_of(v, order);

@@ -257,8 +257,7 @@ BOOST_AUTO_TEST_CASE(points_without_further_keys) {
   check_near(at_start(moving + sensor(point + "at = [0, 0, 1.5]") + run), {1.5, 0, 0, 0, 0, -3});
   check_near(at_start(moving + sensor(tip + "against = \"a\"") + run),
              {0, 0, 1.5, 0, 0, 0, 0, 0, 0});
-  check_near(at_start(moving + sensor(tip + "axes = \"a\"") + run),
-             {0, 0, 1.5, 3, 0, 0, 0, 0, -6});
+  check_near(at_start(moving + sensor(tip + "axes = \"a\"") + run), {0, 0, 1.5, 3, 0, 0, 0, 0, -6});
 }
 
 BOOST_AUTO_TEST_CASE(have_columns_of_their_kinds) {
@@ -316,8 +315,8 @@ BOOST_AUTO_TEST_CASE(on_an_orbit) {
   BOOST_TEST(std::abs(f[0] + 30 * n2) <= 6 * n2 * 100 / a);
   BOOST_TEST(std::hypot(f[1], f[2]) <= 1e-20);
   const auto p = at_start(
-      held +
-      sensor("kind = \"point\"\nbody = \"a\"\nagainst = \"inertial\"\naxes = \"inertial\"") + run);
+      held + sensor("kind = \"point\"\nbody = \"a\"\nagainst = \"inertial\"\naxes = \"inertial\"") +
+      run);
   const auto check = [&p](std::size_t at, const Vector3<double>& wanted) {
     const Vector3<double> found(p.data() + at);
     BOOST_TEST((found - wanted).norm() <= 1e-14 * wanted.norm(), found << "\nwanted " << wanted);

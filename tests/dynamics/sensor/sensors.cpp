@@ -261,7 +261,8 @@ Case some_case(unsigned seed) {
   test::Sample s(seed);
   Case c;
   const auto four = [&s] {
-    return Eigen::Quaterniond(s.uniform(-1, 1), s.uniform(-1, 1), s.uniform(-1, 1), s.uniform(-1, 1));
+    return Eigen::Quaterniond(s.uniform(-1, 1), s.uniform(-1, 1), s.uniform(-1, 1),
+                              s.uniform(-1, 1));
   };
   c.guide.p = {some_quaternion(s), vec4d(), vec4d(), some(s, 10), some(s, 10), some(s, 10)};
   const auto add = [&](const std::string& name, const std::string& parent, JointKind kind) {

@@ -1,10 +1,9 @@
 // Functions of time against their closed forms.
 
 #include <Eigen/Core>
-#include <unsupported/Eigen/AutoDiff>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/test/unit_test.hpp>
+#include <unsupported/Eigen/AutoDiff>
 
 #include <array>
 #include <cmath>

@@ -25,7 +25,7 @@ const EulerTop top({1, 2, 2.5});
 const EulerTop fast({3e-4, 3e-4, 1e-4}, {0, 0, 0.049});
 const EulerTop::State start{tilted, {1, 2, 3}};
 
-/// An oscillator of 1 rad/s that asks its source to stop in one evaluation, and counts those after it.
+/// An oscillator of 1 rad/s that requests a stop in one evaluation and counts the evaluations after it.
 struct Oscillator {
   struct State {
     double x = 0, v = 0;
