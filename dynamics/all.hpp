@@ -1,7 +1,7 @@
 #pragma once
 
-/// All that kreisel::dynamics has for a motion: laws, guides, loads, scenes and solve(). Studies are in
-/// <dynamics/study/all.hpp>. A program that is compiled often includes the few headers that it needs.
+/// All headers of kreisel::dynamics for motions: laws, guides, loads, scenes, sensors and solve().
+/// <dynamics/study/all.hpp> has the studies. Compiling is faster with the few headers that are needed.
 
 #include <dynamics/ensemble/ensemble.hpp>
 #include <dynamics/exact/free_top.hpp>
@@ -19,10 +19,12 @@
 #include <dynamics/guide/chain.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
+#include <dynamics/guide/orbit.hpp>
 #include <dynamics/guide/posed.hpp>
 #include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/guide/tabulated.hpp>
 #include <dynamics/guide/translating.hpp>
@@ -32,6 +34,8 @@
 #include <dynamics/law/vector_form.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/load/oblate_gravitation.hpp>
+#include <dynamics/load/orbit_gravitation.hpp>
+#include <dynamics/load/signal_load.hpp>
 #include <dynamics/model/scene.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/pendulum/pendulum.hpp>
@@ -44,6 +48,9 @@
 #include <dynamics/rigid/fixed_point_body.hpp>
 #include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/small_oscillations.hpp>
+#include <dynamics/sensor/errors.hpp>
+#include <dynamics/sensor/sensors.hpp>
+#include <dynamics/signal/signal.hpp>
 #include <dynamics/solve/error_measure.hpp>
 #include <dynamics/solve/output_times.hpp>
 #include <dynamics/solve/solve.hpp>

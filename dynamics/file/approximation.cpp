@@ -13,6 +13,7 @@
 #include <dynamics/file/measured.hpp>
 #include <dynamics/file/steady_motions.hpp>
 #include <dynamics/solve/error_measure.hpp>
+#include <dynamics/solve/output_times.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -91,7 +92,7 @@ class Approximation final : public SceneSolver {
     ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
     // Relative to the sizes of the whole exact run: an approximation may start with other rates.
     distance.note_sizes(result.report.sizes);
-    if (result.report.sizes.empty()) note_way(distance, options, start);
+    if (result.report.sizes.empty()) note_way(distance, options, result.times.back(), start);
     RunReport& report = result.report;
     report.method = Motion::method;
     const auto at_start = conserved(options.begin, start);
@@ -158,17 +159,14 @@ class Approximation final : public SceneSolver {
 
  private:
   /// Records the sizes at evenly spaced times from begin to end. A closed form reports no sizes.
-  void note_way(detail::ErrorMeasure<Measured>& distance, SolveOptions options,
+  void note_way(ErrorMeasure<Measured>& distance, SolveOptions options, double end,
                 const JointState& start) const {
-    constexpr int parts = 64;
-    const double duration = options.output_times.back() - options.begin;
-    options.output_times.clear();
-    for (int i = 1; i <= parts; ++i)
-      options.output_times.push_back(options.begin + duration * i / parts);
-    distance(joined(start), joined(start));
-    const auto goes_on = [](double, const JointState&) { return true; };
-    const Trajectory<JointState> way = exact_->solve(options, start, goes_on, [] { return false; });
-    for (const JointState& state : way.states) distance(joined(state), joined(state));
+    options.output_times = linspace(options.begin, end, 65);
+    options.t_end.reset();
+    options.output_step.reset();
+    for (const JointState& state : exact_->solve(options, start).states) {
+      distance(joined(state), joined(state));
+    }
   }
 
   std::unique_ptr<SceneSolver> exact_;

@@ -1,10 +1,10 @@
 #pragma once
 
-/// All studies of a scene: rests, linear equations, spectra, stability with periodic coefficients,
-/// precession equations, and what may be left out.
+/// All studies of a scene: equilibria, linear equations, spectra, stability with periodic coefficients,
+/// precession equations, and pruning.
 
 #include <dynamics/study/campbell.hpp>
-#include <dynamics/study/departure.hpp>
+#include <dynamics/study/deviation.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/floquet_bodies.hpp>

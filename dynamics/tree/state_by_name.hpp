@@ -10,14 +10,15 @@
 #include <type_traits>
 #include <vector>
 
+#include <dynamics/tree/joint/list.hpp>
 #include <dynamics/tree/tree.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
 
-/// The index of the body of that name.
+/// The index of the body with that name.
 ///
-/// Throws : InvalidInput with the names there are
+/// Throws : InvalidInput with the names of all bodies
 [[nodiscard]] inline int index_of(const BodyTree& tree, std::string_view name) {
   const std::vector<BodyDescription>& bodies = tree.bodies();
   const auto found =
@@ -34,18 +35,19 @@ namespace kreisel {
 
 namespace detail {
 
-/// A letter for each of a joint's coordinates: a an angle, d a displacement; q for a quaternion, p for a
-/// position.
-[[nodiscard]] inline std::string_view coordinates_of(JointKind kind) {
-  switch (kind) {
-    case JointKind::fixed: return "";
-    case JointKind::revolute: return "a";
-    case JointKind::prismatic: return "d";
-    case JointKind::universal: return "aa";
-    case JointKind::spherical: return "q";
-    case JointKind::free: return "qp";
+/// A letter for each coordinate of a joint: a for an angle, d for a displacement. Quaternions have one
+/// letter q and positions one letter p.
+[[nodiscard]] inline std::string coordinates_of(JointKind kind) {
+  std::string letters;
+  for (const JointQuantity& quantity : joint_type(kind).coordinates) {
+    switch (quantity.meaning) {
+      case JointQuantity::Meaning::attitude: letters += 'q'; break;
+      case JointQuantity::Meaning::place: letters += 'p'; break;
+      case JointQuantity::Meaning::plain:
+        letters.append(quantity.columns.size(), quantity.unit == "rad" ? 'a' : 'd');
+    }
   }
-  return "";
+  return letters;
 }
 
 }  // namespace detail
@@ -61,12 +63,12 @@ namespace detail {
 ///   StateByName(system.tree(), run.states.back()).angle("ring");
 ///
 /// State  : has coordinates and rates; const, if it is only read. Tree and state are kept by reference
-/// Frames : attitudes, positions and rates are those of the body against its parent. Attitudes turn
-///          components on the body's axes to those on the parent's; angular velocities are on the
-///          body's axes, positions and velocities on the parent's
+/// Frames : attitudes, positions and rates are relative to the parent. Attitudes take components on
+///          the body's axes to the parent's axes; angular velocities are on the body's axes,
+///          positions and velocities on the parent's
 /// Units  : rad, m, rad/s, m/s
-/// Throws : InvalidInput for a name that no body has, with those there are, for what the body's joint
-///          does not have, with what it has, and for values that are not finite
+/// Throws : InvalidInput for an unknown name, for a coordinate that the joint does not have, and for
+///          values that are not finite. The message lists the names or coordinates that exist
 template <class State>
 class StateByName {
  public:
@@ -79,7 +81,7 @@ class StateByName {
     }
   }
 
-  /// An angle of the joint; of a universal joint the first or the second, 0 or 1.
+  /// An angle of the joint. A universal joint has two, 0 and 1.
   [[nodiscard]] double angle(std::string_view body, int which = 0) const {
     return state_.coordinates[coordinate(body, 'a', which)];
   }
@@ -108,7 +110,7 @@ class StateByName {
     const Eigen::Quaterniond q(Eigen::Vector4d(state_.coordinates.template segment<4>(place.q)));
     return (joint(body).orientation * q).normalized();
   }
-  /// value : of any norm but 0
+  /// value : any norm except 0
   void set_attitude(std::string_view body, const Eigen::Quaterniond& value) {
     const JointPlace place = with(body, 'q');
     const double norm = value.norm();
@@ -149,10 +151,10 @@ class StateByName {
     return tree_.body(index_of(tree_, body)).joint;
   }
 
-  /// The place of a joint that has such a part.
+  /// The place in the state of a joint that has such a part.
   [[nodiscard]] JointPlace with(std::string_view body, char part) const {
     const int i = index_of(tree_, body);
-    if (detail::coordinates_of(joint(body).kind).find(part) == std::string_view::npos) {
+    if (detail::coordinates_of(joint(body).kind).find(part) == std::string::npos) {
       refuse(body, part, 0);
     }
     return tree_.place(i);
@@ -160,7 +162,7 @@ class StateByName {
 
   [[nodiscard]] int coordinate(std::string_view body, char part, int which) const {
     const JointPlace place = with(body, part);
-    const std::string_view parts = detail::coordinates_of(joint(body).kind);
+    const std::string parts = detail::coordinates_of(joint(body).kind);
     for (std::size_t k = 0, seen = 0; which >= 0 && k < parts.size(); ++k) {
       if (parts[k] != part) continue;
       if (seen++ == static_cast<std::size_t>(which)) return place.q + static_cast<int>(k);
@@ -174,7 +176,7 @@ class StateByName {
     return place.v + which;
   }
 
-  /// Text for a letter of detail::coordinates_of, and for r, a rate.
+  /// The text for a letter of detail::coordinates_of, and for r, a rate.
   [[nodiscard]] static std::string words(char part) {
     switch (part) {
       case 'a': return "angle";
@@ -186,7 +188,7 @@ class StateByName {
   }
 
   [[noreturn]] void refuse(std::string_view body, char part, int which) const {
-    const std::string_view parts = detail::coordinates_of(joint(body).kind);
+    const std::string parts = detail::coordinates_of(joint(body).kind);
     std::string text = "body '" + std::string(body) + "' has no " + words(part);
     if (which != 0) text += " of index " + std::to_string(which);
     text += parts.empty() ? "; its joint has no coordinates" : "; its joint has";

@@ -379,7 +379,7 @@ double growth(const Vector3<double>& moments) {
   const BodySystem<OrbitAxes<>> system(OrbitAxes<>(circle), {body});
   const Eigen::VectorXd y = system.to_vector(system.rest());
   const auto linear = linearize<Guide, Body>(system, 0, y);
-  return detail::eigenvalues(linear.A).real().maxCoeff() / Orbit<>(circle).mean_motion();
+  return eigenvalues(linear.A).real().maxCoeff() / Orbit<>(circle).mean_motion();
 }
 
 /// k1 = (C - A)/B, k3 = (C - B)/A of the moments A along the radius, B along the velocity, C about
@@ -437,7 +437,7 @@ BOOST_AUTO_TEST_CASE(swings_at_its_frequency) {
   auto start = system.rest();
   const auto linear = linearize<Guide, Body>(system, 0, system.to_vector(start));
   double off = 1;
-  for (const auto& root : detail::eigenvalues(linear.A)) {
+  for (const auto& root : eigenvalues(linear.A)) {
     off = std::min(off, std::abs(root.imag() - frequency) + std::abs(root.real()));
   }
   BOOST_TEST(off < 1e-13 * n);

@@ -220,6 +220,20 @@ Placed joint_at(const Joint& joint, const double* q, const double* v, const doub
       result.R = turn(Vec(axis * moved(0))) *
                  turn(Vec(wide(joint.second_axis).normalized() * moved(1))) * zero;
       break;
+    case JointKind::cylindrical:
+      result.R = turn(Vec(axis * moved(0))) * zero;
+      result.x += axis * moved(1);
+      break;
+    case JointKind::planar: {
+      const Vec first = axis.cross(wide(joint.second_axis)).cross(axis).normalized();
+      result.x += first * moved(0) + axis.cross(first) * moved(1);
+      result.R = turn(Vec(axis * moved(2))) * zero;
+      break;
+    }
+    case JointKind::screw:
+      result.R = turn(Vec(axis * moved(0))) * zero;
+      result.x += axis * (Digits(joint.pitch) * moved(0));
+      break;
     case JointKind::free:
       for (int i = 0; i < 3; ++i) {
         result.x[i] += Digits(q[4 + i]) + t * Digits(v[3 + i]) + t * t / 2 * Digits(dv[3 + i]);
@@ -264,12 +278,13 @@ Case some_case(unsigned seed) {
     return Eigen::Quaterniond(s.uniform(-1, 1), s.uniform(-1, 1), s.uniform(-1, 1),
                               s.uniform(-1, 1));
   };
-  c.guide.p = {some_quaternion(s), vec4d(), vec4d(), some(s, 10), some(s, 10), some(s, 10)};
+  c.guide.p = {some_quaternion(s), four(), four(), some(s, 10), some(s, 10), some(s, 10)};
   const auto add = [&](const std::string& name, const std::string& parent, JointKind kind) {
     c.bodies.push_back(
         described(name, parent,
                   {kind, some(s).normalized(), some(s).normalized(), some(s), some_quaternion(s)},
                   inertia(2, some(s, 0.3))));
+    c.bodies.back().joint.pitch = kind == JointKind::screw ? 0.3 : 0;
   };
   add("a", "guide", JointKind::revolute);
   add("b", "a", JointKind::spherical);
@@ -277,6 +292,9 @@ Case some_case(unsigned seed) {
   add("d", "guide", JointKind::free);
   add("e", "d", JointKind::universal);
   add("f", "e", JointKind::fixed);
+  add("g", "b", JointKind::cylindrical);
+  add("h", "g", JointKind::planar);
+  add("i", "h", JointKind::screw);
   c.bodies.push_back(described(
       "rotor", "c", {JointKind::revolute, z_axis, {}, some(s)},
       InertiaTensor<Body>::about_centre(1, {0, 0, 0.2}, Vector(0.1, 0.1, 0.15).asDiagonal())));
