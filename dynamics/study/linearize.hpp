@@ -18,7 +18,6 @@ namespace detail {
 
 template <int n>
 using Duals = Eigen::AutoDiffScalar<Eigen::Matrix<double, n, 1>>;
-using Dual = Duals<1>;
 
 /// Number of directions in which a field is differentiated at a time. With a state of dynamic size
 /// an evaluation costs more than a further direction.
@@ -33,9 +32,9 @@ using StateOf = Eigen::Matrix<S, Scene::Vector::RowsAtCompileTime, 1>;
 /// A scene whose field accepts dual numbers: rates(t, y) on Eigen::Matrix<S, n, 1>, n fixed or
 /// Eigen::Dynamic, for S = double and S = Eigen::AutoDiffScalar.
 template <class Scene>
-concept Differentiable = requires(const Scene& scene, const detail::Dual& t,
-                                  const detail::StateOf<Scene, detail::Dual>& y) {
-  { scene.rates(t, y) } -> std::convertible_to<detail::StateOf<Scene, detail::Dual>>;
+concept Differentiable = requires(const Scene& scene, const detail::Duals<1>& t,
+                                  const detail::StateOf<Scene, detail::Duals<1>>& y) {
+  { scene.rates(t, y) } -> std::convertible_to<detail::StateOf<Scene, detail::Duals<1>>>;
 };
 
 /// The linear equations of a scene's neighbouring motions:  eta' = A eta.
