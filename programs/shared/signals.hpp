@@ -18,11 +18,34 @@ extern "C" inline void on_signal(int signal) {
   ::sem_post(&arrived);  // all that POSIX allows here; a stop_source is not among it
 }
 
-/// Never destroyed: its thread waits for signals until the program ends.
-inline std::stop_source& source() {
-  static auto* const one = new std::stop_source;
-  return *one;
-}
+/// A thread that requests a stop when a signal arrives. It blocks all signals itself.
+class Waiter {
+ public:
+  Waiter() {
+    sigset_t all;
+    sigset_t before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::thread([this] {
+      while (::sem_wait(&arrived) != 0) {
+      }
+      source_.request_stop();
+    });
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+  ~Waiter() {
+    ::sem_post(&arrived);
+    thread_.join();
+  }
+  Waiter(const Waiter&) = delete;
+  Waiter& operator=(const Waiter&) = delete;
+
+  [[nodiscard]] std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_;
+  std::thread thread_;
+};
 
 }  // namespace internal
 
@@ -39,23 +62,10 @@ inline void watch() {
 /// The last signal; 0 if there was none.
 [[nodiscard]] inline int caught() { return internal::caught; }
 
-/// A token whose stop SIGINT and SIGTERM request. The first call starts a thread for that, which
-/// itself blocks all signals.
+/// A token whose stop SIGINT and SIGTERM request. Needs watch(); the first call starts a thread.
 [[nodiscard]] inline std::stop_token token() {
-  [[maybe_unused]] static const bool started = [] {
-    sigset_t all;
-    sigset_t before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::thread([] {
-      while (::sem_wait(&internal::arrived) != 0) {
-      }
-      internal::source().request_stop();
-    }).detach();
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return true;
-  }();
-  return internal::source().get_token();
+  static const internal::Waiter waiter;
+  return waiter.token();
 }
 
 }  // namespace signals
