@@ -591,16 +591,13 @@ class SceneReader {
     }
     body.joint = *joint;
     read_forces(section, body);
-    const std::string drive = section.choice("drive", {"none", "constant-rate"});
-    const bool driven = drive == "constant-rate";
+    const std::optional<Drive> drive = read_drive(section, body);
     const bool held = section.flag("hold");
-    if (driven && body.joint.kind != JointKind::revolute) {
-      section.refuse("drive", "is for a revolute joint");
-    }
-    if (driven && held) section.refuse("hold", "and 'drive' exclude each other");
-    if (driven) body.rule = JointRule::constant_rate;
+    if (drive && held) section.refuse("hold", "and 'drive' exclude each other");
+    if (drive) body.rule = JointRule::constant_rate;
     if (held) body.rule = JointRule::held;
     JointStart start = read_start(section, body);
+    if (drive) start_drive(section, *drive, body, start);
     const bool turns =
         std::any_of(start.rates.begin(), start.rates.end(), [](double rate) { return rate != 0; });
     if (held && turns) section.refuse("hold", "locks a joint whose initial rate is not 0");
@@ -608,6 +605,81 @@ class SceneReader {
     read_rotor(section, body, start);
     scene_.bodies.push_back(std::move(body));
     scene_.start.push_back(std::move(start));
+  }
+
+  /// A prescribed motion of a joint: a coordinate or its rate as a function of time.
+  struct Drive {
+    std::optional<Signal<double>> motion = std::nullopt;  ///< none: at a constant rate
+    bool is_rate = false;
+    std::string key = {};
+  };
+
+  std::optional<Drive> read_drive(Section& section, const BodyDescription& body) {
+    const toml::node* const node = section.find("drive");
+    if (node == nullptr) return std::nullopt;
+    std::optional<Drive> drive;
+    if (node->is_table()) {
+      drive = read_prescribed(*section.section("drive"), body.joint.kind);
+    } else if (section.choice("drive", {"none", "constant-rate"}) == "constant-rate") {
+      drive.emplace();
+    }
+    if (drive && !joint_type(body.joint.kind).can_be_driven()) {
+      section.refuse("drive", "is for a revolute, prismatic or screw joint");
+    }
+    return drive;
+  }
+
+  std::optional<Drive> read_prescribed(Section section, JointKind kind) {
+    const std::string coordinate = kind == JointKind::prismatic ? "displacement" : "angle";
+    Drive drive;
+    for (const std::string& key : {coordinate, std::string("rate")}) {
+      const bool given = section.has(key) || section.has(key + "_deg");
+      if (!given) continue;
+      if (drive.motion) {
+        section.refuse(key, "is given beside '" + drive.key + "'; one of them is the motion");
+        continue;
+      }
+      drive.key = section.has(key) ? key : key + "_deg";
+      drive.is_rate = key == "rate";
+      drive.motion = kind == JointKind::prismatic ? detail::read_signal<double>(section, key)
+                                                  : detail::read_angle_signal(section, key);
+      if (drive.motion) check_drive(section, drive);
+    }
+    if (drive.key.empty()) {
+      section.refuse_all("is the motion of the joint: give '" + coordinate + "' or 'rate'");
+    }
+    section.finish();
+    return drive.motion ? std::optional(drive) : std::nullopt;
+  }
+
+  /// A jump of the rate would take an infinite force.
+  void check_drive(Section& section, const Drive& drive) {
+    const Signal<double>& motion = *drive.motion;
+    note(motion);
+    if (drive.is_rate ? !motion.jumps() : motion.is_smooth()) return;
+    section.refuse(drive.key, "jumps, or its rate does, at t = " +
+                                  shown_time(motion.discontinuities().front()) +
+                                  " s, which takes an infinite force; give " +
+                                  (drive.is_rate ? "'points'" : "'constant', 'rate' and 'terms'"));
+  }
+
+  /// Sets the start to the prescribed motion. A start in the file must not contradict it.
+  static void start_drive(Section& section, const Drive& drive, BodyDescription& body,
+                          JointStart& start) {
+    if (!drive.motion || start.coordinates.size() != 1) return;
+    const Signal<double>& motion = *drive.motion;
+    const auto set = [&section](double& number, double value, const char* what) {
+      if (number != 0 && number != value) {
+        section.refuse("initial", std::string("gives another ") + what + " than 'drive' at t = 0");
+      }
+      number = value;
+    };
+    if (!drive.is_rate) set(start.coordinates.front(), motion(0.0), "position");
+    set(start.rates.front(), motion.derivative(0, drive.is_rate ? 0 : 1), "rate");
+    const int order = drive.is_rate ? 1 : 2;
+    if (!motion.is_constant()) {
+      body.acceleration = [motion, order](double t) { return motion.derivative(t, order); };
+    }
   }
 
   static void check_name(Section& section, std::size_t i, const std::vector<std::string>& names) {

@@ -196,7 +196,7 @@ std::string changes(const SceneFile& scene) {
   if (std::any_of(scene.guide.begin(), scene.guide.end(), moves)) {
     return "the guide moves as functions of time";
   }
-  if (scene.forces_change) return "a force, a torque or a rotor's speed changes with time";
+  if (scene.forces_change) return "a force, a torque, a drive or a rotor's speed changes with time";
   return "";
 }
 

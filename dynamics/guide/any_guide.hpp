@@ -33,7 +33,8 @@ class AnyGuide {
                                            const detail::Components<double>& g)>;
 
   template <GuideMotion M>
-  requires(!std::derived_from<M, AnyGuide>) AnyGuide(M motion)  // NOLINT: implicit, any kind is accepted
+  requires(!std::derived_from<M, AnyGuide>)
+      AnyGuide(M motion)  // NOLINT: implicit, any kind is accepted
       : AnyGuide(std::make_shared<const M>(std::move(motion))) {}
 
   /// A motion with the series of AnalyticGuide given as a function.

@@ -140,6 +140,12 @@ class BodySystem {
           detail::slope_in_time(asked, now) * t.derivatives();
     }
 
+    for (const BodyTree::Drive& drive : tree_.drives()) {
+      if (t.derivatives().isZero(0)) continue;
+      result[tree_.coordinates() + drive.rate].derivatives() =
+          detail::slope_in_time(drive.acceleration, now) * t.derivatives();
+    }
+
     detail::MotionSpace<Dual> d(tree_);
     const FrameMotion<Guide, Inertial, Dual> guide = detail::guide_at<Dual>(guide_, t);
     detail::set_poses_and_motions(tree_, detail::root(guide, gravity_, detail::is_resting<M>),

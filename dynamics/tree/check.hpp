@@ -96,8 +96,11 @@ inline void check_forces(const BodyDescription& b) {
                   "take a load");
     }
   }
-  if (b.rule == JointRule::constant_rate && b.joint.kind != JointKind::revolute) {
-    refuse_body(b.name, "only a revolute joint can be driven at a constant rate");
+  if (b.rule == JointRule::constant_rate && !type.can_be_driven()) {
+    refuse_body(b.name, "only a revolute, prismatic or screw joint can be driven");
+  }
+  if (b.acceleration && b.rule != JointRule::constant_rate) {
+    refuse_body(b.name, "an acceleration is given, but no drive");
   }
 }
 

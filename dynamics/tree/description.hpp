@@ -36,7 +36,7 @@ struct JointForce {
 enum class JointRule {
   forces,        ///< the forces on the bodies
   held,          ///< locked in its position; its rates count as 0
-  constant_rate  ///< revolute only: a motor keeps the rate constant with any torque
+  constant_rate  ///< single coordinates only: a motor prescribes the motion, with any force
 };
 
 /// The rule for the spin of a rotor.
@@ -169,6 +169,8 @@ struct BodyDescription {
   InertiaTensor<Body> inertia = {};     ///< about the body's origin, which lies in the joint
   std::vector<JointForce> forces = {};  ///< one for each rate of the joint, or none
   JointRule rule = JointRule::forces;
+  /// Second derivative of the coordinate under JointRule::constant_rate; empty: 0.
+  std::function<double(double t)> acceleration = {};
   std::vector<BodyLoad> loads = {};
   std::optional<Rotor> rotor = std::nullopt;
 };

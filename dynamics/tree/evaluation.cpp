@@ -26,7 +26,8 @@ BodyWorkspace::BodyWorkspace(const BodyTree& tree)
       ball(static_cast<std::size_t>(tree.balls())),
       still(Eigen::VectorXd::Zero(tree.rates())),
       acceleration(Eigen::VectorXd::Zero(tree.rates())),
-      spin_up(tree.rotors().size()) {}
+      spin_up(tree.rotors().size()),
+      driven(tree.drives().empty() ? 0 : static_cast<std::size_t>(tree.rates())) {}
 
 namespace detail {
 
@@ -102,7 +103,8 @@ void require_dual_loads(const BodyTree& tree) {
 void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                 const Eigen::VectorXd& extra, double* result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
-  set_poses_and_motions(tree, root(now), y.data(), v, nullptr, w);
+  const double* const driven = ask_drives(tree, now.t, w);
+  set_poses_and_motions(tree, root(now), y.data(), v, driven, w);
   set_joint_forces(tree, y.data(), v, w);
   if (tree.is_acted_on()) {
     take_off_loads(tree, now.t, now.guide, v, w);
@@ -112,6 +114,7 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
   ask_spin_up(tree, now.t, w);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
   eliminate_and_solve(tree, w.joint_force.data(), result, w);
+  set_driven(tree, driven, result);
 }
 
 void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
@@ -173,14 +176,16 @@ void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::Vecto
 /// Computes the reactions to one group of causes. Needs the joints eliminated and w.joint_force
 /// set.
 inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double* v,
-                   const Surroundings* loads_at, const Eigen::VectorXd& y, BodyWorkspace& w) {
+                   const double* driven, const Surroundings* loads_at, const Eigen::VectorXd& y,
+                   BodyWorkspace& w) {
   const auto set_forces = [&](const double* dv) {
     set_motions(tree, root, v, dv, w);
     if (loads_at) take_off_loads(tree, loads_at->t, loads_at->guide, rates_of(tree, y), w);
   };
-  set_forces(nullptr);
+  set_forces(driven);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
   solve(tree, w.joint_force.data(), w.acceleration.data(), w);
+  set_driven(tree, driven, w.acceleration.data());
   const double* dv = w.acceleration.data();
   set_forces(dv);
   add_rotor_forces_at(tree, v, dv, w);
@@ -207,17 +212,18 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   };
   w.joint_force.setZero();
   ask_spin_up(tree, now.t, w);
-  answer(tree, {}, v, nullptr, y, w);
+  const double* const driven = ask_drives(tree, now.t, w);
+  answer(tree, {}, v, driven, nullptr, y, w);
   note(&ReactionParts::spin);
-  answer(tree, moving, v, nullptr, y, w);
+  answer(tree, moving, v, driven, nullptr, y, w);
   note(&ReactionParts::guide);
   for (ReactionParts& parts : result) parts.guide = parts.guide - parts.spin;
   ask_no_spin_up(w);
-  answer(tree, weight, still, nullptr, y, w);
+  answer(tree, weight, still, nullptr, nullptr, y, w);
   note(&ReactionParts::gravity);
   set_joint_forces(tree, y.data(), v, w);
   add_timed_forces(tree, now.t, w);
-  answer(tree, {}, still, &now, y, w);
+  answer(tree, {}, still, nullptr, &now, y, w);
   note(&ReactionParts::forces);
 }
 

@@ -19,6 +19,21 @@ inline void ask_spin_up(const BodyTree& tree, double t, BodyWorkspace& w) {
 
 inline void ask_no_spin_up(BodyWorkspace& w) { std::fill(w.spin_up.begin(), w.spin_up.end(), 0.0); }
 
+/// The prescribed derivatives of rates, one for each rate, in w.driven; null if there are none.
+[[nodiscard]] inline const double* ask_drives(const BodyTree& tree, double t, BodyWorkspace& w) {
+  if (tree.drives().empty()) return nullptr;
+  for (const BodyTree::Drive& drive : tree.drives()) {
+    w.driven[static_cast<std::size_t>(drive.rate)] = drive.acceleration(t);
+  }
+  return w.driven.data();
+}
+
+/// Copies the prescribed derivatives, unless `driven` is null.
+inline void set_driven(const BodyTree& tree, const double* driven, double* acceleration) {
+  if (driven == nullptr) return;
+  for (const BodyTree::Drive& drive : tree.drives()) acceleration[drive.rate] = driven[drive.rate];
+}
+
 /// Adds the rotors' gyroscopic torques and motor reactions to the inertia forces in w. The motor
 /// torques are the joint forces; for regulated rotors they follow from spin_up.
 inline void add_rotor_forces(const BodyTree& tree, const double* v, const double* joint_force,

@@ -94,7 +94,7 @@ template <class M>
   Eigen::VectorXd projected(tree.rates());
 
   detail::set_poses(tree, y.data(), w);  // restores the inertias that mass_matrix() has summed
-  detail::set_motions(tree, moving, v, nullptr, w);
+  detail::set_motions(tree, moving, v, detail::ask_drives(tree, t, w), w);
   m.B.resize(count, n);
   m.C.resize(count);
   m.l.resize(count);

@@ -9,7 +9,7 @@
 namespace kreisel::detail {
 
 bool knows_series(const BodyTree& tree) {
-  if (!tree.loaded().empty()) return false;
+  if (!tree.loaded().empty() || !tree.drives().empty()) return false;
   for (const RotorLink& rotor : tree.rotors()) {
     if (tree.body(rotor.link.body).rotor->acceleration) return false;
   }

@@ -136,6 +136,7 @@ void BodyTree::append(int body) {
     push(link);
   }
   last_link_.push_back(links_.size() - 1);
+  if (b.acceleration) drives_.push_back({link.v, b.acceleration});
   if (!b.loads.empty()) loaded_.push_back(body);
   const std::size_t before = forces_.size();
   forces_.resize(static_cast<std::size_t>(rates_));

@@ -38,6 +38,12 @@ class KREISEL_API BodyTree {
     Signal<double> signal;
   };
   [[nodiscard]] const std::vector<TimedForce>& timed_forces() const { return timed_forces_; }
+  /// A rate whose derivative is prescribed.
+  struct Drive {
+    int rate;
+    std::function<double(double t)> acceleration;
+  };
+  [[nodiscard]] const std::vector<Drive>& drives() const { return drives_; }
   /// The coordinate of each joint force's spring.
   [[nodiscard]] const std::vector<int>& coordinate_of() const { return coordinate_of_; }
   [[nodiscard]] int coordinates() const { return coordinates_; }
@@ -93,6 +99,7 @@ class KREISEL_API BodyTree {
   std::vector<int> loaded_;
   std::vector<JointForce> forces_;
   std::vector<TimedForce> timed_forces_;
+  std::vector<Drive> drives_;
   std::vector<int> coordinate_of_;
   std::vector<int> coordinate_blocks_;
   std::vector<int> rate_blocks_;

@@ -68,6 +68,7 @@ struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
   Eigen::VectorXd still;  ///< rates that are all 0
   Eigen::VectorXd acceleration;
   std::vector<double> spin_up;  ///< prescribed relative acceleration of each rotor
+  std::vector<double> driven;   ///< prescribed derivatives of rates; the others are 0
 };
 
 }  // namespace kreisel

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference_guide.hpp"
+
 namespace differential {
 
 namespace {
@@ -438,6 +440,20 @@ void add_loads(Random& r, Body& body) {
   } while (r.chance(0.15));
 }
 
+/// Prescribes the angle, or its rate, which may be a broken line.
+void add_motion(Random& r, Body& body) {
+  body.is_rate = r.chance(0.5);
+  do {
+    const auto along = [&r] { return Vector(sign(r) * Vector::UnitX()); };
+    body.motion = body.is_rate ? any_signal(r, 1, along) : smooth_signal(r, 0.3, along);
+  } while (body.motion.empty() ||
+           (!body.motion.jumps.times.empty() && !body.motion.jumps.is_broken_line));
+  const reference::Course start = reference::course_of(body.motion, 0, 0);
+  const auto value = static_cast<double>(start.value.x());
+  if (!body.is_rate) body.angle = {{value, false}};
+  body.rate = {{body.is_rate ? value : static_cast<double>(start.rate.x()), false}};
+}
+
 /// Locks the joint or drives it.
 void add_rule(Random& r, Body& body) {
   if (r.chance(0.04)) {
@@ -445,8 +461,9 @@ void add_rule(Random& r, Body& body) {
     body.rate.clear();
     body.angular_velocity.setZero();
     body.velocity.setZero();
-  } else if (body.kind == JointKind::revolute && r.chance(0.08)) {
+  } else if (body.kind == JointKind::revolute && r.chance(0.12)) {
     body.drive = true;
+    if (r.chance(0.5)) add_motion(r, body);
   }
 }
 

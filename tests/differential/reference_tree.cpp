@@ -347,6 +347,14 @@ void Tree::add_rotation(int body, const Relative& r, const Motion& guide, const 
   rows_ += 1;
 }
 
+std::pair<Real, Real> Tree::drive(int body) const {
+  const Body& b = scene_.bodies[static_cast<std::size_t>(body)];
+  if (b.motion.empty()) return {parts_[static_cast<std::size_t>(body)].speed, 0};
+  const Course course = course_of(b.motion, now_, within_);
+  return b.is_rate ? std::pair(course.value.x(), course.rate.x())
+                   : std::pair(course.rate.x(), course.second_rate.x());
+}
+
 void Tree::add_rows(int body, const Relative& r, const Motion& guide) {
   const Part& part = parts_[static_cast<std::size_t>(body)];
   const JointKind kind = scene_.bodies[static_cast<std::size_t>(body)].kind;
@@ -371,7 +379,10 @@ void Tree::add_rows(int body, const Relative& r, const Motion& guide) {
     const Vec off = r.axis.cross(image);
     add_rotation(body, r, guide, first, 0, off.dot(first), 0);
     add_rotation(body, r, guide, second, 0, off.dot(second), 0);
-    if (part.driven) add_rotation(body, r, guide, r.axis, 0, 0, part.speed);
+    if (part.driven) {
+      const auto [speed, acceleration] = drive(body);
+      add_rotation(body, r, guide, r.axis, -acceleration, 0, speed);
+    }
     if (kind == JointKind::screw) {
       // One row: the advance less the pitch times the angle.
       const Real turned = nearest_turn(angles_of(body, r).first, r.near);
@@ -538,6 +549,7 @@ void Tree::solve() {
 void Tree::rates(Real t, const State& y, State& result) {
   result.setZero(size_);
   const Motion guide = guide_.at(t, y, result);
+  now_ = t;
   read(y, guide);
   assemble(guide);
   add_forces(t, y, guide);
@@ -571,6 +583,7 @@ void Tree::project(Real t, State& y) {
   guide_.project(y);
   State none(size_);
   const Motion guide = guide_.at(t, y, none);
+  now_ = t;
   const auto N = static_cast<Eigen::Index>(6 * poses_.size());
   const auto respond = [&](const std::vector<Real>& off) {
     right_.setZero();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "reference.hpp"
@@ -99,6 +100,8 @@ class Tree {
   [[nodiscard]] Eigen::Index at(int body) const { return guide_.size() + 13 * body; }
 
   void assemble(const Motion& guide);
+  /// Speed and acceleration of a driven joint.
+  [[nodiscard]] std::pair<Real, Real> drive(int body) const;
   void add_rows(int body, const Relative& r, const Motion& guide);
   void add_translation(int body, const Relative& r, const Motion& guide, const Vec& n);
   void add_rotation(int body, const Relative& r, const Motion& guide, const Vec& n, Real extra,
@@ -122,6 +125,7 @@ class Tree {
   std::vector<int> parents_;
   Eigen::Index size_ = 0;
   Real within_ = 0;
+  Real now_ = 0;
   // Data of one evaluation.
   Pose guide_pose_;
   std::vector<Pose> poses_;

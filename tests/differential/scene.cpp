@@ -250,7 +250,10 @@ void add_single_coordinates(Inline& table, const Body& body) {
   }
 }
 
-std::string initial(const Body& body) {
+/// The start values that the motion of a drive does not give.
+std::string initial(Body body) {
+  if (!body.motion.empty()) body.rate.clear();
+  if (!body.motion.empty() && !body.is_rate) body.angle.clear();
   Inline table;
   if (single_coordinates(body.kind) > 0) add_single_coordinates(table, body);
   if (body.rotor && body.rotor->speed_is_initial) add_angles(table, "rate", {body.rotor->speed});
@@ -353,7 +356,11 @@ std::string body(const Scene& scene, int index) {
   result += "inertia = " + list(b.inertia) + "\n";
   result += initial(b) + forces(b);
   if (b.rotor) result += rotor(*b.rotor);
-  if (b.drive) result += "drive = \"constant-rate\"\n";
+  if (b.drive && b.motion.empty()) result += "drive = \"constant-rate\"\n";
+  if (!b.motion.empty()) {
+    result += fmt::format("drive = {{ {} = {} }}\n", b.is_rate ? "rate" : "angle",
+                          number_signal(b.motion));
+  }
   if (b.hold) result += "hold = true\n";
   result += points(scene, index);
   return result + loads(b);
@@ -374,6 +381,7 @@ std::vector<double> Scene::jumps() const {
   };
   for (const Body& body : bodies) {
     add(body.force_in_time);
+    add(body.motion);
     if (body.rotor) add(body.rotor->torque_in_time);
     for (const Load& load : body.loads) add(load.force_in_time);
   }

@@ -146,6 +146,8 @@ struct Body {
   Signal force_in_time = {};  ///< in a joint of one coordinate, instead of the force
   std::optional<Rotor> rotor = {};
   bool drive = false;
+  Signal motion = {};    ///< of the drive instead of a constant rate
+  bool is_rate = false;  ///< of the motion: the rate, not the coordinate
   bool hold = false;
   std::vector<Load> loads = {};
 };

@@ -141,7 +141,8 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
     if (b.rotor) b.rotor->torque_in_time = {};
   });
   add([](Body& b) { b.rotor.reset(); });
-  add([](Body& b) { b.drive = false; });
+  add([](Body& b) { b.motion = {}; });
+  add([](Body& b) { b.drive = false, b.motion = {}; });
   add([](Body& b) { b.hold = false; });
   add([](Body& b) { b.angle.clear(), b.displacement.clear(); });
   add([](Body& b) { b.rate.clear(); });
@@ -151,7 +152,7 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
   add([](Body& b) { b.inertia.resize(3); });
   add([](Body& b) { b.centre.setZero(); });
   add([](Body& b) { b.position.setZero(); });
-  add([](Body& b) { b.kind = JointKind::spherical, b.drive = false; });
+  add([](Body& b) { b.kind = JointKind::spherical, b.drive = false, b.motion = {}; });
   add([](Body& b) { b.angular_velocity.setZero(), b.velocity.setZero(); });
 }
 

@@ -87,6 +87,9 @@ struct JointType {
     return !coordinates.empty() && coordinates.front().meaning == JointQuantity::Meaning::attitude;
   }
 
+  /// True if a motor can prescribe the motion: the joint has one coordinate.
+  [[nodiscard]] bool can_be_driven() const { return coordinate_count() == 1; }
+
   /// True if each rate is the derivative of one coordinate, so springs and potentials are possible.
   [[nodiscard]] bool has_single_coordinates() const {
     return !coordinates.empty() && !has_attitude();

@@ -126,6 +126,23 @@ BOOST_AUTO_TEST_CASE(rotor_takes_torque_or_speed) {
   BOOST_TEST(std::abs(end_rate(body(speed)) - 2 * turn) <= 1e-9);
 }
 
+BOOST_AUTO_TEST_CASE(drive_prescribes_angle_or_rate) {
+  const std::string swing =
+      body("drive = { angle = { terms = [{ amplitude = 0.3, frequency = 2, phase_deg = 90 }] } }");
+  const SceneFile file = scene(swing);
+  BOOST_TEST((file.bodies[0].rule == JointRule::constant_rate));
+  BOOST_TEST(file.start[0].coordinates[0] == 0.3);
+  BOOST_TEST(std::abs(file.bodies[0].acceleration(0.4) + 1.2 * std::cos(0.8)) <= 1e-15);
+  BOOST_TEST(std::abs(end_rate(swing) + 0.6 * std::sin(8.0)) <= 1e-9);
+  const std::string command =
+      body("initial = { angle = 0.5 }\ndrive = { rate_deg = { points = [[1, 0], [2, 90]] } }");
+  BOOST_TEST(scene(command).start[0].coordinates[0] == 0.5);
+  BOOST_TEST(std::abs(end_rate(command) - 90 * 0.017453292519943295) <= 1e-9);
+  const std::string lift = body("drive = { displacement = { rate = 0.2 } }", slide);
+  BOOST_TEST(scene(lift).start[0].rates[0] == 0.2);
+  BOOST_TEST(end_rate(lift) == 0.2);
+}
+
 BOOST_AUTO_TEST_CASE(guide_moves_as_its_signals) {
   const SceneFile file = scene(
       guide("position = { rate = [1, 0, 0], terms = [{ amplitude = [0, 0, 2], frequency = 3 }] }\n"
@@ -213,6 +230,21 @@ BOOST_AUTO_TEST_CASE(mistakes_are_reported) {
        "s.toml:7:37: body 'a'.rotor.torque: changes with time beside 'force'; one of them may"},
       {body("rotor = { mode = \"free\", speed = 1, torque = { rate = 1 } }"),
        "s.toml:6:46: body 'a'.rotor.torque: is for mode = 'torque'"},
+      {body("drive = {}"),
+       "s.toml:6:9: body 'a'.drive: is the motion of the joint: give 'angle' or 'rate'"},
+      {body("drive = { angle = 1, rate = 2 }"),
+       "s.toml:6:29: body 'a'.drive.rate: is given beside 'angle'; one of them is the motion"},
+      {body("drive = { displacement = 1 }"),
+       "s.toml:6:9: body 'a'.drive: is the motion of the joint: give 'angle' or 'rate'\n"
+       "s.toml:6:11: body 'a'.drive.displacement: is no key here"},
+      {body("drive = { angle = { points = [[1, 0], [2, 1]] } }"),
+       "s.toml:6:19: body 'a'.drive.angle: jumps, or its rate does, at t = 1 s, which takes an "
+       "infinite force; give 'constant', 'rate' and 'terms'"},
+      {body("drive = { rate = { steps = [[1, 2]] } }"),
+       "s.toml:6:18: body 'a'.drive.rate: jumps, or its rate does, at t = 1 s, which takes an "
+       "infinite force; give 'points'"},
+      {body("initial = { angle = 1 }\ndrive = { angle = { constant = 2, rate = 1 } }"),
+       "s.toml:6:11: body 'a'.initial: gives another position than 'drive' at t = 0"},
       {guide(""), "s.toml:1:1: guide.position: is missing"},
       {guide("position = { steps = [[1, [0, 0, 1]]] }"),
        "s.toml:3:12: guide.position: jumps, or its rate does, at t = 1 s, which takes an infinite "
