@@ -29,6 +29,12 @@ BodyWorkspace::BodyWorkspace(const BodyTree& tree)
       spin_up(tree.rotors().size()),
       driven(tree.drives().empty() ? 0 : static_cast<std::size_t>(tree.rates())) {}
 
+BodyWorkspace::BodyWorkspace(const BodyWorkspace&) = default;
+BodyWorkspace::BodyWorkspace(BodyWorkspace&&) noexcept = default;
+BodyWorkspace& BodyWorkspace::operator=(const BodyWorkspace&) = default;
+BodyWorkspace& BodyWorkspace::operator=(BodyWorkspace&&) noexcept = default;
+BodyWorkspace::~BodyWorkspace() = default;
+
 namespace detail {
 
 /// The force of a body's joint on the body. Needs w.force summed inwards.

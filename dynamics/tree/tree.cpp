@@ -40,6 +40,12 @@ inline void set_motion(Link& link, const JointPart& part) {
 
 }  // namespace detail
 
+BodyTree::BodyTree(const BodyTree&) = default;
+BodyTree::BodyTree(BodyTree&&) noexcept = default;
+BodyTree& BodyTree::operator=(const BodyTree&) = default;
+BodyTree& BodyTree::operator=(BodyTree&&) noexcept = default;
+BodyTree::~BodyTree() = default;
+
 BodyTree::BodyTree(std::vector<BodyDescription> bodies) : bodies_(std::move(bodies)) {
   links_.emplace_back();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

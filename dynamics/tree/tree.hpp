@@ -27,6 +27,12 @@ struct JointPlace {
 class KREISEL_API BodyTree {
  public:
   explicit BodyTree(std::vector<BodyDescription> bodies);
+  // Compiled once, in libkreisel: programs would instantiate the vectors' own.
+  BodyTree(const BodyTree& other);
+  BodyTree(BodyTree&& other) noexcept;
+  BodyTree& operator=(const BodyTree& other);
+  BodyTree& operator=(BodyTree&& other) noexcept;
+  ~BodyTree();
 
   [[nodiscard]] const std::vector<BodyDescription>& bodies() const { return bodies_; }
   [[nodiscard]] const std::vector<detail::Link>& links() const { return links_; }

@@ -59,6 +59,12 @@ struct MotionSpace {
 /// Cost : 1 kB for each body
 struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
   explicit BodyWorkspace(const BodyTree& tree);
+  // Compiled once, in libkreisel: programs would instantiate the vectors' own.
+  BodyWorkspace(const BodyWorkspace& other);
+  BodyWorkspace(BodyWorkspace&& other) noexcept;
+  BodyWorkspace& operator=(const BodyWorkspace& other);
+  BodyWorkspace& operator=(BodyWorkspace&& other) noexcept;
+  ~BodyWorkspace();
 
   std::vector<detail::ArticulatedInertia> articulated;
   std::vector<detail::SingleElimination> single;
