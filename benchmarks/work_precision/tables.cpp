@@ -85,9 +85,9 @@ void winners(fmt::ostream& out, const std::vector<Point>& points) {
   out.print(
       "### Fastest methods\n\n"
       "The least time to an error, in ms, interpolated between settings as a power of the error; "
-      "\"-\" where no\nmethod reaches it. \"auto\" is solve() with its error estimate, \"fixed\" "
-      "solve() with the best fixed\nmethod and the same estimate, \"bare\" the best stepper, ours "
-      "or a library's, without an estimate.\n\n"
+      "\"-\" where no\nmethod reaches it. \"auto\" is solve() with its error estimate. \"fixed\" "
+      "is solve() with the best fixed\nmethod and the same estimate. \"bare\" is the best stepper, "
+      "ours or a library's, without an estimate.\n\n"
       "| scene | error | best stepper of ours | ms | best library | ms | library / ours | closed "
       "form, ms | auto | ms | fixed | ms | auto / fixed | auto / bare |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
