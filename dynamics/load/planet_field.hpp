@@ -95,33 +95,33 @@ struct PlanetField {
     return sphere + (flat(p + d) - flat(p) - flattening(p).dot(d));
   }
 
-  /// The terms of second order in the size of a body with the tensor of inertia Theta about its
-  /// centre of mass. Force and torque come from one potential,  W = -(1/2) G : Theta,  G = grad
+  /// The terms of second order in the size of a body with the tensor of inertia T about its
+  /// centre of mass. Force and torque come from one potential,  W = -(1/2) G : T,  G = grad
   /// grad U, so energy and angular momentum are conserved:
   ///
-  ///   force = grad W,   torque_i = e_ikj (G Theta)_kj;   without J2  3 mu/r^5 p x (Theta p)
+  ///   force = grad W,   torque_i = e_ikj (G T)_kj;   without J2  3 mu/r^5 p x (T p)
   ///
   /// The first neglected torque and force are at most 2.07 mu M3/r^4 and 4 mu M3/r^5, where M3 is
   /// the integral of |x|^3 dm over the body. They vanish for bodies that are symmetric about their
   /// centre of mass. For these the next terms are below 3.2 mu M4/r^5 and 5 mu M4/r^6.
   ///
   /// Source : MacCullagh's potential, differentiated; bounds from the Legendre polynomials P3, P4
-  [[nodiscard]] SizeTerms<N> size_terms(const Vector3<N>& p, const Symmetric3<N>& Theta) const {
+  [[nodiscard]] SizeTerms<N> size_terms(const Vector3<N>& p, const Symmetric3<N>& T) const {
     const Powers i(p);
-    const Vector3<N> Tp = Theta * p;
-    const N trace = Theta.xx + Theta.yy + Theta.zz;
-    const N pTp = p.dot(Tp);
+    const Vector3<N> T_p = T * p;
+    const N trace = T.xx + T.yy + T.zz;
+    const N p_T_p = p.dot(T_p);
     // G = E 1 + X p p^t + Y (p k^t + k p^t) + Z k k^t
     N E = -parameter * i.r3;
     N X = N(3) * parameter * i.r5;
     N dX = N(-15) * parameter * i.r7;
     if (!is_oblate) {
-      return {N(-0.5) * (N(2) * X * Tp + (pTp * dX + trace * X) * p), X * p.cross(Tp),
-              N(-0.5) * (X * pTp + E * trace)};
+      return {N(-0.5) * (N(2) * X * T_p + (p_T_p * dX + trace * X) * p), X * p.cross(T_p),
+              N(-0.5) * (X * p_T_p + E * trace)};
     }
     const N r9 = i.r7 * i.r2;
     const N z = pole.dot(p);
-    const Vector3<N> Tk = Theta * pole;
+    const Vector3<N> T_k = T * pole;
     const N& c = oblateness;
     E += c * (N(5) * z * z * i.r7 - i.r5);
     X += c * (N(5) * i.r7 - N(35) * z * z * r9);
@@ -130,12 +130,12 @@ struct PlanetField {
     const N dY = N(-70) * c * z * r9;  // of X along k, of Y along p
     const N Z = N(-2) * c * i.r5;
     const N dZ = N(10) * c * i.r7;  // of Y along k, of Z along p
-    const N pTk = p.dot(Tk), kTk = pole.dot(Tk);
-    const N along_p = pTp * dX + N(2) * pTk * dY + kTk * dZ + trace * X;
-    const N along_k = pTp * dY + N(2) * pTk * dZ + trace * Y;
-    return {N(-0.5) * (N(2) * X * Tp + N(2) * Y * Tk + along_p * p + along_k * pole),
-            X * p.cross(Tp) + Y * (p.cross(Tk) + pole.cross(Tp)) + Z * pole.cross(Tk),
-            N(-0.5) * (X * pTp + N(2) * Y * pTk + Z * kTk + E * trace)};
+    const N p_T_k = p.dot(T_k), k_T_k = pole.dot(T_k);
+    const N along_p = p_T_p * dX + N(2) * p_T_k * dY + k_T_k * dZ + trace * X;
+    const N along_k = p_T_p * dY + N(2) * p_T_k * dZ + trace * Y;
+    return {N(-0.5) * (N(2) * X * T_p + N(2) * Y * T_k + along_p * p + along_k * pole),
+            X * p.cross(T_p) + Y * (p.cross(T_k) + pole.cross(T_p)) + Z * pole.cross(T_k),
+            N(-0.5) * (X * p_T_p + N(2) * Y * p_T_k + Z * k_T_k + E * trace)};
   }
 
  private:

@@ -63,8 +63,8 @@ std::vector<double> output_grid(double begin, double end, double step) {
   const double count = std::abs(end - begin) / step;
   std::vector<double> times;
   times.reserve(static_cast<std::size_t>(count) + 2);
-  for (double i = 0; i < count - 1e-9; ++i) {
-    times.push_back(begin + i * std::copysign(step, end - begin));
+  for (std::size_t i = 0; static_cast<double>(i) < count - 1e-9; ++i) {
+    times.push_back(begin + static_cast<double>(i) * std::copysign(step, end - begin));
   }
   times.push_back(end);
   return times;

@@ -49,7 +49,7 @@ ordered_json numbers(const Eigen::Matrix3d& m) {
 
 /// The motions of a joint with single coordinates: rotation about the axis by `turns` of one
 /// coordinate, displacement along it by `slides`.
-ordered_json parts(const kreisel::Joint& joint) {
+ordered_json joint_motions(const kreisel::Joint& joint) {
   using kreisel::detail::LinkKind;
   ordered_json list = ordered_json::array();
   for (const auto& part : kreisel::joint_type(joint.kind).parts(joint)) {
@@ -110,7 +110,7 @@ ordered_json bodies(const kreisel::BodyTree& tree) {
     list.push_back({{"name", body.name},
                     {"parent", body.parent == "guide" ? -1 : tree.index(body.parent)},
                     {"axis", numbers(joint.axis.normalized())},
-                    {"parts", parts(joint)},
+                    {"parts", joint_motions(joint)},
                     {"coordinates", named(type.coordinates)},
                     {"rates", named(type.rates)},
                     {"position", numbers(joint.position)},

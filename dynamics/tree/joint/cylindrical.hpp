@@ -14,7 +14,7 @@ namespace kreisel::detail {
                       {"displacement", "m", {"displacement"}, "displacement", {""}}},
       .rates = {{"rate", "rad/s", {"rate"}, "rate", {""}},
                 {"velocity", "m/s", {"velocity"}, "velocity", {""}}},
-      .parts = [](const Joint& joint) {
+      .parts = [](const kreisel::Joint& joint) {
         return JointParts{{LinkKind::revolute, joint.axis}, {LinkKind::prismatic, joint.axis, 1}};
       }};
 }

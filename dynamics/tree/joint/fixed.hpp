@@ -6,7 +6,7 @@ namespace kreisel::detail {
 
 /// The joint without any motion.
 [[nodiscard]] inline JointType fixed_joint() {
-  return {.kind = JointKind::fixed, .name = "fixed", .parts = [](const Joint&) {
+  return {.kind = JointKind::fixed, .name = "fixed", .parts = [](const kreisel::Joint&) {
             return JointParts{{}};
           }};
 }

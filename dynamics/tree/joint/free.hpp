@@ -17,7 +17,7 @@ namespace kreisel::detail {
                            JointQuantity::Meaning::place}},
           .rates = {joint_angular_velocity(),
                     {"velocity", "m/s", {"vx", "vy", "vz"}, "velocity", {"x", "y", "z"}}},
-          .parts = [](const Joint&) { return JointParts{{LinkKind::free}}; }};
+          .parts = [](const kreisel::Joint&) { return JointParts{{LinkKind::free}}; }};
 }
 
 }  // namespace kreisel::detail

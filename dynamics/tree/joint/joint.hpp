@@ -28,7 +28,7 @@ enum class JointKind {
 ///              spherical a quaternion (x, y, z, w) of any norm; free such a quaternion, then the
 ///              position of the body's origin from `position`, on the parent's axes; cylindrical
 ///              angle and displacement; planar displacements along both directions of
-///              directions(), then the angle; screw the angle
+///              plane_directions(), then the angle; screw the angle
 /// Rates      : those of the coordinates; for a quaternion the relative angular velocity on the
 ///              body's axes; for a position the relative velocity on the parent's axes
 /// Units      : radian, metre, rad/s, m/s

@@ -12,7 +12,8 @@ namespace kreisel::detail {
 /// The first is the component of `second_axis` normal to `axis`. The default of `second_axis` is
 /// the parent's axis after the one nearest to `axis`, in the order x, y, z, x. The second direction
 /// is axis x first.  For the axis z they are x and y of the parent.
-[[nodiscard]] inline std::pair<Vector3<double>, Vector3<double>> directions(const Joint& joint) {
+[[nodiscard]] inline std::pair<Vector3<double>, Vector3<double>> plane_directions(
+    const kreisel::Joint& joint) {
   const Vector3<double> axis = joint.axis.normalized();
   Vector3<double> first = joint.second_axis;
   if (first.isZero(0)) {
@@ -40,8 +41,8 @@ namespace kreisel::detail {
           .rates =
               {{"velocity", "m/s", {"velocity 1", "velocity 2"}, "velocities", {"first", "second"}},
                {"rate", "rad/s", {"rate"}, "rate", {""}}},
-          .parts = [](const Joint& joint) {
-            const auto [first, second] = directions(joint);
+          .parts = [](const kreisel::Joint& joint) {
+            const auto [first, second] = plane_directions(joint);
             return JointParts{{LinkKind::prismatic, first, 1},
                               {LinkKind::prismatic, second, 1},
                               {LinkKind::revolute, joint.axis}};

@@ -11,7 +11,7 @@ namespace kreisel::detail {
           .axis = JointType::Axis::required,
           .coordinates = {{"displacement", "m", {"displacement"}, "displacement", {""}}},
           .rates = {{"rate", "m/s", {"rate"}, "rate", {""}}},
-          .parts = [](const Joint& joint) {
+          .parts = [](const kreisel::Joint& joint) {
             return JointParts{{LinkKind::prismatic, joint.axis, 1}};
           }};
 }

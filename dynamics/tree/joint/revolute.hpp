@@ -11,7 +11,7 @@ namespace kreisel::detail {
           .axis = JointType::Axis::required,
           .coordinates = {{"angle", "rad", {"angle"}, "angle", {""}}},
           .rates = {{"rate", "rad/s", {"rate"}, "rate", {""}}},
-          .parts = [](const Joint& joint) {
+          .parts = [](const kreisel::Joint& joint) {
             return JointParts{{LinkKind::revolute, joint.axis}};
           }};
 }

@@ -12,7 +12,7 @@ namespace kreisel::detail {
           .has_pitch = true,
           .coordinates = {{"angle", "rad", {"angle"}, "angle", {""}}},
           .rates = {{"rate", "rad/s", {"rate"}, "rate", {""}}},
-          .parts = [](const Joint& joint) {
+          .parts = [](const kreisel::Joint& joint) {
             return JointParts{{LinkKind::screw, joint.axis, joint.pitch}};
           }};
 }

@@ -29,7 +29,7 @@ namespace kreisel::detail {
           .name = "spherical",
           .coordinates = {joint_attitude()},
           .rates = {joint_angular_velocity()},
-          .parts = [](const Joint&) { return JointParts{{LinkKind::spherical}}; }};
+          .parts = [](const kreisel::Joint&) { return JointParts{{LinkKind::spherical}}; }};
 }
 
 }  // namespace kreisel::detail

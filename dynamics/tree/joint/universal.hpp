@@ -12,7 +12,7 @@ namespace kreisel::detail {
           .second_axis = JointType::Axis::required,
           .coordinates = {{"angle", "rad", {"angle 1", "angle 2"}, "angles", {"first", "second"}}},
           .rates = {{"rate", "rad/s", {"rate 1", "rate 2"}, "rates", {"first", "second"}}},
-          .parts = [](const Joint& joint) {
+          .parts = [](const kreisel::Joint& joint) {
             return JointParts{{LinkKind::revolute, joint.axis},
                               {LinkKind::revolute, joint.second_axis}};
           }};
