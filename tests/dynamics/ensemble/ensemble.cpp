@@ -258,7 +258,10 @@ BOOST_AUTO_TEST_CASE(stops_when_its_token_requests_it) {
     asked.stop = source.get_token();
     const auto result = ensemble(top, {.count = 400, .threads = threads}, make, asked);
     BOOST_TEST((result.status == RunStatus::cancelled));
-    BOOST_TEST((result.members.front().report.status == RunStatus::complete));
+    // Another thread may stop while the first member is computed.
+    if (threads == 1) {
+      BOOST_TEST((result.members.front().report.status == RunStatus::complete));
+    }
     BOOST_TEST((result.members[100].report.status == RunStatus::cancelled));
     BOOST_TEST((result.members.back().report.status == RunStatus::cancelled));
   }

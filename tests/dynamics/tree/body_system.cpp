@@ -433,10 +433,10 @@ BOOST_AUTO_TEST_CASE(is_refused_by_name_and_reason) {
   expect(with([](auto& c) { c.forces.resize(2); }), "body 'b': 2 joint forces for a joint of 1");
   expect(with([nan](auto& c) { c.forces = {{.rest = nan}}; }), "body 'b': a number of its joint");
   expect(with([](auto& c) {
-           c.joint.kind = JointKind::prismatic;
+           c.joint.kind = JointKind::spherical;
            c.rule = JointRule::constant_rate;
          }),
-         "body 'b': only a revolute joint");
+         "body 'b': only a revolute, prismatic or screw joint");
   expect(with([](auto& c) {
            c.joint.kind = JointKind::spherical;
            c.forces.resize(3, {.stiffness = 1});
