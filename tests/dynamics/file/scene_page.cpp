@@ -20,8 +20,11 @@
 
 #include <support/json.hpp>
 #include <support/program.hpp>
+#include <support/scene_text.hpp>
 
 using namespace kreisel;
+using test::mistakes;
+using test::scene;
 
 namespace {
 
@@ -40,17 +43,6 @@ std::string one(const std::string& keys, const std::string& rest = "") {
   return "[[body]]\nname = \"a\"\nmass = 2\n" +
          std::string(has_inertia ? "" : "inertia = [0.2, 0.25, 0.3]\n") + keys + "\n" + rest +
          "[solve]\nt_end = 1\noutput_times = [1]\n";
-}
-
-SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
-
-std::string mistakes(const std::string& text) {
-  try {
-    (void)scene(text);
-  } catch (const SceneMistakes& error) {
-    return error.what();
-  }
-  return "none";
 }
 
 test::Outcome simulate(const std::string& text, const std::string& options = "") {

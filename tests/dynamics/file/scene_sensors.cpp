@@ -12,7 +12,11 @@
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/guide/normal_gravity.hpp>
 
+#include <support/scene_text.hpp>
+
 using namespace kreisel;
+using test::mistakes;
+using test::scene;
 
 namespace {
 
@@ -30,17 +34,6 @@ std::string sensor(const std::string& keys) { return "[[sensor]]\nname = \"s\"\n
 /// One body with a point, and one sensor at line 7.
 std::string with(const std::string& keys) {
   return body("a", hinge + "points = { tip = [0, 0, 1.5] }") + sensor(keys) + run;
-}
-
-SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
-
-std::string mistakes(const std::string& text) {
-  try {
-    (void)scene(text);
-  } catch (const SceneMistakes& error) {
-    return error.what();
-  }
-  return "none";
 }
 
 void check_told(const std::vector<std::pair<std::string, std::string>>& cases) {
