@@ -36,7 +36,7 @@ std::vector<BodyDescription> crane() {
   return {{.name = "column",
            .joint = {.kind = JointKind::revolute, .axis = z},
            .inertia = bar(4000, 0, 3, {12000, 12000, 800}),
-           .rule = JointRule::constant_rate},
+           .rule = JointRule::driven},
           {.name = "jib",
            .parent = "column",
            .joint = {.kind = JointKind::revolute, .axis = y, .position = {0, 0, 6}},

@@ -56,8 +56,8 @@ void check_joints(const SceneFile& scene, const Refusal& refuse) {
     if (!rotor && body.rule != JointRule::forces) refuse(body, "has a drive");
     if (!rotor && body.rotor) refuse(body, "is a rotor that carries another");
     if (!body.loads.empty()) refuse(body, "has a load");
-    const bool regulated = body.rule == JointRule::constant_rate ||
-                           (body.rotor && body.rotor->mode == RotorMode::regulated);
+    const bool regulated =
+        body.rule == JointRule::driven || (body.rotor && body.rotor->mode == RotorMode::regulated);
     if (body.rotor && body.rotor->torque != 0) refuse(body, "is a rotor that a torque speeds up");
     for (const JointForce& force : body.forces) {
       if (!rotor && force.rest != 0) refuse(body, "has a spring that is not slack at 0");

@@ -39,7 +39,7 @@ Eigen::Vector3d place(const BodyTree& tree, int body, const JointState& state) {
 double drive_torque(const BodyTree& tree, int body, const JointReactions& reactions) {
   const BodyDescription& b = tree.body(body);
   const bool regulated = b.rotor && b.rotor->mode == RotorMode::regulated;
-  const bool driven = b.rule == JointRule::constant_rate || regulated;
+  const bool driven = b.rule == JointRule::driven || regulated;
   return driven ? reactions.drive[tree.place(body).v] : 0;
 }
 

@@ -594,7 +594,7 @@ class SceneReader {
     const std::optional<Drive> drive = read_drive(section, body);
     const bool held = section.flag("hold");
     if (drive && held) section.refuse("hold", "and 'drive' exclude each other");
-    if (drive) body.rule = JointRule::constant_rate;
+    if (drive) body.rule = JointRule::driven;
     if (held) body.rule = JointRule::held;
     JointStart start = read_start(section, body);
     if (drive) start_drive(section, *drive, body, start);
@@ -668,14 +668,17 @@ class SceneReader {
                           JointStart& start) {
     if (!drive.motion || start.coordinates.size() != 1) return;
     const Signal<double>& motion = *drive.motion;
-    const auto set = [&section](double& number, double value, const char* what) {
-      if (number != 0 && number != value) {
-        section.refuse("initial", std::string("gives another ") + what + " than 'drive' at t = 0");
+    auto initial = section.section("initial");
+    const auto set = [&](double& number, double value, const std::string& key) {
+      const bool is_given = initial && (initial->has(key) || initial->has(key + "_deg"));
+      if (is_given && number != value) {
+        initial->refuse(initial->has(key) ? key : key + "_deg", "differs from 'drive' at t = 0");
       }
       number = value;
     };
-    if (!drive.is_rate) set(start.coordinates.front(), motion(0.0), "position");
-    set(start.rates.front(), motion.derivative(0, drive.is_rate ? 0 : 1), "rate");
+    const JointType& type = joint_type(body.joint.kind);
+    if (!drive.is_rate) set(start.coordinates.front(), motion(0.0), type.coordinates[0].key);
+    set(start.rates.front(), motion.derivative(0, drive.is_rate ? 0 : 1), type.rates[0].key);
     const int order = drive.is_rate ? 1 : 2;
     if (!motion.is_constant()) {
       body.acceleration = [motion, order](double t) { return motion.derivative(t, order); };
@@ -936,7 +939,7 @@ class SceneReader {
   static void set_rotor(BodyDescription& body, const std::string& mode) {
     if (!body.loads.empty()) {
       // A load may depend on the rotor's angle, so the rotor is treated as an ordinary body.
-      if (mode == "regulated") body.rule = JointRule::constant_rate;
+      if (mode == "regulated") body.rule = JointRule::driven;
       return;
     }
     const bool turned = std::any_of(body.forces.begin(), body.forces.end(), [](const auto& f) {

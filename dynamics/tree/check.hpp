@@ -96,10 +96,10 @@ inline void check_forces(const BodyDescription& b) {
                   "take a load");
     }
   }
-  if (b.rule == JointRule::constant_rate && !type.can_be_driven()) {
+  if (b.rule == JointRule::driven && !type.can_be_driven()) {
     refuse_body(b.name, "only a revolute, prismatic or screw joint can be driven");
   }
-  if (b.acceleration && b.rule != JointRule::constant_rate) {
+  if (b.acceleration && b.rule != JointRule::driven) {
     refuse_body(b.name, "an acceleration is given, but no drive");
   }
 }

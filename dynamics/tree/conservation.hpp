@@ -116,8 +116,7 @@ enum class EnergyLaw {
     const auto takes = [has_attitude](const JointForce& f) {
       return f.damping != 0 || f.in_time || (has_attitude && f.constant != 0);
     };
-    return b.rule == JointRule::constant_rate ||
-           std::any_of(b.forces.begin(), b.forces.end(), takes) ||
+    return b.rule == JointRule::driven || std::any_of(b.forces.begin(), b.forces.end(), takes) ||
            !std::all_of(b.loads.begin(), b.loads.end(),
                         [](const BodyLoad& load) { return load.keeps_energy(); });
   });

@@ -34,9 +34,9 @@ struct JointForce {
 
 /// The rule for the motion in a joint.
 enum class JointRule {
-  forces,        ///< the forces on the bodies
-  held,          ///< locked in its position; its rates count as 0
-  constant_rate  ///< single coordinates only: a motor prescribes the motion, with any force
+  forces,  ///< the forces on the bodies
+  held,    ///< locked in its position; its rates count as 0
+  driven   ///< single coordinates only: a motor prescribes the motion, with any force
 };
 
 /// The rule for the spin of a rotor.
@@ -169,7 +169,7 @@ struct BodyDescription {
   InertiaTensor<Body> inertia = {};     ///< about the body's origin, which lies in the joint
   std::vector<JointForce> forces = {};  ///< one for each rate of the joint, or none
   JointRule rule = JointRule::forces;
-  /// Second derivative of the coordinate under JointRule::constant_rate; empty: 0.
+  /// Second derivative of the coordinate under JointRule::driven; empty: 0, a constant rate.
   std::function<double(double t)> acceleration = {};
   std::vector<BodyLoad> loads = {};
   std::optional<Rotor> rotor = std::nullopt;

@@ -7,8 +7,7 @@
 #include <motor/static_zero.hpp>
 
 /// The motions of the links of a tree. All vectors are on the GUIDE's axes, each link's about its
-/// own
-/// origin: then no rotations are needed between links, and inertias are only shifted.
+/// own origin: then no rotations are needed between links, and inertias are only shifted.
 
 namespace kreisel::detail {
 

@@ -123,7 +123,7 @@ bool has_potential(const kreisel::SceneFile& scene) {
     const bool is_pushed = kreisel::joint_type(body.joint.kind).has_attitude() &&
                            std::any_of(body.forces.begin(), body.forces.end(),
                                        [](const auto& force) { return force.constant != 0; });
-    const bool turns = body.rule == kreisel::JointRule::constant_rate;
+    const bool turns = body.rule == kreisel::JointRule::driven;
     const auto keeps = [](const auto& load) { return load.keeps_energy(); };
     return !is_pushed && !turns && std::all_of(body.loads.begin(), body.loads.end(), keeps);
   });
@@ -218,7 +218,7 @@ Eigen::Index speed_of(const kreisel::StudySystem& system, const std::string& nam
   const auto& b = tree.body(body);
   const bool turns = b.joint.kind == kreisel::JointKind::revolute &&
                      (b.rotor ? b.rotor->mode != kreisel::RotorMode::torque
-                              : b.rule == kreisel::JointRule::constant_rate);
+                              : b.rule == kreisel::JointRule::driven);
   if (!turns) {
     throw InvalidInput("--campbell: body '" + name +
                        "' is neither a free or regulated rotor nor driven at a constant rate");

@@ -61,7 +61,7 @@ inline std::vector<BodyDescription> random_tree(std::uint64_t seed) {
     b.inertia = random_inertia(sample);
     if (sample.once_in(2)) b.forces = random_forces(sample, kind);
     if (i > 0 && sample.once_in(6)) b.rule = JointRule::held;
-    if (kind == JointKind::revolute && sample.once_in(6)) b.rule = JointRule::constant_rate;
+    if (kind == JointKind::revolute && sample.once_in(6)) b.rule = JointRule::driven;
     bodies.push_back(b);
   }
   for (const RotorMode mode : {RotorMode::free, RotorMode::regulated, RotorMode::torque}) {

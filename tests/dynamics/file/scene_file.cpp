@@ -17,9 +17,12 @@
 #include <dynamics/tree/body_system.hpp>
 #include <dynamics/tree/joint/list.hpp>
 
+#include <support/scene_text.hpp>
 #include <support/scratch.hpp>
 
 using namespace kreisel;
+using test::mistakes;
+using test::scene;
 
 namespace {
 
@@ -35,17 +38,6 @@ const std::string orbit =
     "kind = \"orbit\"\nsemi_major_axis = 7e6\neccentricity = 0.1\ninclination = 1\nnode_deg = "
     "90\nperigee = 0.5\nanomaly = 2\n";
 const std::string run = "[solve]\nt_end = 4\n";
-
-SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
-
-std::string mistakes(const std::string& text) {
-  try {
-    (void)scene(text);
-  } catch (const SceneMistakes& error) {
-    return error.what();
-  }
-  return "none";
-}
 
 /// All kinds of joints, as listed in a message.
 std::string joint_names() {
@@ -454,9 +446,9 @@ BOOST_AUTO_TEST_CASE(may_be_rotors) {
   BOOST_TEST(loaded.bodies.at(0).forces.at(0).constant == 7);
   const auto kept = with("rotor = { mode = \"regulated\", speed = 3 }" + load);
   BOOST_TEST(!kept.bodies.at(0).rotor);
-  BOOST_TEST((kept.bodies.at(0).rule == JointRule::constant_rate));
+  BOOST_TEST((kept.bodies.at(0).rule == JointRule::driven));
   BOOST_TEST(kept.start.at(0).rates.at(0) == 3);
-  BOOST_TEST((with("drive = \"constant-rate\"").bodies.at(0).rule == JointRule::constant_rate));
+  BOOST_TEST((with("drive = \"constant-rate\"").bodies.at(0).rule == JointRule::driven));
   BOOST_TEST((with("hold = true").bodies.at(0).rule == JointRule::held));
 }
 

@@ -11,22 +11,15 @@
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_system.hpp>
 
+#include <support/scene_text.hpp>
+
 using namespace kreisel;
+using test::mistakes;
+using test::scene;
 
 namespace {
 
 const std::string run = "[solve]\nt_end = 4\n";
-
-SceneFile scene(const std::string& text) { return parse_scene(text, "s.toml"); }
-
-std::string mistakes(const std::string& text) {
-  try {
-    (void)scene(text);
-  } catch (const SceneMistakes& error) {
-    return error.what();
-  }
-  return "none";
-}
 
 /// A body in a joint, and other keys of it.
 std::string body(const std::string& keys,
@@ -130,7 +123,7 @@ BOOST_AUTO_TEST_CASE(drive_prescribes_angle_or_rate) {
   const std::string swing =
       body("drive = { angle = { terms = [{ amplitude = 0.3, frequency = 2, phase_deg = 90 }] } }");
   const SceneFile file = scene(swing);
-  BOOST_TEST((file.bodies[0].rule == JointRule::constant_rate));
+  BOOST_TEST((file.bodies[0].rule == JointRule::driven));
   BOOST_TEST(file.start[0].coordinates[0] == 0.3);
   BOOST_TEST(std::abs(file.bodies[0].acceleration(0.4) + 1.2 * std::cos(0.8)) <= 1e-15);
   BOOST_TEST(std::abs(end_rate(swing) + 0.6 * std::sin(8.0)) <= 1e-9);
@@ -244,7 +237,9 @@ BOOST_AUTO_TEST_CASE(mistakes_are_reported) {
        "s.toml:6:18: body 'a'.drive.rate: jumps, or its rate does, at t = 1 s, which takes an "
        "infinite force; give 'points'"},
       {body("initial = { angle = 1 }\ndrive = { angle = { constant = 2, rate = 1 } }"),
-       "s.toml:6:11: body 'a'.initial: gives another position than 'drive' at t = 0"},
+       "s.toml:6:21: body 'a'.initial.angle: differs from 'drive' at t = 0"},
+      {body("initial = { rate_deg = 0 }\ndrive = { rate = 1 }"),
+       "s.toml:6:24: body 'a'.initial.rate_deg: differs from 'drive' at t = 0"},
       {guide(""), "s.toml:1:1: guide.position: is missing"},
       {guide("position = { steps = [[1, [0, 0, 1]]] }"),
        "s.toml:3:12: guide.position: jumps, or its rate does, at t = 1 s, which takes an infinite "

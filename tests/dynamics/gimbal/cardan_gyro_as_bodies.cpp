@@ -56,7 +56,7 @@ BodySystem<M> as_bodies(const CardanMoments& m, const CardanBearings& b, const M
       described("outer ring", "guide", 0, m.outer_ring, spring(b.outer)),
       described("inner ring", "outer ring", 1, m.inner_ring, spring(b.inner)),
       described("rotor", "inner ring", 2, m.rotor, {0, 0, rotor.friction, torque_of(rotor)})};
-  if (std::is_same_v<Rotor, RegulatedRotor>) bodies[2].rule = JointRule::constant_rate;
+  if (std::is_same_v<Rotor, RegulatedRotor>) bodies[2].rule = JointRule::driven;
   return {guide, std::move(bodies)};
 }
 

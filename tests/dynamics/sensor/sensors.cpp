@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_SUITE(sensors_in_closed_form)
 // A body that rotates about a fixed axis: w, and w^2 r towards the axis.
 BOOST_AUTO_TEST_CASE(on_a_body_at_constant_rate) {
   auto wheel = described("wheel", "guide", {.kind = JointKind::revolute, .axis = z_axis});
-  wheel.rule = JointRule::constant_rate;
+  wheel.rule = JointRule::driven;
   const BodySystem<RestingFrame<>> system{RestingFrame<>{}, {wheel}};
   BodyWorkspace w = system.workspace();
   const double rate = 12.5, r = 0.75;

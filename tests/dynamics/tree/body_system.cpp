@@ -241,7 +241,7 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_a_quaternions_norm) {
 BOOST_AUTO_TEST_CASE(reports_the_torque_of_a_constant_rate) {
   auto frame = described("frame", "guide", revolute(x_axis), some_body());
   auto rotor = described("rotor", "frame", revolute(y_axis, {0.1, 0, 0}), some_body());
-  rotor.rule = JointRule::constant_rate;
+  rotor.rule = JointRule::driven;
   rotor.forces = {{.damping = 0.5}};
   const auto system = resting({frame, rotor}, UniformGravity<Guide>{{0, 0, -9}});
   BodyWorkspace w = system.workspace();
@@ -434,7 +434,7 @@ BOOST_AUTO_TEST_CASE(is_refused_by_name_and_reason) {
   expect(with([nan](auto& c) { c.forces = {{.rest = nan}}; }), "body 'b': a number of its joint");
   expect(with([](auto& c) {
            c.joint.kind = JointKind::spherical;
-           c.rule = JointRule::constant_rate;
+           c.rule = JointRule::driven;
          }),
          "body 'b': only a revolute, prismatic or screw joint");
   expect(with([](auto& c) {
@@ -570,7 +570,7 @@ BOOST_AUTO_TEST_CASE(lose_energy_on_a_moving_guide_or_with_a_motor) {
   const UniformGravity<Guide> gravity{z_axis};
   BOOST_TEST(keeps_energy(resting(mobile(0), gravity)));
   auto bodies = mobile(0);
-  bodies[1].rule = JointRule::constant_rate;
+  bodies[1].rule = JointRule::driven;
   BOOST_TEST(!keeps_energy(resting(bodies, gravity)));
   BOOST_TEST(!keeps_energy(resting(mobile(0.1), gravity)));
 }
@@ -658,7 +658,7 @@ BOOST_AUTO_TEST_CASE(close_their_balances_on_a_moving_guide) {
   auto bodies = mobile(0.3);
   bodies[0].joint = {.kind = JointKind::universal, .axis = x_axis, .second_axis = y_axis};
   bodies[0].forces = {{.stiffness = 5}, {.damping = 0.2}};
-  bodies[1].rule = JointRule::constant_rate;
+  bodies[1].rule = JointRule::driven;
   const RotatingFrame<> turns_and_brakes{.angular_velocity = {0.5, -0.75, 1},
                                          .origin_acceleration = {1, 2, -3},
                                          .origin_velocity = {3, 1, 2}};

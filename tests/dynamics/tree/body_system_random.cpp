@@ -373,7 +373,7 @@ struct RandomSystem {
       b.inertia = InertiaTensor<Body>::about_centre(mass, vec(sample.uniform(0, 0.5)), tensor);
       if (sample.once_in(8)) b.rule = JointRule::held;
       if (b.joint.kind == JointKind::revolute && sample.once_in(4)) {
-        b.rule = JointRule::constant_rate;
+        b.rule = JointRule::driven;
       }
       if (sample.once_in(2)) {
         const JointType& type = joint_type(b.joint.kind);

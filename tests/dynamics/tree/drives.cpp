@@ -35,7 +35,7 @@ BodyDescription body(const std::string& name, const std::string& parent, const J
 
 /// Prescribes the coordinate of a joint.
 void drive(BodyDescription& b, const Signal<double>& motion) {
-  b.rule = JointRule::constant_rate;
+  b.rule = JointRule::driven;
   b.acceleration = [motion](double t) { return motion.derivative(t, 2); };
 }
 
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(accelerations_need_a_drive) {
            std::string::npos;
   });
   BodyDescription ball = body("a", "guide", {.kind = JointKind::spherical});
-  ball.rule = JointRule::constant_rate;
+  ball.rule = JointRule::driven;
   BOOST_CHECK_THROW(BodyTree({ball}), InvalidInput);
 }
 

@@ -305,7 +305,7 @@ BOOST_AUTO_TEST_CASE(loses_no_digits_at_1e6_rad_per_second) {
         Matrix3<double>(A * Matrix3<double>::Identity() + (C - A) * e * e.transpose()));
     if (!rotor) {
       bodies[2].rotor.reset();
-      bodies[2].rule = JointRule::constant_rate;
+      bodies[2].rule = JointRule::driven;
     }
     const auto system = resting(bodies);
     BodyWorkspace w = system.workspace();
@@ -441,7 +441,7 @@ BOOST_AUTO_TEST_CASE(refuses_invalid_rotors) {
       "not symmetric");
   refuses([&](auto& b) { b[1].inertia = shape({0, 0, 0}, {0, 0, 0}); }, "no moment of inertia");
   refuses([](auto& b) { b[1].joint.kind = JointKind::prismatic; }, "no revolute joint");
-  refuses([](auto& b) { b[1].rule = JointRule::constant_rate; }, "held or driven");
+  refuses([](auto& b) { b[1].rule = JointRule::driven; }, "held or driven");
   refuses([](auto& b) { b[1].forces = {{.stiffness = 1}}; }, "spring");
   refuses([](auto& b) { b[1].forces = {{.damping = 1}}; }, "momentum of a free one");
   refuses([](auto& b) { b[1].rotor->torque = 1; }, "mode torque");

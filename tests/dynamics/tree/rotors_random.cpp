@@ -90,7 +90,7 @@ struct RandomRotors {
                 .asDiagonal());
         if (sample.once_in(8)) b.rule = JointRule::held;
         if (b.joint.kind == JointKind::revolute && sample.once_in(6)) {
-          b.rule = JointRule::constant_rate;
+          b.rule = JointRule::driven;
         }
         if (sample.once_in(3)) {
           b.loads.emplace_back(ConstantLoad<Body>{.force = vec(3), .torque = vec(2)});
@@ -119,7 +119,7 @@ struct RandomRotors {
           b.rotor->torque = sample.uniform(-2, 2);
           plain.forces[0].constant += b.rotor->torque;
         }
-        if (mode == RotorMode::regulated) plain.rule = JointRule::constant_rate;
+        if (mode == RotorMode::regulated) plain.rule = JointRule::driven;
         --left;
       } else {
         ++made;
