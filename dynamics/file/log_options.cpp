@@ -101,7 +101,7 @@ void read_time_zero(Section& section, LogOptions& options) {
     }
   } else if (const auto* const whole = node->as_integer()) {
     options.time_zero = std::to_string(whole->get());
-  } else if (const auto number = section.number("time_zero")) {
+  } else if (const auto number = section.number("time_zero", dimension::time)) {
     options.time_zero = shortest(*number);
   }
 }
@@ -116,16 +116,16 @@ void read_time(Section& section, LogOptions& options) {
                                        : LogTimeUnit::s;
   }
   read_time_zero(section, options);
-  if (const auto window = section.numbers("window", 2)) {
+  if (const auto window = section.numbers("window", 2, dimension::time)) {
     options.window = {(*window)[0], (*window)[1]};
     if (!((*window)[0] < (*window)[1])) section.refuse("window", "must increase: [from, to]");
   }
   const toml::node* const gap = section.find("longest_gap");
-  if (gap != nullptr && gap->is_string()) {
+  if (gap != nullptr && gap->is_string() && !section.has_number("longest_gap")) {
     (void)section.choice("longest_gap", {"any"});
     options.longest_gap = std::numeric_limits<double>::infinity();
   } else {
-    options.longest_gap = section.number("longest_gap", Range::positive);
+    options.longest_gap = section.number("longest_gap", dimension::time, Range::positive);
   }
   const std::string duplicates = section.choice("duplicates", {"error", "first", "last", "mean"});
   options.duplicates = duplicates == "first"  ? LogDuplicates::first

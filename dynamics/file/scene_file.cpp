@@ -23,11 +23,36 @@ namespace kreisel {
 
 namespace {
 
+using detail::Dimension;
+using detail::KeyDimension;
 using detail::Mistakes;
 using detail::Range;
 using detail::Section;
+namespace dimension = detail::dimension;
 
 constexpr std::size_t most_outputs = 10'000'000;
+
+/// The dimension of each number.
+std::vector<Dimension> dimensions(const std::vector<JointQuantity>& quantities) {
+  std::vector<Dimension> result;
+  for (const JointQuantity& quantity : quantities) {
+    result.insert(result.end(), static_cast<std::size_t>(quantity.count()),
+                  detail::dimension_of(quantity.unit));
+  }
+  return result;
+}
+
+/// The dimension of the joint force that moves a quantity of this dimension.
+Dimension joint_force(const Dimension& moved) {
+  return moved.angle == 0 ? dimension::force : dimension::torque;
+}
+
+/// The dimensions of stiffness or damping: joint forces per unit of the quantities.
+std::vector<Dimension> forces_by(const std::vector<JointQuantity>& quantities) {
+  std::vector<Dimension> result = dimensions(quantities);
+  for (Dimension& of : result) of = joint_force(of) / of;
+  return result;
+}
 
 Vector3<double> three(const std::vector<double>& x) { return {x[0], x[1], x[2]}; }
 
@@ -72,12 +97,13 @@ class SceneReader {
       return;
     }
     if (request_.t_end) {
-      [[maybe_unused]] const auto overruled = solve->number("t_end", Range::positive);
+      [[maybe_unused]] const auto overruled =
+          solve->number("t_end", dimension::time, Range::positive);
       scene_.t_end = *request_.t_end;
     } else {
-      scene_.t_end = solve->required_number("t_end", Range::positive);
+      scene_.t_end = solve->required_number("t_end", dimension::time, Range::positive);
     }
-    if (const auto tolerance = solve->number("tolerance")) {
+    if (const auto tolerance = solve->number("tolerance", dimension::number)) {
       if (*tolerance >= 1e-15 && *tolerance <= 1e-2) {
         scene_.tolerance = *tolerance;
       } else {
@@ -90,8 +116,8 @@ class SceneReader {
                                  "radau13", "splitting", "taylor"});
     scene_.method = request_.method.value_or(*method_named(method));
     read_model(*solve);
-    const auto step = solve->number("output_step", Range::positive);
-    const auto times = solve->numbers("output_times");
+    const auto step = solve->number("output_step", dimension::time, Range::positive);
+    const auto times = solve->numbers("output_times", dimension::time);
     if (step && times) {
       solve->refuse("output_times", "is given beside 'output_step'; one of them says when");
     }
@@ -185,18 +211,20 @@ class SceneReader {
       if (!guide.has("angular_velocity") && !guide.has("angular_velocity_deg")) {
         guide.refuse_missing("angular_velocity");
       }
-      const auto turning = guide.angles("angular_velocity", 3);
+      const auto turning = guide.angles("angular_velocity", 3, dimension::angular_rate);
       scene_.guide.emplace_back(scene_guide::Rotating{
           turning ? three(*turning) : Vector3<double>(Vector3<double>::UnitX()),
-          guide.vector("origin_acceleration").value_or(Vector3<double>::Zero()),
+          guide.vector("origin_acceleration", dimension::acceleration)
+              .value_or(Vector3<double>::Zero()),
           read_frame_start(guide)});
     }
     if (kind == "harmonic") {
       const bool turns = guide.has("angular_velocity") || guide.has("angular_velocity_deg");
       if (!turns && !guide.has("origin_acceleration")) guide.refuse_missing("angular_velocity");
       scene_guide::Harmonic link;
-      link.angular_velocity = read_angular_series(guide, "angular_velocity");
-      link.origin_acceleration = read_series(guide, "origin_acceleration");
+      link.angular_velocity =
+          read_angular_series(guide, "angular_velocity", dimension::angular_rate);
+      link.origin_acceleration = read_series(guide, "origin_acceleration", dimension::acceleration);
       link.start = read_frame_start(guide);
       check_length(guide, link);
       scene_.guide.emplace_back(std::move(link));
@@ -222,16 +250,21 @@ class SceneReader {
     guide.finish();
   }
 
-  static HarmonicSeries<double> read_series(Section& guide, std::string_view key) {
+  static HarmonicSeries<double> read_series(Section& guide, std::string_view key,
+                                            const KeyDimension& of) {
     HarmonicSeries<double> series;
     auto section = guide.section(key);
     if (!section) return series;
-    series.constant = section->vector("constant").value_or(Vector3<double>::Zero());
+    series.constant =
+        three(section->numbers("constant", 3, of).value_or(std::vector<double>(3, 0)));
     for (Section& term : section->sections("terms")) {
-      const Vector3<double> amplitude = term.required_vector("amplitude");
-      const auto frequency = term.angle("frequency");
+      if (!term.has("amplitude")) term.refuse_missing("amplitude");
+      const auto amplitude = term.numbers("amplitude", 3, of);
+      const auto frequency = term.angle("frequency", dimension::angular_rate);
       if (!term.has("frequency") && !term.has("frequency_deg")) term.refuse_missing("frequency");
-      series.terms.push_back({amplitude, frequency.value_or(1), term.angle("phase").value_or(0)});
+      series.terms.push_back({amplitude ? three(*amplitude) : Vector3<double>::UnitX(),
+                              frequency.value_or(1),
+                              term.angle("phase", dimension::angle).value_or(0)});
       term.finish();
     }
     section->finish();
@@ -239,11 +272,12 @@ class SceneReader {
   }
 
   /// Reads a series in radian, or in degrees if the key ends in _deg.
-  static HarmonicSeries<double> read_angular_series(Section& guide, const std::string& key) {
+  static HarmonicSeries<double> read_angular_series(Section& guide, const std::string& key,
+                                                    const Dimension& of) {
     const std::string in_degrees = key + "_deg";
-    if (!guide.has(in_degrees)) return read_series(guide, key);
+    if (!guide.has(in_degrees)) return read_series(guide, key, of);
     if (guide.has(key)) guide.refuse(in_degrees, "is given in radian too, as '" + key + "'");
-    HarmonicSeries<double> series = read_series(guide, in_degrees);
+    HarmonicSeries<double> series = read_series(guide, in_degrees, std::nullopt);
     series.constant *= detail::radian_per_degree;
     for (auto& term : series.terms) term.amplitude *= detail::radian_per_degree;
     return series;
@@ -269,24 +303,25 @@ class SceneReader {
   static scene_guide::Start read_frame_start(Section& guide) {
     const Vector3<double> zero = Vector3<double>::Zero();
     return {quaternion(guide, "attitude").value_or(Eigen::Quaterniond::Identity()),
-            guide.vector("origin_position").value_or(zero),
-            guide.vector("origin_velocity").value_or(zero)};
+            guide.vector("origin_position", dimension::length).value_or(zero),
+            guide.vector("origin_velocity", dimension::velocity).value_or(zero)};
   }
 
   void read_earth(Section& guide) {
     scene_guide::Earth link;
-    link.site.latitude = guide.required_number("latitude_deg");
-    link.site.height = guide.required_number("height");
-    link.site.azimuth = guide.required_number("azimuth_deg");
-    link.site.rotation_rate = guide.angle("rate").value_or(link.site.rotation_rate);
+    link.site.latitude = guide.required_number("latitude_deg", std::nullopt);
+    link.site.height = guide.required_number("height", dimension::length);
+    link.site.azimuth = guide.required_number("azimuth_deg", std::nullopt);
+    link.site.rotation_rate =
+        guide.angle("rate", dimension::angular_rate).value_or(link.site.rotation_rate);
     if (!scene_.guide.empty()) {
       guide.refuse("kind",
                    "'earth' must be the first link: the earth moves against no frame but "
                    "the inertial one");
     }
     const toml::node* const gravity = guide.find("gravity");
-    if (gravity != nullptr && gravity->is_number()) {
-      link.gravity = guide.number("gravity", Range::positive);
+    if (guide.has_number("gravity")) {
+      link.gravity = guide.number("gravity", dimension::acceleration, Range::positive);
       if (link.gravity) site_gravity_ = scene_gravity::AtSite{*link.gravity};
     } else if (gravity != nullptr && guide.choice("gravity", {"normal", "none"}) == "normal") {
       site_gravity_ = scene_gravity::Ellipsoid{};
@@ -318,11 +353,14 @@ class SceneReader {
       to = *signal;
     };
     if (!guide.has("position") && !guide.has("angles")) guide.refuse_missing("position");
-    take(guide, "position", detail::read_signal<Vector3<double>>(guide, "position"), pose.position);
+    take(guide, "position",
+         detail::read_signal<Vector3<double>>(guide, "position", dimension::length), pose.position);
     if (auto angles = guide.section("angles")) {
-      take(*angles, "yaw", detail::read_angle_signal(*angles, "yaw"), pose.yaw);
-      take(*angles, "pitch", detail::read_angle_signal(*angles, "pitch"), pose.pitch);
-      take(*angles, "roll", detail::read_angle_signal(*angles, "roll"), pose.roll);
+      take(*angles, "yaw", detail::read_angle_signal(*angles, "yaw", dimension::angle), pose.yaw);
+      take(*angles, "pitch", detail::read_angle_signal(*angles, "pitch", dimension::angle),
+           pose.pitch);
+      take(*angles, "roll", detail::read_angle_signal(*angles, "roll", dimension::angle),
+           pose.roll);
       angles->finish();
     }
     scene_.guide.emplace_back(scene_guide::Motion{std::move(pose)});
@@ -335,16 +373,18 @@ class SceneReader {
                    "inertially");
     }
     OrbitElements<> orbit;
-    orbit.semi_major_axis = guide.required_number("semi_major_axis", Range::positive);
-    orbit.eccentricity = guide.number("eccentricity").value_or(0);
+    orbit.semi_major_axis =
+        guide.required_number("semi_major_axis", dimension::length, Range::positive);
+    orbit.eccentricity = guide.number("eccentricity", dimension::number).value_or(0);
     if (!(orbit.eccentricity >= 0 && orbit.eccentricity < 1)) {
       guide.refuse("eccentricity", "must be from 0 to below 1: an orbit is an ellipse");
     }
-    orbit.inclination = guide.angle("inclination").value_or(0);
-    orbit.node = guide.angle("node").value_or(0);
-    orbit.perigee = guide.angle("perigee").value_or(0);
-    orbit.anomaly = guide.angle("anomaly").value_or(0);
-    orbit.parameter = guide.number("mu", Range::positive).value_or(orbit.parameter);
+    orbit.inclination = guide.angle("inclination", dimension::angle).value_or(0);
+    orbit.node = guide.angle("node", dimension::angle).value_or(0);
+    orbit.perigee = guide.angle("perigee", dimension::angle).value_or(0);
+    orbit.anomaly = guide.angle("anomaly", dimension::angle).value_or(0);
+    orbit.parameter =
+        guide.number("mu", dimension::gravitation, Range::positive).value_or(orbit.parameter);
     if (guide.flag("j2")) orbit.j2 = OblateGravitation<>{}.j2;
     scene_.guide.emplace_back(scene_guide::Orbit{orbit});
   }
@@ -374,7 +414,7 @@ class SceneReader {
     try {
       MotionLog<double> log = read_motion_log(place->file, place->options).motion;
       check_covers_run(guide, place->name, place->options, log.times);
-      const LogSpline spline = read_smoothing(guide, log);
+      const LogSpline spline = read_smoothing(guide, log, {dimension::number, dimension::length});
       scene_.guide.emplace_back(scene_guide::Table{place->file, std::move(log), spline});
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
@@ -389,10 +429,10 @@ class SceneReader {
     }
     RatesStart start;
     start.attitude = quaternion(guide, "attitude").value_or(start.attitude);
-    start.velocity = guide.vector("origin_velocity").value_or(start.velocity);
+    start.velocity = guide.vector("origin_velocity", dimension::velocity).value_or(start.velocity);
     const bool felt =
         guide.choice("acceleration", {"specific force", "kinematic"}) == "specific force";
-    const auto gravity = guide.vector("gravity");
+    const auto gravity = guide.vector("gravity", dimension::acceleration);
     start.gravity = gravity.value_or(start.gravity);
     if (!felt && guide.has("gravity")) {
       guide.refuse("gravity", "is for acceleration = 'specific force'");
@@ -411,7 +451,8 @@ class SceneReader {
         rates_without_gravity_ = guide;
       }
       const RatesFrame<> checked(log, start);
-      const LogSpline spline = read_smoothing(guide, log);
+      const LogSpline spline =
+          read_smoothing(guide, log, {dimension::angular_rate, dimension::acceleration});
       scene_.guide.emplace_back(scene_guide::Rates{place->file, std::move(log), start, spline});
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
@@ -471,15 +512,15 @@ class SceneReader {
            "time_zero = \"first\"";
   }
 
-  /// The smoothing spline of a log. The noise is `sigma`: one number, or one each for attitude and
-  /// position (of a log of rates for angular rates and accelerations). Without `sigma` it is
-  /// estimated from the log.
+  /// The smoothing spline of a log of two quantities, attitude and position or angular rate and
+  /// acceleration, of the dimensions `of`. The noise is `sigma`: one number, or one for each
+  /// quantity. Without `sigma` it is estimated from the log.
   template <class Log>
-  static LogSpline read_smoothing(Section& guide, const Log& log) {
+  static LogSpline read_smoothing(Section& guide, const Log& log,
+                                  const std::vector<Dimension>& of) {
     LogNoise::Components sigma;
     if (guide.has("sigma")) {
-      const auto given =
-          guide.find("sigma")->is_array() ? guide.numbers("sigma", 2) : guide.single("sigma");
+      const auto given = guide.number_or_list("sigma", of);
       if (!given) return {};
       if (*std::min_element(given->begin(), given->end()) < 0) {
         guide.refuse("sigma", "must not be below 0");
@@ -505,10 +546,12 @@ class SceneReader {
         gravity->choice("kind", {"none", "uniform", "inertial", "earth", "point", "j2", "orbit"});
     if (gravity->has("kind") && gravity->text("kind").value_or("") != kind) gravity->ignore_rest();
     if (kind == "uniform") {
-      scene_.gravity = UniformGravity<Guide>{gravity->required_vector("vector")};
+      scene_.gravity =
+          UniformGravity<Guide>{gravity->required_vector("vector", dimension::acceleration)};
     }
     if (kind == "inertial") {
-      scene_.gravity = UniformGravity<Inertial>{gravity->required_vector("vector")};
+      scene_.gravity =
+          UniformGravity<Inertial>{gravity->required_vector("vector", dimension::acceleration)};
     }
     const bool on_earth =
         !scene_.guide.empty() && std::holds_alternative<scene_guide::Earth>(scene_.guide.front());
@@ -544,11 +587,12 @@ class SceneReader {
 
   static OblateGravitation<> read_planet(Section& gravity, bool oblate) {
     OblateGravitation<> planet;
-    planet.parameter = gravity.required_number("mu", Range::positive);
-    planet.j2 = oblate ? gravity.required_number("j2") : 0;
-    if (oblate) planet.radius = gravity.required_number("radius", Range::positive);
-    planet.centre = gravity.vector("centre").value_or(planet.centre);
-    if (const auto pole = oblate ? gravity.vector("pole") : std::nullopt) {
+    planet.parameter = gravity.required_number("mu", dimension::gravitation, Range::positive);
+    planet.j2 = oblate ? gravity.required_number("j2", dimension::number) : 0;
+    if (oblate)
+      planet.radius = gravity.required_number("radius", dimension::length, Range::positive);
+    planet.centre = gravity.vector("centre", dimension::length).value_or(planet.centre);
+    if (const auto pole = oblate ? gravity.vector("pole", dimension::number) : std::nullopt) {
       if (pole->isZero(0)) gravity.refuse("pole", "is 0 and has no direction");
       planet.pole = pole->normalized();
     }
@@ -641,8 +685,10 @@ class SceneReader {
       }
       drive.key = section.has(key) ? key : key + "_deg";
       drive.is_rate = key == "rate";
-      drive.motion = kind == JointKind::prismatic ? detail::read_signal<double>(section, key)
-                                                  : detail::read_angle_signal(section, key);
+      const JointType& type = joint_type(kind);
+      const Dimension of = dimensions(drive.is_rate ? type.rates : type.coordinates).front();
+      drive.motion = kind == JointKind::prismatic ? detail::read_signal<double>(section, key, of)
+                                                  : detail::read_angle_signal(section, key, of);
       if (drive.motion) check_drive(section, drive);
     }
     if (drive.key.empty()) {
@@ -734,13 +780,13 @@ class SceneReader {
     const auto axis = [&section](std::string_view key, JointType::Axis need, Vector3<double>& a) {
       const bool optional = need == JointType::Axis::optional && section.has(key);
       if (need != JointType::Axis::required && !optional) return false;
-      a = section.required_vector(key);
+      a = section.required_vector(key, dimension::number);
       if (!(a.norm() > 0)) section.refuse(key, "is 0 and has no direction");
       return true;
     };
     axis("axis", type.axis, joint.axis);
     if (type.has_pitch) {
-      joint.pitch = section.required_number("pitch");
+      joint.pitch = section.required_number("pitch", dimension::length / dimension::angle);
       if (joint.pitch == 0 && section.has("pitch")) {
         section.refuse("pitch", "is 0: the joint does not advance; take 'revolute'");
       }
@@ -760,7 +806,8 @@ class SceneReader {
     for (const JointType& type : joint_types()) {
       if (type.name == kind) read_axes(*section, type, joint);
     }
-    joint.position = section->vector("position").value_or(Vector3<double>::Zero());
+    joint.position =
+        section->vector("position", dimension::length).value_or(Vector3<double>::Zero());
     joint.orientation =
         quaternion(*section, "orientation").value_or(Eigen::Quaterniond::Identity());
     if (section->text("kind").value_or("") != kind) return {};
@@ -769,10 +816,11 @@ class SceneReader {
   }
 
   static void read_inertia(Section& section, BodyDescription& body) {
-    const double mass = section.required_number("mass", Range::not_negative);
-    const Vector3<double> centre = section.vector("centre").value_or(Vector3<double>::Zero());
+    const double mass = section.required_number("mass", dimension::mass, Range::not_negative);
+    const Vector3<double> centre =
+        section.vector("centre", dimension::length).value_or(Vector3<double>::Zero());
     if (!section.has("inertia")) section.refuse_missing("inertia");
-    const auto numbers = section.numbers("inertia");
+    const auto numbers = section.numbers("inertia", dimension::inertia);
     if (!numbers) return;
     if (numbers->size() != 3 && numbers->size() != 6) {
       section.refuse("inertia", "must be 3 numbers, or 6 (xx, yy, zz, xy, xz, yz), not " +
@@ -790,8 +838,10 @@ class SceneReader {
     }
   }
 
-  void read_given_forces(Section& section, std::vector<JointForce>& forces) {
-    const auto signals = detail::read_signals(section, "force", forces.size());
+  void read_given_forces(Section& section, const JointType& type, std::vector<JointForce>& forces) {
+    std::vector<Dimension> each = dimensions(type.coordinates);
+    for (Dimension& of : each) of = joint_force(of);
+    const auto signals = detail::read_signals(section, "force", each);
     for (std::size_t k = 0; k < signals.size(); ++k) {
       note(signals[k]);
       if (signals[k].is_constant()) {
@@ -813,9 +863,6 @@ class SceneReader {
         forces[k].*part = (*from)[from->size() == 1 ? 0 : k];
       }
     };
-    const auto values = [n, &type](Section& from, const std::string& key) {
-      return from.number_or_list(key, type.has_attitude() ? 1 : n);
-    };
     if (type.rates.empty() || (type.has_attitude() && type.rates.size() > 1)) {
       for (const char* const key : {"spring", "damping", "force"}) {
         if (section.has(key)) section.refuse(key, "has no single coordinate in this kind of joint");
@@ -830,16 +877,20 @@ class SceneReader {
       }
     } else {
       if (auto spring = section.section("spring")) {
-        set(&JointForce::stiffness, values(*spring, "stiffness"));
+        set(&JointForce::stiffness,
+            spring->number_or_list("stiffness", forces_by(type.coordinates)));
         if (!spring->has("stiffness")) spring->refuse_missing("stiffness");
         const bool slides = std::any_of(type.coordinates.begin(), type.coordinates.end(),
                                         [](const auto& quantity) { return quantity.unit == "m"; });
-        set(&JointForce::rest, slides ? values(*spring, "rest") : spring->angle_or_list("rest", n));
+        set(&JointForce::rest, slides ? spring->number_or_list("rest", dimensions(type.coordinates))
+                                      : spring->angle_or_list("rest", n, dimension::angle));
         spring->finish();
       }
-      read_given_forces(section, forces);
+      read_given_forces(section, type, forces);
     }
-    const auto damping = values(section, "damping");
+    std::vector<Dimension> per_rate = forces_by(type.rates);
+    if (type.has_attitude()) per_rate.resize(1);
+    const auto damping = section.number_or_list("damping", per_rate);
     if (damping && *std::min_element(damping->begin(), damping->end()) < 0) {
       section.refuse("damping", "must not be below 0");
     }
@@ -880,9 +931,10 @@ class SceneReader {
       return;
     }
     const bool turns = quantity.unit == "rad" || quantity.unit == "rad/s";
-    auto numbers = turns        ? initial.angles(quantity.key, count)
-                   : count == 1 ? initial.single(quantity.key)
-                                : initial.numbers(quantity.key, count);
+    const Dimension of = detail::dimension_of(quantity.unit);
+    auto numbers = turns        ? initial.angles(quantity.key, count, of)
+                   : count == 1 ? initial.single(quantity.key, of)
+                                : initial.numbers(quantity.key, count, of);
     if (!numbers) return;
     if (quantity.meaning == JointQuantity::Meaning::place) {
       for (std::size_t k = 0; k < 3; ++k) (*numbers)[k] -= joint.position[Eigen::Index(k)];
@@ -894,8 +946,8 @@ class SceneReader {
     auto rotor = section.section("rotor");
     if (!rotor) return;
     const std::string mode = rotor->required_choice("mode", {"free", "regulated", "torque"});
-    const auto speed = detail::read_angle_signal(*rotor, "speed");
-    const auto torque = detail::read_signal<double>(*rotor, "torque");
+    const auto speed = detail::read_angle_signal(*rotor, "speed", dimension::angular_rate);
+    const auto torque = detail::read_signal<double>(*rotor, "torque", dimension::torque);
     rotor->finish();
     if (body.joint.kind != JointKind::revolute) {
       section.refuse("rotor", "is for a revolute joint");
@@ -1007,9 +1059,11 @@ class SceneReader {
     for (Section& load : loads) {
       if (!load.has("force") && !load.has("torque")) load.refuse_missing("force");
       const Vector3<double> zero = Vector3<double>::Zero();
-      const auto force = detail::read_signal<Vector3<double>>(load, "force").value_or(zero);
-      const auto torque = detail::read_signal<Vector3<double>>(load, "torque").value_or(zero);
-      const Vector3<double> point = load.vector("point").value_or(zero);
+      const auto force =
+          detail::read_signal<Vector3<double>>(load, "force", dimension::force).value_or(zero);
+      const auto torque =
+          detail::read_signal<Vector3<double>>(load, "torque", dimension::torque).value_or(zero);
+      const Vector3<double> point = load.vector("point", dimension::length).value_or(zero);
       const std::string axes = load.choice("axes", {"body", "guide", "inertial"});
       load.finish();
       if (axes == "body") add_load<Body>(body, force, torque, point);

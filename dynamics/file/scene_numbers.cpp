@@ -78,6 +78,22 @@ const toml::node& find(const toml::table& root, const std::string& key) {
   return *node;
 }
 
+/// The value of a number, or of a text with a unit on one line.
+double value_of(const toml::node& node, const std::string& key) {
+  if (const auto value = node.value<double>()) return *value;
+  const auto* const text = node.as_string();
+  const auto& [begin, end] = std::pair(node.source().begin, node.source().end);
+  const bool is_plain = text != nullptr && detail::begins_with_number(text->get()) &&
+                        begin.line == end.line &&
+                        end.column - begin.column == text->get().size() + 2;
+  if (!is_plain) throw InvalidInput(key + ": is no number");
+  try {
+    return detail::value_with_unit(text->get());
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(key + ": " + error.what());
+  }
+}
+
 /// The byte offset of a position of toml++, which counts UTF-8 characters.
 std::size_t offset(std::string_view text, const toml::source_position& position) {
   std::size_t at = 0;
@@ -101,11 +117,11 @@ SceneNumbers::SceneNumbers(std::string text, const std::vector<std::string>& key
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const toml::node& node = find(root, keys[i]);
-    const auto value = node.value<double>();
-    if (!value) throw InvalidInput(keys[i] + ": is no number");
-    values_.push_back(*value);
+    values_.push_back(value_of(node, keys[i]));
     const std::size_t begin = offset(text_, node.source().begin);
-    const std::size_t end = text_.find_first_of(" \t\r\n,]}#", begin);
+    const bool is_quoted = node.is_string();
+    const std::size_t end = is_quoted ? text_.find(text_[begin], begin + 1) + 1
+                                      : text_.find_first_of(" \t\r\n,]}#", begin);
     places_.push_back({begin, std::min(end, text_.size()), i});
   }
   std::sort(places_.begin(), places_.end(),

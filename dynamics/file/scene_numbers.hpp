@@ -13,6 +13,7 @@ namespace kreisel {
 ///
 /// A number is named by the path of its keys. Tables in a list are selected by name or by index:
 /// body.rotor.inertia[2], gravity.vector[2], guide.links[1].rate
+/// The value of a text with a unit is in SI units and radian. Another value replaces the whole text.
 class SceneNumbers {
  public:
   /// Throws : InvalidInput if the text is no TOML, or if a key does not lead to a number

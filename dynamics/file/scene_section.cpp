@@ -73,6 +73,10 @@ void Mistakes::throw_any() const {
     return a.where.line != b.where.line ? a.where.line < b.where.line
                                         : a.where.column < b.where.column;
   });
+  const auto last = std::unique(sorted.begin(), sorted.end(), [](const auto& x, const auto& y) {
+    return x.where == y.where && x.text == y.text;
+  });
+  sorted.erase(last, sorted.end());
   std::ostringstream all;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     // The root has no position.
@@ -124,8 +128,13 @@ void Section::refuse_all(std::string_view reason) {
 
 void Section::refuse_missing(std::string_view key) { refuse(key, "is missing"); }
 
+bool Section::has_number(std::string_view key) {
+  const toml::node* const node = find(key);
+  return node != nullptr && (node->is_number() || begins_with_number(peek(key)));
+}
+
 std::optional<double> Section::number_in(const toml::node& node, const std::string& key,
-                                         Range range) {
+                                         const KeyDimension& of, Range range) {
   const auto refuse_it = [&](const std::string& reason) {
     mistakes_->add(node.source(), key, reason);
     return std::nullopt;
@@ -135,6 +144,13 @@ std::optional<double> Section::number_in(const toml::node& node, const std::stri
     value = static_cast<double>(whole->get());
   } else if (const auto* const real = node.as_floating_point()) {
     value = real->get();
+  } else if (const auto* const text = node.as_string();
+             text != nullptr && begins_with_number(text->get())) {
+    try {
+      value = value_with_unit(text->get(), of);
+    } catch (const InvalidInput& error) {
+      return refuse_it(error.what());
+    }
   } else {
     return refuse_it("must be a number, not " + kind_of(node));
   }
@@ -151,23 +167,29 @@ std::optional<double> Section::number_in(const toml::node& node, const std::stri
   return value;
 }
 
-std::optional<double> Section::number(std::string_view key, Range range) {
+std::optional<double> Section::number(std::string_view key, const KeyDimension& of, Range range) {
   const toml::node* const node = find(key);
-  return node == nullptr ? std::nullopt : number_in(*node, path_to(key), range);
+  return node == nullptr ? std::nullopt : number_in(*node, path_to(key), of, range);
 }
 
-double Section::required_number(std::string_view key, Range range) {
+double Section::required_number(std::string_view key, const KeyDimension& of, Range range) {
   if (!has(key)) refuse_missing(key);
-  return number(key, range).value_or(1);
+  return number(key, of, range).value_or(1);
 }
 
-std::optional<double> Section::angle(const std::string& key) {
-  const auto value = angles(key, 1);
+std::optional<double> Section::number_at(std::string_view key, std::size_t index,
+                                         const toml::node& node, const KeyDimension& of) {
+  return number_in(node, path_to(key) + "[" + std::to_string(index) + "]", of);
+}
+
+std::optional<double> Section::angle(const std::string& key, const Dimension& of) {
+  const auto value = angles(key, 1, of);
   return value ? std::optional(value->front()) : std::nullopt;
 }
 
 std::optional<std::vector<double>> Section::numbers_in(const toml::node& node,
-                                                       const std::string& key) {
+                                                       const std::string& key,
+                                                       const std::vector<KeyDimension>& of) {
   const toml::array* const list = node.as_array();
   if (list == nullptr) {
     mistakes_->add(node.source(), key, "must be a list of numbers, not " + kind_of(node));
@@ -176,20 +198,26 @@ std::optional<std::vector<double>> Section::numbers_in(const toml::node& node,
   std::vector<double> values;
   bool good = true;
   for (std::size_t i = 0; i < list->size(); ++i) {
-    const auto value = number_in(*list->get(i), key + "[" + std::to_string(i) + "]", Range::any);
+    const auto value = number_in(*list->get(i), key + "[" + std::to_string(i) + "]",
+                                 of[std::min(i, of.size() - 1)]);
     good = good && value;
     values.push_back(value.value_or(0));
   }
   return good ? std::optional(values) : std::nullopt;
 }
 
-std::optional<std::vector<double>> Section::numbers(std::string_view key) {
+std::optional<std::vector<double>> Section::numbers(std::string_view key, const KeyDimension& of) {
   const toml::node* const node = find(key);
-  return node == nullptr ? std::nullopt : numbers_in(*node, path_to(key));
+  return node == nullptr ? std::nullopt : numbers_in(*node, path_to(key), {of});
 }
 
-std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t count) {
-  auto values = numbers(key);
+std::optional<std::vector<double>> Section::numbers(std::string_view key, std::size_t count,
+                                                    const KeyDimension& of) {
+  return counted(key, count, numbers(key, of));
+}
+
+std::optional<std::vector<double>> Section::counted(std::string_view key, std::size_t count,
+                                                    std::optional<std::vector<double>> values) {
   if (values && values->size() != count) {
     refuse(key,
            "must be " + std::to_string(count) + " numbers, not " + std::to_string(values->size()));
@@ -199,26 +227,26 @@ std::optional<std::vector<double>> Section::numbers(std::string_view key, std::s
 }
 
 std::optional<std::vector<double>> Section::timed_row_in(const toml::node& node,
-                                                         const std::string& key,
-                                                         std::size_t width) {
+                                                         const std::string& key, std::size_t width,
+                                                         const KeyDimension& of) {
   const toml::array* const pair = node.as_array();
   if (pair == nullptr || pair->size() != 2) {
     const std::string value = width == 1 ? "value" : "[x, y, z]";
     mistakes_->add(node.source(), key, "must be [time, " + value + "]");
     return std::nullopt;
   }
-  const auto time = number_in(*pair->get(0), key + "[0]", Range::any);
+  const auto time = number_in(*pair->get(0), key + "[0]", dimension::time);
   const toml::node& value = *pair->get(1);
   std::optional<std::vector<double>> row;
   if (width > 1) {
-    row = numbers_in(value, key + "[1]");
+    row = numbers_in(value, key + "[1]", {of});
     if (row && row->size() != width) {
       mistakes_->add(
           value.source(), key + "[1]",
           "must be " + std::to_string(width) + " numbers, not " + std::to_string(row->size()));
       return std::nullopt;
     }
-  } else if (const auto number = number_in(value, key + "[1]", Range::any)) {
+  } else if (const auto number = number_in(value, key + "[1]", of)) {
     row = {*number};
   }
   if (!time || !row) return std::nullopt;
@@ -227,7 +255,8 @@ std::optional<std::vector<double>> Section::timed_row_in(const toml::node& node,
 }
 
 std::optional<std::vector<std::vector<double>>> Section::timed_rows(std::string_view key,
-                                                                    std::size_t width) {
+                                                                    std::size_t width,
+                                                                    const KeyDimension& of) {
   const toml::node* const node = find(key);
   const toml::array* const list = node == nullptr ? nullptr : node->as_array();
   if (list == nullptr || list->empty()) {
@@ -238,7 +267,7 @@ std::optional<std::vector<std::vector<double>>> Section::timed_rows(std::string_
   bool good = true;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const std::string name = path_to(key) + "[" + std::to_string(i) + "]";
-    auto row = timed_row_in(*list->get(i), name, width);
+    auto row = timed_row_in(*list->get(i), name, width, of);
     good = good && row;
     if (!good) continue;
     if (!rows.empty() && !(row->front() > rows.back().front())) {
@@ -253,45 +282,64 @@ std::optional<std::vector<std::vector<double>>> Section::timed_rows(std::string_
 }
 
 template <class Read>
-std::optional<std::vector<double>> Section::in_radian(const std::string& key, const Read& read) {
+std::optional<std::vector<double>> Section::in_radian(const std::string& key, const Dimension& of,
+                                                      const Read& read) {
   const std::string in_degrees = key + "_deg";
-  if (!has(in_degrees)) return read(key);
+  if (!has(in_degrees)) return read(key, of);
   if (has(key)) refuse(in_degrees, "is given in radian too, as '" + key + "'");
-  auto values = read(in_degrees);
+  auto values = read(in_degrees, std::nullopt);
   if (values)
     std::for_each(values->begin(), values->end(), [](double& x) { x *= radian_per_degree; });
   return values;
 }
 
-std::optional<std::vector<double>> Section::angles(const std::string& key, std::size_t count) {
-  return in_radian(key, [this, count](const std::string& name) {
-    return count == 1 ? single(name) : numbers(name, count);
+std::optional<std::vector<double>> Section::angles(const std::string& key, std::size_t count,
+                                                   const Dimension& of) {
+  return in_radian(key, of, [this, count](const std::string& name, const KeyDimension& own) {
+    return count == 1 ? single(name, own) : numbers(name, count, own);
   });
 }
 
-std::optional<std::vector<double>> Section::number_or_list(std::string_view key,
-                                                           std::size_t count) {
+std::optional<std::vector<double>> Section::number_or_list(std::string_view key, std::size_t count,
+                                                           const KeyDimension& of) {
   const toml::node* const node = find(key);
-  if (count > 1 && node != nullptr && node->is_array()) return numbers(key, count);
-  const auto value = number(key);
+  if (count > 1 && node != nullptr && node->is_array()) return numbers(key, count, of);
+  const auto value = number(key, of);
   return value ? std::optional(std::vector<double>(count, *value)) : std::nullopt;
 }
 
-std::optional<std::vector<double>> Section::angle_or_list(const std::string& key,
-                                                          std::size_t count) {
-  return in_radian(key,
-                   [this, count](const std::string& name) { return number_or_list(name, count); });
+std::optional<std::vector<double>> Section::number_or_list(std::string_view key,
+                                                           const std::vector<Dimension>& each) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (each.size() > 1 && node->is_array()) {
+    return counted(key, each.size(), numbers_in(*node, path_to(key), {each.begin(), each.end()}));
+  }
+  std::vector<double> values;
+  for (const Dimension& of : each) {
+    const auto value = number(key, of);
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
 }
 
-std::optional<Vector3<double>> Section::vector(std::string_view key) {
-  const auto values = numbers(key, 3);
+std::optional<std::vector<double>> Section::angle_or_list(const std::string& key, std::size_t count,
+                                                          const Dimension& of) {
+  return in_radian(key, of, [this, count](const std::string& name, const KeyDimension& own) {
+    return number_or_list(name, count, own);
+  });
+}
+
+std::optional<Vector3<double>> Section::vector(std::string_view key, const Dimension& of) {
+  const auto values = numbers(key, 3, of);
   if (!values) return std::nullopt;
   return Vector3<double>((*values)[0], (*values)[1], (*values)[2]);
 }
 
-Vector3<double> Section::required_vector(std::string_view key) {
+Vector3<double> Section::required_vector(std::string_view key, const Dimension& of) {
   if (!has(key)) refuse_missing(key);
-  return vector(key).value_or(Vector3<double>::UnitX());
+  return vector(key, of).value_or(Vector3<double>::UnitX());
 }
 
 std::optional<std::string> Section::text(std::string_view key) {
@@ -326,8 +374,8 @@ std::vector<std::string> Section::texts(std::string_view key) {
   return result;
 }
 
-std::optional<std::vector<double>> Section::single(std::string_view key) {
-  const auto value = number(key);
+std::optional<std::vector<double>> Section::single(std::string_view key, const KeyDimension& of) {
+  const auto value = number(key, of);
   return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
 }
 
@@ -379,7 +427,7 @@ std::optional<Section> Section::required_section(std::string_view key) {
 }
 
 std::optional<Eigen::Quaterniond> quaternion(Section& section, std::string_view key) {
-  const auto values = section.numbers(key, 4);
+  const auto values = section.numbers(key, 4, dimension::number);
   if (!values) return std::nullopt;
   const Eigen::Quaterniond q((*values)[0], (*values)[1], (*values)[2], (*values)[3]);
   if (!(std::abs(q.norm() - 1) <= 1e-3)) {

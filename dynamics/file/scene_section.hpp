@@ -9,11 +9,10 @@
 #include <toml++/toml.h>
 #include <vector>
 
+#include <dynamics/file/unit.hpp>
 #include <motor/motor.hpp>
 
 namespace kreisel::detail {
-
-inline constexpr double radian_per_degree = 0.017453292519943295;  ///< rad
 
 /// The mistakes in a file, with their lines.
 class Mistakes {
@@ -66,33 +65,52 @@ class Section {
   /// Notes a mistake in the section as a whole.
   void refuse_all(std::string_view reason);
 
-  [[nodiscard]] std::optional<double> number(std::string_view key, Range range = Range::any);
-  [[nodiscard]] double required_number(std::string_view key, Range range = Range::any);
+  /// True if the value of a key is a number, possibly as a text with a unit.
+  [[nodiscard]] bool has_number(std::string_view key);
 
-  /// An angle or its rate: the value of the key, or of key_deg in degrees.
-  [[nodiscard]] std::optional<double> angle(const std::string& key);
+  // The readers of numbers. `of` is the dimension of a number: a text with a unit must have it.
 
-  [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key);
-  [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count);
+  [[nodiscard]] std::optional<double> number(std::string_view key, const KeyDimension& of,
+                                             Range range = Range::any);
+  [[nodiscard]] double required_number(std::string_view key, const KeyDimension& of,
+                                       Range range = Range::any);
+
+  /// An angle, its rate or the like: the value of the key, or of key_deg in degrees.
+  [[nodiscard]] std::optional<double> angle(const std::string& key, const Dimension& of);
+
+  [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key,
+                                                           const KeyDimension& of);
+  [[nodiscard]] std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
+                                                           const KeyDimension& of);
   /// One number if `count` is 1, else `count` numbers in brackets; angles as in angle().
-  [[nodiscard]] std::optional<std::vector<double>> angles(const std::string& key,
-                                                          std::size_t count);
+  [[nodiscard]] std::optional<std::vector<double>> angles(const std::string& key, std::size_t count,
+                                                          const Dimension& of);
   /// One number, repeated `count` times, or `count` numbers in brackets.
   [[nodiscard]] std::optional<std::vector<double>> number_or_list(std::string_view key,
-                                                                  std::size_t count);
+                                                                  std::size_t count,
+                                                                  const KeyDimension& of);
+  /// The same with a dimension for each number. One number must have all of them.
+  [[nodiscard]] std::optional<std::vector<double>> number_or_list(
+      std::string_view key, const std::vector<Dimension>& each);
   /// One angle or `count` angles in brackets: the value of the key, or of key_deg in degrees.
   [[nodiscard]] std::optional<std::vector<double>> angle_or_list(const std::string& key,
-                                                                 std::size_t count);
-  [[nodiscard]] std::optional<Vector3<double>> vector(std::string_view key);
-  [[nodiscard]] Vector3<double> required_vector(std::string_view key);
+                                                                 std::size_t count,
+                                                                 const Dimension& of);
+  [[nodiscard]] std::optional<Vector3<double>> vector(std::string_view key, const Dimension& of);
+  [[nodiscard]] Vector3<double> required_vector(std::string_view key, const Dimension& of);
 
   /// A list of  [time, value].  A value is one number or `width` numbers in brackets. Returns rows
   /// of the time and the numbers. Times must increase.
   [[nodiscard]] std::optional<std::vector<std::vector<double>>> timed_rows(std::string_view key,
-                                                                           std::size_t width);
+                                                                           std::size_t width,
+                                                                           const KeyDimension& of);
 
   /// One number as a list.
-  [[nodiscard]] std::optional<std::vector<double>> single(std::string_view key);
+  [[nodiscard]] std::optional<std::vector<double>> single(std::string_view key,
+                                                          const KeyDimension& of);
+  /// The number at an index of a list.
+  [[nodiscard]] std::optional<double> number_at(std::string_view key, std::size_t index,
+                                                const toml::node& node, const KeyDimension& of);
 
   [[nodiscard]] std::optional<std::string> text(std::string_view key);
   /// A list of texts; empty if the key is missing.
@@ -130,16 +148,21 @@ class Section {
  private:
   [[nodiscard]] std::string path_to(std::string_view key) const;
   [[nodiscard]] std::optional<double> number_in(const toml::node& node, const std::string& key,
-                                                Range range);
+                                                const KeyDimension& of, Range range = Range::any);
+  /// Reads a list of numbers. Those after the last dimension have the last one, too.
   [[nodiscard]] std::optional<std::vector<double>> numbers_in(const toml::node& node,
-                                                              const std::string& key);
+                                                              const std::string& key,
+                                                              const std::vector<KeyDimension>& of);
+  [[nodiscard]] std::optional<std::vector<double>> counted(
+      std::string_view key, std::size_t count, std::optional<std::vector<double>> values);
   [[nodiscard]] std::optional<std::vector<double>> timed_row_in(const toml::node& node,
                                                                 const std::string& key,
-                                                                std::size_t width);
+                                                                std::size_t width,
+                                                                const KeyDimension& of);
   /// The result of `read` for the key, or for key_deg, converted to radian.
   template <class Read>
   [[nodiscard]] std::optional<std::vector<double>> in_radian(const std::string& key,
-                                                             const Read& read);
+                                                             const Dimension& of, const Read& read);
 
   const toml::table* table_;
   std::string path_;

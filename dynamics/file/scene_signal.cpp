@@ -24,35 +24,36 @@ template <class Value>
 }
 
 template <class Value>
-[[nodiscard]] Value value_of(Section& table, std::string_view key) {
-  const auto numbers = width<Value> == 1 ? table.single(key) : table.numbers(key, width<Value>);
+[[nodiscard]] Value value_of(Section& table, std::string_view key, const KeyDimension& of) {
+  const auto numbers =
+      width<Value> == 1 ? table.single(key, of) : table.numbers(key, width<Value>, of);
   return value_at<Value>(numbers.value_or(std::vector<double>(width<Value>, 0)), 0);
 }
 
 template <class Value>
-[[nodiscard]] Signal<Value> read_sum(Section& table) {
-  const auto constant = value_of<Value>(table, "constant");
-  const auto rate = value_of<Value>(table, "rate");
+[[nodiscard]] Signal<Value> read_sum(Section& table, const KeyDimension& of) {
+  const auto constant = value_of<Value>(table, "constant", of);
+  const auto rate = value_of<Value>(table, "rate", per_second(of));
   std::vector<typename Signal<Value>::Term> terms;
   for (Section& term : table.sections("terms")) {
     for (const char* const key : {"amplitude", "frequency"}) {
       if (!term.has(key) && !term.has(std::string(key) + "_deg")) term.refuse_missing(key);
     }
-    const auto amplitude = value_of<Value>(term, "amplitude");
-    const double frequency = term.angle("frequency").value_or(1);
+    const auto amplitude = value_of<Value>(term, "amplitude", of);
+    const double frequency = term.angle("frequency", dimension::angular_rate).value_or(1);
     if (frequency < 0) {
       term.refuse(term.has("frequency") ? "frequency" : "frequency_deg",
                   "must not be below 0; the other direction is an 'amplitude' of the other sign");
     }
-    terms.push_back({amplitude, frequency, term.angle("phase").value_or(0)});
+    terms.push_back({amplitude, frequency, term.angle("phase", dimension::angle).value_or(0)});
     term.finish();
   }
   return Signal<Value>(constant, rate, std::move(terms));
 }
 
 template <class Value>
-[[nodiscard]] Signal<Value> read_points(Section& table, const char* key) {
-  const auto rows = table.timed_rows(key, width<Value>);
+[[nodiscard]] Signal<Value> read_points(Section& table, const char* key, const KeyDimension& of) {
+  const auto rows = table.timed_rows(key, width<Value>, of);
   if (!rows) return {};
   typename Signal<Value>::Points points;
   for (const std::vector<double>& row : *rows) {
@@ -65,7 +66,7 @@ template <class Value>
 }  // namespace
 
 template <class Value>
-Signal<Value> read_signal_table(Section table) {
+Signal<Value> read_signal_table(Section table, const KeyDimension& of) {
   std::vector<const char*> given;
   for (const char* const key : {"constant", "rate", "terms", "steps", "points"}) {
     if (table.has(key)) given.push_back(key);
@@ -82,62 +83,67 @@ Signal<Value> read_signal_table(Section table) {
                             std::string(given[0] == std::string_view(key) ? given[1] : given[0]) +
                             "'; one of them says what the signal is");
     }
-    signal = read_points<Value>(table, key);
+    signal = read_points<Value>(table, key, of);
   } else {
-    signal = read_sum<Value>(table);
+    signal = read_sum<Value>(table, of);
   }
   table.finish();
   return signal;
 }
 
 template <class Value>
-std::optional<Signal<Value>> read_signal(Section& section, std::string_view key) {
+std::optional<Signal<Value>> read_signal(Section& section, std::string_view key,
+                                         const KeyDimension& of) {
   if (!section.has(key)) return std::nullopt;
-  if (section.find(key)->is_table()) return read_signal_table<Value>(*section.section(key));
-  const auto numbers = width<Value> == 1 ? section.single(key) : section.numbers(key, width<Value>);
+  if (section.find(key)->is_table()) return read_signal_table<Value>(*section.section(key), of);
+  const auto numbers =
+      width<Value> == 1 ? section.single(key, of) : section.numbers(key, width<Value>, of);
   if (!numbers) return std::nullopt;
   return Signal<Value>(value_at<Value>(*numbers, 0));
 }
 
 std::vector<Signal<double>> read_signals(Section& section, std::string_view key,
-                                         std::size_t count) {
+                                         const std::vector<Dimension>& each) {
+  const std::size_t count = each.size();
   const toml::node* const node = section.find(key);
   const toml::array* const list = node == nullptr ? nullptr : node->as_array();
   std::vector<Signal<double>> signals;
-  if (list == nullptr) {
-    const auto signal = read_signal<double>(section, key);
-    if (signal) signals.assign(count, *signal);
+  if (node != nullptr && node->is_table()) {
+    for (const Dimension& of : each) signals.push_back(*read_signal<double>(section, key, of));
     return signals;
   }
   const auto is_table = [](const toml::node& item) { return item.is_table(); };
-  if (count == 1 || std::none_of(list->begin(), list->end(), is_table)) {
-    const auto numbers = section.number_or_list(key, count);
+  if (list == nullptr || count == 1 || std::none_of(list->begin(), list->end(), is_table)) {
+    const auto numbers = section.number_or_list(key, each);
     if (numbers) signals.assign(numbers->begin(), numbers->end());
     return signals;
   }
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    const toml::table* const table = list->get(i)->as_table();
-    const auto number = list->get(i)->value<double>();
-    if (table != nullptr) {
-      signals.push_back(read_signal_table<double>(section.element(key, i, *table)));
-    } else if (number) {
-      signals.emplace_back(*number);
+  if (list->size() != count) {
+    section.refuse(key, "must be " + std::to_string(count) + " numbers or functions of time");
+    return {};
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const toml::node& item = *list->get(i);
+    if (const toml::table* const table = item.as_table()) {
+      signals.push_back(read_signal_table<double>(section.element(key, i, *table), each[i]));
+    } else {
+      signals.emplace_back(section.number_at(key, i, item, each[i]).value_or(0));
     }
   }
-  if (signals.size() == count && list->size() == count) return signals;
-  section.refuse(key, "must be " + std::to_string(count) + " numbers or functions of time");
-  return {};
+  return signals;
 }
 
-std::optional<Signal<double>> read_angle_signal(Section& section, const std::string& key) {
+std::optional<Signal<double>> read_angle_signal(Section& section, const std::string& key,
+                                                const Dimension& of) {
   const std::string in_degrees = key + "_deg";
-  if (!section.has(in_degrees)) return read_signal<double>(section, key);
+  if (!section.has(in_degrees)) return read_signal<double>(section, key, of);
   if (section.has(key)) section.refuse(in_degrees, "is given in radian too, as '" + key + "'");
-  const auto signal = read_signal<double>(section, in_degrees);
+  const auto signal = read_signal<double>(section, in_degrees, std::nullopt);
   return signal ? std::optional(signal->scaled(radian_per_degree)) : std::nullopt;
 }
 
-template std::optional<Signal<double>> read_signal(Section&, std::string_view);
-template std::optional<Signal<Vector3<double>>> read_signal(Section&, std::string_view);
+template std::optional<Signal<double>> read_signal(Section&, std::string_view, const KeyDimension&);
+template std::optional<Signal<Vector3<double>>> read_signal(Section&, std::string_view,
+                                                            const KeyDimension&);
 
 }  // namespace kreisel::detail

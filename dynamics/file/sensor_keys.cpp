@@ -41,7 +41,10 @@ class SensorReader {
     if (kind == "joint") sensor.kind = joint(section);
     if (kind == "reaction") sensor.kind = reaction(section);
     const bool is_instrument = kind == "gyro" || kind == "accelerometer";
-    if (is_instrument) sensor.errors = errors(section, kind == "gyro");
+    if (is_instrument) {
+      sensor.errors =
+          errors(section, kind == "gyro" ? dimension::angular_rate : dimension::acceleration);
+    }
     return sensor;
   }
 
@@ -77,7 +80,8 @@ class SensorReader {
   Vector3<double> at(Section& section, int body) {
     const toml::node* const node = section.find("at");
     if (node == nullptr) return Vector3<double>::Zero();
-    if (!node->is_string()) return section.vector("at").value_or(Vector3<double>::Zero());
+    if (!node->is_string())
+      return section.vector("at", dimension::length).value_or(Vector3<double>::Zero());
     const std::string name = section.peek("at");
     const NamedPoints& known = points_[static_cast<std::size_t>(body)];
     if (const auto found = known.find(name); found != known.end()) return found->second;
@@ -150,19 +154,20 @@ class SensorReader {
   }
 
   /// One number for all axes, or three numbers.
-  static Vector3<double> numbers(Section& section, const std::string& key, bool is_angle) {
-    return three(is_angle ? section.angle_or_list(key, 3) : section.number_or_list(key, 3));
+  static Vector3<double> numbers(Section& section, const std::string& key, const Dimension& of) {
+    return three(of.angle != 0 ? section.angle_or_list(key, 3, of)
+                               : section.number_or_list(key, 3, of));
   }
 
   /// Reads standard deviations and densities.
-  static Vector3<double> size(Section& section, const std::string& key, bool is_angle) {
-    Vector3<double> result = numbers(section, key, is_angle);
+  static Vector3<double> size(Section& section, const std::string& key, const Dimension& of) {
+    Vector3<double> result = numbers(section, key, of);
     if (result.minCoeff() < 0) section.refuse(key, "must not be below 0");
     return result;
   }
 
-  static double limit(Section& section, const std::string& key, bool is_angle) {
-    const auto value = is_angle ? section.angle(key) : section.number(key);
+  static double limit(Section& section, const std::string& key, const Dimension& of) {
+    const auto value = of.angle != 0 ? section.angle(key, of) : section.number(key, of);
     if (value && !(*value > 0)) section.refuse(key, "must be above 0");
     return value.value_or(0);
   }
@@ -184,25 +189,26 @@ class SensorReader {
     return 0;
   }
 
-  /// Reads the errors of a sensor. For a gyro they are angular rates, possibly in degrees.
-  static std::optional<SensorErrors> errors(Section& section, bool is_gyro) {
+  /// Reads the errors of a sensor whose readings have the dimension `of`. Those of an angular rate
+  /// may be in degrees.
+  static std::optional<SensorErrors> errors(Section& section, const Dimension& of) {
     if (!has_errors(section)) return std::nullopt;
     SensorErrors result;
-    result.misalignment = three(section.angles("misalignment", 3));
-    result.scale = three(section.number_or_list("scale", 3));
-    result.bias = numbers(section, "bias", is_gyro);
-    result.noise = size(section, "noise", is_gyro);
-    result.drift = size(section, "drift", is_gyro);
+    result.misalignment = three(section.angles("misalignment", 3, dimension::angle));
+    result.scale = three(section.number_or_list("scale", 3, dimension::number));
+    result.bias = numbers(section, "bias", of);
+    result.noise = size(section, "noise", of * to_power(dimension::time, 0.5));
+    result.drift = size(section, "drift", of / to_power(dimension::time, 0.5));
     if (auto correlation = section.section("correlation")) {
       if (!correlation->has("sigma") && !correlation->has("sigma_deg")) {
         correlation->refuse_missing("sigma");
       }
-      result.correlation = {size(*correlation, "sigma", is_gyro),
-                            correlation->required_number("time", Range::positive)};
+      result.correlation = {size(*correlation, "sigma", of),
+                            correlation->required_number("time", dimension::time, Range::positive)};
       correlation->finish();
     }
-    result.resolution = limit(section, "resolution", is_gyro);
-    result.range = limit(section, "range", is_gyro);
+    result.resolution = limit(section, "resolution", of);
+    result.range = limit(section, "range", of);
     result.seed = seed(section);
     return result;
   }
@@ -232,7 +238,7 @@ NamedPoints read_points(Section& body) {
   if (!section) return points;
   for (const std::string& name : section->keys()) {
     if (name.empty()) section->refuse(name, "is a point without a name");
-    points[name] = section->vector(name).value_or(Vector3<double>::Zero());
+    points[name] = section->vector(name, dimension::length).value_or(Vector3<double>::Zero());
   }
   return points;
 }

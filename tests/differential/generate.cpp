@@ -794,6 +794,7 @@ Scene generate(Random r) {
   }
   add_solve(r, scene);
   add_sensors(r, scene);
+  for (Body& body : scene.bodies) body.has_units = r.chance(0.1);
   return scene;
 }
 

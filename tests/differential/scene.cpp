@@ -18,6 +18,18 @@ std::string one_or_list(const std::vector<double>& numbers) {
   return numbers.size() == 1 ? text(numbers.front()) : list(numbers);
 }
 
+/// A number as a text with a unit.
+std::string with_unit(double x, const std::string& unit) {
+  return "\"" + text(x) + " " + unit + "\"";
+}
+
+template <class Numbers>
+std::string list_with_unit(const Numbers& numbers, const std::string& unit) {
+  std::string result;
+  for (const double x : numbers) result += (result.empty() ? "" : ", ") + with_unit(x, unit);
+  return "[" + result + "]";
+}
+
 /// Writes `key = value` for values that exist, with commas between.
 class Inline {
  public:
@@ -242,7 +254,13 @@ void add_single_coordinates(Inline& table, const Body& body) {
       const auto values = taken(body.displacement, displacement, quantity.count());
       if (!values.empty()) table.add(quantity.key, one_or_list(values));
     } else {
-      add_angles(table, quantity.key, taken(body.angle, angle, quantity.count()));
+      const auto values = taken(body.angle, angle, quantity.count());
+      if (body.has_units && values.size() == 1) {
+        const Angle& only = values.front();
+        table.add(quantity.key, with_unit(only.value, only.degrees ? "deg" : "rad"));
+      } else {
+        add_angles(table, quantity.key, values);
+      }
     }
   }
   for (const auto& quantity : type.rates) {
@@ -351,9 +369,16 @@ std::string body(const Scene& scene, int index) {
   std::string result = "[[body]]\nname = \"" + body_name(index) + "\"\n";
   if (b.parent >= 0) result += "parent = \"" + body_name(b.parent) + "\"\n";
   result += "joint = " + joint(b) + "\n";
-  result += "mass = " + text(b.mass) + "\n";
-  if (!b.centre.isZero(0)) result += "centre = " + list(b.centre) + "\n";
-  result += "inertia = " + list(b.inertia) + "\n";
+  const bool off_centre = !b.centre.isZero(0);
+  if (b.has_units) {
+    result += "mass = " + with_unit(b.mass, "kg") + "\n";
+    if (off_centre) result += "centre = " + list_with_unit(b.centre, "m") + "\n";
+    result += "inertia = " + list_with_unit(b.inertia, "kg m^2") + "\n";
+  } else {
+    result += "mass = " + text(b.mass) + "\n";
+    if (off_centre) result += "centre = " + list(b.centre) + "\n";
+    result += "inertia = " + list(b.inertia) + "\n";
+  }
   result += initial(b) + forces(b);
   if (b.rotor) result += rotor(*b.rotor);
   if (b.drive && b.motion.empty()) result += "drive = \"constant-rate\"\n";

@@ -150,6 +150,7 @@ struct Body {
   bool is_rate = false;  ///< of the motion: the rate, not the coordinate
   bool hold = false;
   std::vector<Load> loads = {};
+  bool has_units = false;  ///< mass, centre, inertia and angles as texts with a unit
 };
 
 enum class SensorKind { gyro, accelerometer, point, attitude, reaction };
