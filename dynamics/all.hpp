@@ -28,6 +28,7 @@
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/guide/tabulated.hpp>
 #include <dynamics/guide/translating.hpp>
+#include <dynamics/guide/value_log.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/law/momentum.hpp>
 #include <dynamics/law/relative.hpp>

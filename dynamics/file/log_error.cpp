@@ -145,6 +145,21 @@ std::optional<VectorXd> squares_of_link(const SceneFile& scene, std::size_t i, c
   return std::visit(along, scene.guide[i]);
 }
 
+/// Squares of the errors due to the log of one function of time.
+VectorXd squares_of_signal(const SceneFile& scene, std::size_t i, const Beside& beside,
+                           double tolerance) {
+  const auto follow = [&](const ValueLog& log, const LogSpline& spline) {
+    std::vector<SceneSignalLog> logs = scene.signal_logs;
+    logs[i].log = log;
+    logs[i].spline = spline;
+    return beside.end_of(scene.with_signal_logs(std::move(logs)), tolerance);
+  };
+  const SceneSignalLog& own = scene.signal_logs[i];
+  return error_of_log(own.log, own.spline, beside.end(), follow,
+                      [&](const End& a, const End& b) { return numbers_of(beside.distance(a, b)); })
+      .cwiseAbs2();
+}
+
 }  // namespace
 
 std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver& model,
@@ -162,6 +177,9 @@ std::optional<LogError> error_of_logs(const SceneFile& scene, const SceneSolver&
       for (std::size_t i = 0; i < scene.guide.size(); ++i) {
         const auto of_link = squares_of_link(scene, i, beside, tolerance);
         if (of_link) squares += *of_link;
+      }
+      for (std::size_t i = 0; i < scene.signal_logs.size(); ++i) {
+        squares += squares_of_signal(scene, i, beside, tolerance);
       }
       set_numbers(error, squares.cwiseSqrt());
       const bool moves = model.tree().rates() > 0;

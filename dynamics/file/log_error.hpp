@@ -19,11 +19,11 @@ struct LogError {
     double force = 0;           ///< N, of the reaction on the body
     double torque = 0;          ///< N m
   };
-  std::vector<Joint> joints = {};  ///< one for each body; empty where the guide follows no log
+  std::vector<Joint> joints = {};  ///< one for each body; empty without logs
 };
 
-/// The error of a run that is due to its guide's logs; see error_of_log. It is estimated by runs
-/// along other readings of the logs. Returns nothing after an interruption.
+/// The error of a run that is due to the logs of its guide and of functions of time; see
+/// error_of_log. It is estimated by runs along other readings of the logs. Returns nothing after an interruption.
 ///
 /// Cost   : thirteen runs for each log, to 1e-6, or to the options' tolerance if the error is as
 ///          small

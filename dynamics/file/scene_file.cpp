@@ -12,6 +12,7 @@
 #include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/scene_signal.hpp>
 #include <dynamics/file/sensor_keys.hpp>
+#include <dynamics/file/signal_log.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
@@ -66,12 +67,17 @@ std::string reason(const InvalidInput& error) {
 class SceneReader {
  public:
   SceneReader(const toml::table& root, const std::filesystem::path& path,
-              const SolveRequest& request, Mistakes& mistakes)
-      : root_(root, "", mistakes), path_(path), request_(request), mistakes_(mistakes) {}
+              const SolveRequest& request, Mistakes& mistakes, detail::SignalLogs& logs)
+      : root_(root, "", mistakes, &logs),
+        path_(path),
+        request_(request),
+        mistakes_(mistakes),
+        logs_(logs) {}
 
   SceneFile read() {
     scene_.title = root_.text("title").value_or("");
     read_solve();
+    logs_.set_run({0, scene_.t_end});
     read_guide();
     read_gravity();
     give_gravity_to_rates();
@@ -82,6 +88,7 @@ class SceneReader {
     if (mistakes_.none()) scene_.columns = detail::read_output(root_, columns(scene_));
     (void)root_.has("output");
     root_.finish();
+    scene_.signal_logs = logs_.read();
     mistakes_.throw_any();
     return std::move(scene_);
   }
@@ -1096,6 +1103,7 @@ class SceneReader {
   const std::filesystem::path& path_;
   const SolveRequest& request_;
   Mistakes& mistakes_;
+  detail::SignalLogs& logs_;
   SceneFile scene_;
   std::optional<Section> rates_without_gravity_ = {};  ///< of a link that has specific forces
   scene_gravity::Field site_gravity_ = scene_gravity::None{};  ///< gravity given by the guide
@@ -1147,6 +1155,8 @@ bool SceneFile::rests() const {
   });
 }
 
+bool SceneFile::guide_follows_log() const { return log_files().size() > signal_logs.size(); }
+
 std::vector<std::filesystem::path> SceneFile::log_files() const {
   std::vector<std::filesystem::path> files;
   for (const scene_guide::Link& link : guide) {
@@ -1156,6 +1166,7 @@ std::vector<std::filesystem::path> SceneFile::log_files() const {
         },
         link);
   }
+  for (const SceneSignalLog& log : signal_logs) files.push_back(log.file);
   return files;
 }
 
@@ -1169,8 +1180,10 @@ std::optional<Method> method_named(std::string_view word) {
   return std::nullopt;
 }
 
-SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
-                      const SolveRequest& request) {
+namespace {
+
+SceneFile parse(std::string_view text, const std::filesystem::path& path,
+                const SolveRequest& request, std::vector<SceneSignalLog> given) {
   Mistakes mistakes(path.string());
   refuse_depth(text, mistakes);
   toml::table root;
@@ -1180,7 +1193,21 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
     mistakes.add(error.source(), "", "is no TOML: " + std::string(error.description()));
     mistakes.throw_any();
   }
-  return SceneReader(root, path, request, mistakes).read();
+  detail::SignalLogs logs(path.parent_path(), std::move(given));
+  return SceneReader(root, path, request, mistakes, logs).read();
+}
+
+}  // namespace
+
+SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
+                      const SolveRequest& request) {
+  SceneFile scene = parse(text, path, request, {});
+  if (scene.signal_logs.empty()) return scene;
+  scene.with_signal_logs = [text = std::string(text), path,
+                            request](std::vector<SceneSignalLog> given) {
+    return parse(text, path, request, std::move(given));
+  };
+  return scene;
 }
 
 SceneFile read_scene(const std::filesystem::path& path, const SolveRequest& request) {

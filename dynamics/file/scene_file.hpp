@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/guide/tabulated.hpp>
+#include <dynamics/guide/value_log.hpp>
 #include <dynamics/load/oblate_gravitation.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/tree/description.hpp>
@@ -133,6 +135,13 @@ enum class SceneModel {
   return "none";
 }
 
+/// A log that a function of time follows.
+struct SceneSignalLog {
+  std::filesystem::path file;
+  ValueLog log;
+  LogSpline spline = {};
+};
+
 struct SceneFile {
   std::string title;
   std::vector<scene_guide::Link> guide;  ///< from the inertial frame inwards; never empty
@@ -151,13 +160,17 @@ struct SceneFile {
   std::vector<std::string> columns;     ///< chosen columns or groups of columns; empty: all
   bool reactions = false;
   bool terms = false;
+  std::vector<SceneSignalLog> signal_logs = {};
+  /// The same scene with other logs of functions of time.
+  std::function<SceneFile(std::vector<SceneSignalLog>)> with_signal_logs = nullptr;
 
   /// True if the guide is at rest, so that its motion need not be computed.
   [[nodiscard]] bool rests() const;
 
-  /// The files of the logs that the guide and its parts follow.
+  /// The files of the logs that the guide, its parts and functions of time follow.
   [[nodiscard]] std::vector<std::filesystem::path> log_files() const;
   [[nodiscard]] bool follows_log() const { return !log_files().empty(); }
+  [[nodiscard]] bool guide_follows_log() const;
 };
 
 /// The mistakes in a scene file: a line for each,  file:line:column: key: reason

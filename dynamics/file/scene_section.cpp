@@ -418,7 +418,7 @@ std::optional<Section> Section::section(std::string_view key) {
     refuse(key, "must be a table, not " + kind_of(*node));
     return std::nullopt;
   }
-  return Section(*table, path_to(key), *mistakes_);
+  return Section(*table, path_to(key), *mistakes_, logs_);
 }
 
 std::optional<Section> Section::required_section(std::string_view key) {
@@ -460,7 +460,7 @@ std::vector<Section> Section::sections(std::string_view key) {
       mistakes_->add(list->get(i)->source(), path,
                      "must be a table, not " + kind_of(*list->get(i)));
     } else {
-      result.emplace_back(*table, path, *mistakes_);
+      result.emplace_back(*table, path, *mistakes_, logs_);
     }
   }
   return result;

@@ -42,6 +42,8 @@ class Mistakes {
 [[nodiscard]] std::string did_you_mean(std::string_view word,
                                        const std::vector<std::string>& words);
 
+class SignalLogs;
+
 /// Bounds of a number.
 enum class Range { any, not_negative, positive };
 
@@ -49,13 +51,18 @@ enum class Range { any, not_negative, positive };
 /// reports all others as mistakes. After a mistake the reader gets a legal value and continues.
 class Section {
  public:
-  Section(const toml::table& table, std::string path, Mistakes& mistakes)
-      : table_(&table), path_(std::move(path)), mistakes_(&mistakes) {}
+  /// `logs` collects the logs of functions of time in the section.
+  Section(const toml::table& table, std::string path, Mistakes& mistakes,
+          SignalLogs* logs = nullptr)
+      : table_(&table), path_(std::move(path)), mistakes_(&mistakes), logs_(logs) {}
+
+  [[nodiscard]] SignalLogs* signal_logs() const { return logs_; }
+  [[nodiscard]] std::size_t mistakes() const { return mistakes_->count(); }
 
   /// The section of a table in a list.
   [[nodiscard]] Section element(std::string_view key, std::size_t index,
                                 const toml::table& table) const {
-    return {table, path_to(key) + "[" + std::to_string(index) + "]", *mistakes_};
+    return {table, path_to(key) + "[" + std::to_string(index) + "]", *mistakes_, logs_};
   }
 
   [[nodiscard]] bool has(std::string_view key);
@@ -167,6 +174,7 @@ class Section {
   const toml::table* table_;
   std::string path_;
   Mistakes* mistakes_;
+  SignalLogs* logs_;
   std::vector<std::string> known_;
   bool ignores_ = false;
 };

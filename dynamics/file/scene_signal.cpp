@@ -1,10 +1,18 @@
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/log_file.hpp>
+#include <dynamics/file/log_options.hpp>
 #include <dynamics/file/scene_signal.hpp>
+#include <dynamics/file/signal_log.hpp>
+#include <dynamics/guide/log_noise.hpp>
+#include <dynamics/guide/value_log.hpp>
 
 namespace kreisel::detail {
 
@@ -63,29 +71,105 @@ template <class Value>
                                           : Signal<Value>::broken_line(points);
 }
 
+/// The quantity of a log's column. A header with another unit is refused.
+LogQuantity quantity(const KeyDimension& of) {
+  if (of == dimension::length) return LogQuantity::length;
+  if (of == dimension::angle) return LogQuantity::angle;
+  if (of == dimension::angular_rate) return LogQuantity::angular_rate;
+  if (of == dimension::acceleration) return LogQuantity::acceleration;
+  return LogQuantity::number;
+}
+
+/// The samples of a log of one or three columns.
+ValueLog samples(const Log& log, const std::vector<std::string>& names) {
+  ValueLog result{log.column("t").values, {}};
+  result.values.assign(log.size(), Vector3<double>::Zero());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::vector<double>& column = log.column(names[k]).values;
+    for (std::size_t i = 0; i < log.size(); ++i) {
+      result.values[i][static_cast<Eigen::Index>(k)] = column[i];
+    }
+  }
+  return result;
+}
+
+/// The smoothing spline of a log. Without `sigma` the noise is estimated from the log.
+template <class Value>
+[[nodiscard]] LogSpline read_smoothing(Section& table, const ValueLog& log,
+                                       const KeyDimension& of) {
+  const auto given = table.number("sigma", of, Range::not_negative);
+  LogNoise::Components sigma = smoothing_sigma(noise_of(log));
+  if (given) sigma.segment<width<Value>>(4).setConstant(*given);
+  return smoothing(log, sigma);
+}
+
+void check_covers_run(Section& table, const std::string& name, const ValueLog& log,
+                      const std::array<double, 2>& run) {
+  if (log.times.front() <= run[0] && log.times.back() >= run[1]) return;
+  std::ostringstream text;
+  text.precision(15);
+  text << "'" << name << "' goes from t = " << log.times.front() << " s to " << log.times.back()
+       << " s and does not cover the run, " << run[0] << " to " << run[1]
+       << " s: change  time_zero,  or the times in [solve]";
+  table.refuse("file", text.str());
+}
+
+/// The signal of a log: columns t and value, or t, x, y, z.
+template <class Value>
+[[nodiscard]] Signal<Value> read_log(Section& table, const KeyDimension& of) {
+  (void)table.has("sigma");  // read with the log; a known key also if that fails
+  SignalLogs& logs = *table.signal_logs();
+  const std::vector<std::string> names = width<Value> == 1
+                                             ? std::vector<std::string>{"value"}
+                                             : std::vector<std::string>{"x", "y", "z"};
+  const std::size_t before = table.mistakes();
+  const std::string name = table.required_text("file");
+  const std::vector<LogRequest> requests{{"value", {{quantity(of), names}}, true}};
+  const LogOptions options = read_log_options(table, requests, logs.run());
+  if (name.empty() && table.find("file")->is_string()) table.refuse("file", "is empty");
+  if (table.mistakes() > before) return {};
+  try {
+    SceneSignalLog entry;
+    if (const SceneSignalLog* const other = logs.replacement()) {
+      entry = *other;
+    } else {
+      entry.file = logs.place(name);
+      entry.log = samples(kreisel::read_log(entry.file, requests, options), names);
+      entry.spline = read_smoothing<Value>(table, entry.log, of);
+      check_covers_run(table, name, entry.log, logs.run());
+    }
+    auto signal = logged_signal<Value>(entry.log, entry.spline);
+    logs.add(std::move(entry));
+    return signal;
+  } catch (const InvalidInput& error) {
+    table.refuse("file", error.what());
+    return {};
+  }
+}
+
 }  // namespace
 
 template <class Value>
 Signal<Value> read_signal_table(Section table, const KeyDimension& of) {
-  std::vector<const char*> given;
-  for (const char* const key : {"constant", "rate", "terms", "steps", "points"}) {
-    if (table.has(key)) given.push_back(key);
+  std::vector<std::string> given;
+  for (const char* const key : {"steps", "points", "file", "constant", "rate", "terms"}) {
+    if (table.has(key)) given.emplace_back(key);
   }
   Signal<Value> signal;
   if (given.empty()) {
     table.refuse_all(
-        "is a function of time: give 'constant', 'rate' and 'terms', or 'steps', or 'points'");
+        "is a function of time: give 'constant', 'rate' and 'terms', or 'steps', 'points' or "
+        "'file'");
     table.ignore_rest();
-  } else if (table.has("steps") || table.has("points")) {
-    const char* const key = table.has("steps") ? "steps" : "points";
-    if (given.size() > 1) {
-      table.refuse(key, "is given beside '" +
-                            std::string(given[0] == std::string_view(key) ? given[1] : given[0]) +
-                            "'; one of them says what the signal is");
-    }
-    signal = read_points<Value>(table, key, of);
-  } else {
+  } else if (const std::string& key = given[0];
+             key == "constant" || key == "rate" || key == "terms") {
     signal = read_sum<Value>(table, of);
+  } else if (given.size() > 1) {
+    table.refuse(key, "is given beside '" + given[1] + "'; one of them says what the signal is");
+    table.ignore_rest();
+  } else {
+    signal =
+        key == "file" ? read_log<Value>(table, of) : read_points<Value>(table, key.c_str(), of);
   }
   table.finish();
   return signal;

@@ -11,7 +11,7 @@
 
 namespace kreisel::detail {
 
-/// The signal of a table: { constant, rate, terms }, { steps } or { points }. Its values have the
+/// The signal of a table: { constant, rate, terms }, { steps }, { points } or { file }. Its values have the
 /// dimension `of`. Notes mistakes in the table.
 template <class Value>
 [[nodiscard]] Signal<Value> read_signal_table(Section table, const KeyDimension& of);

@@ -67,7 +67,11 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
           [](const scene_guide::Rates& kind) -> SceneGuide {
             return within(RatesFrame<>(kind.log, kind.start, kind.spline));
           },
-          [](const scene_guide::Motion& kind) -> SceneGuide { return SignalFrame<>(kind.pose); },
+          [](const scene_guide::Motion& kind) -> SceneGuide {
+            const SignalFrame<> frame(kind.pose);
+            if (kind.pose.is_analytic()) return frame;
+            return [frame](double t) { return frame(t); };  // without a Taylor series
+          },
           [](const scene_guide::Orbit& kind) -> SceneGuide { return OrbitFrame<>(kind.elements); }},
       link);
 }

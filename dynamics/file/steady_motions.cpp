@@ -185,7 +185,7 @@ namespace {
 
 /// The reason why a scene has no steady motion at all; empty if it may have one.
 std::string changes(const SceneFile& scene) {
-  if (scene.follows_log()) return "the guide follows a log";
+  if (scene.guide_follows_log()) return "the guide follows a log";
   if (has_link<scene_guide::Harmonic>(scene)) {
     return "the guide swings: the motions that stay repeat it";
   }

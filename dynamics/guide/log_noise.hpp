@@ -11,11 +11,12 @@
 
 #include <dynamics/guide/rates.hpp>
 #include <dynamics/guide/tabulated.hpp>
+#include <dynamics/guide/value_log.hpp>
 
 namespace kreisel {
 
 /// The errors of a log's samples, by component: quaternion x, y, z, w, then position x, y, z. For a
-/// log of rates: angular velocity, 0, acceleration.
+/// log of rates: angular velocity, 0, acceleration. For a log of values: 0, values.
 struct LogNoise {
   using Components = PiecewisePose<double>::Components;
   Components white = Components::Zero();  ///< standard deviation, independent from sample to sample
@@ -64,6 +65,12 @@ struct LogSamples {
   return result;
 }
 
+/// Values in place of positions.
+[[nodiscard]] inline LogSamples samples_of(const ValueLog& log) {
+  const auto values = value_components(log);
+  return {log.times, values, values};
+}
+
 [[nodiscard]] inline MotionLog<double> with_values(MotionLog<double> log,
                                                    const std::vector<LogComponents>& values) {
   log.positions.resize(values.size());
@@ -79,6 +86,11 @@ struct LogSamples {
     log.angular_velocities[i] = values[i].head<3>();
     if (!log.accelerations.empty()) log.accelerations[i] = values[i].tail<3>();
   }
+  return log;
+}
+
+[[nodiscard]] inline ValueLog with_values(ValueLog log, const std::vector<LogComponents>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) log.values[i] = values[i].tail<3>();
   return log;
 }
 

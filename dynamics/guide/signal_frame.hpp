@@ -34,6 +34,11 @@ struct PoseSignals {
     return position.is_smooth() && yaw.is_smooth() && pitch.is_smooth() && roll.is_smooth();
   }
 
+  /// True if the Taylor series hold at all times.
+  [[nodiscard]] bool is_analytic() const {
+    return position.is_analytic() && yaw.is_analytic() && pitch.is_analytic() && roll.is_analytic();
+  }
+
   template <class T>
   [[nodiscard]] Pose<T> operator()(const T& t) const {
     const YawPitchRoll<T> angles{at(yaw, t), at(pitch, t), at(roll, t)};
@@ -87,7 +92,7 @@ class SignalFrame {
     return PosedFrame<Pointed, G, I, S>(std::cref(pose_))(t);
   }
 
-  /// The series of u and g', as AnalyticGuide requires.
+  /// The series of u and g', as AnalyticGuide requires. The pose must be analytic.
   [[nodiscard]] GuideSeries series(double t, double h, int order,
                                    const detail::Components<double>& g) const {
     return AnalyticFrame<Pointed, G, I>(std::cref(pose_)).series(t, h, order, g);

@@ -4,12 +4,14 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <dynamics/signal/polynomials.hpp>
 #include <motor/error.hpp>
 #include <motor/lanes.hpp>
 #include <motor/motor.hpp>
@@ -24,9 +26,9 @@ using SignalValue = std::conditional_t<std::is_same_v<Value, double>, S, Vector3
 
 }  // namespace detail
 
-/// A function of time: a piecewise linear part plus oscillations.
+/// A function of time: a piecewise linear part plus oscillations, or a spline.
 ///
-///   f(t) = value + rate (t - begin) + sum amplitude sin(frequency t + phase)
+///   f(t) = value + rate (t - begin) + sum amplitude sin(frequency t + phase) + spline(t)
 ///
 /// Each line is valid from its begin to the next one's; the first is also valid before its begin.
 /// At a jump the signal has the value after the jump.
@@ -93,6 +95,20 @@ class Signal {
     return result;
   }
 
+  /// A signal of continuous polynomials whose rates are continuous, too.
+  ///
+  /// Throws : InvalidInput for no pieces, or a number of coefficients that does not fit them. The
+  ///          signal throws where the polynomials do
+  [[nodiscard]] static Signal polynomials(Polynomials<Value> pieces) {
+    if (pieces.begins.empty() || pieces.terms == 0 ||
+        pieces.coefficients.size() != pieces.begins.size() * pieces.terms) {
+      throw InvalidInput("signal: the coefficients of polynomials do not fit their pieces");
+    }
+    Signal result;
+    result.spline_ = std::make_shared<const Polynomials<Value>>(std::move(pieces));
+    return result;
+  }
+
   /// The value in double, or in dual numbers of any depth; a pack's lanes share the time.
   template <class S>
   [[nodiscard]] detail::SignalValue<Value, S> operator()(const S& t) const {
@@ -109,10 +125,12 @@ class Signal {
       const auto cycle = Cycle(term, t);
       sum += (std::pow(term.frequency, order) * cycle[order]) * term.amplitude;
     }
+    if (spline_) sum += spline_->derivative(t, order);
     return sum;
   }
 
-  /// Fills `result` with the coefficients in powers of (time - t)/h, after a jump if t is one.
+  /// Fills `result` with the coefficients in powers of (time - t)/h, after a jump if t is one. The
+  /// signal must be analytic.
   void coefficients(double t, double h, std::span<Value> result) const {
     const Line& line = line_at(t);
     for (Value& coefficient : result) coefficient = zero();
@@ -138,12 +156,15 @@ class Signal {
   /// True if neither value nor rate jumps.
   [[nodiscard]] bool is_smooth() const { return lines_.size() == 1; }
 
+  /// True if its Taylor series holds up to the next jump: it has no spline.
+  [[nodiscard]] bool is_analytic() const { return spline_ == nullptr; }
+
   /// True if its value jumps, not only its rate.
   [[nodiscard]] bool jumps() const { return jumps_; }
 
   /// True if it is constant.
   [[nodiscard]] bool is_constant() const {
-    return lines_.size() == 1 && lines_.front().rate == zero() && terms_.empty();
+    return lines_.size() == 1 && lines_.front().rate == zero() && terms_.empty() && !spline_;
   }
 
   /// The signal times a factor.
@@ -154,6 +175,11 @@ class Signal {
       line.rate *= factor;
     }
     for (Term& term : result.terms_) term.amplitude *= factor;
+    if (spline_) {
+      Polynomials<Value> pieces = *spline_;
+      for (Value& coefficient : pieces.coefficients) coefficient *= factor;
+      result.spline_ = std::make_shared<const Polynomials<Value>>(std::move(pieces));
+    }
     return result;
   }
 
@@ -247,6 +273,7 @@ class Signal {
 
   std::vector<Line> lines_;  ///< the first is also valid before its begin
   std::vector<Term> terms_;
+  std::shared_ptr<const Polynomials<Value>> spline_ = nullptr;
   bool jumps_ = false;
 };
 

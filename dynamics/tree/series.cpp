@@ -10,6 +10,9 @@ namespace kreisel::detail {
 
 bool knows_series(const BodyTree& tree) {
   if (!tree.loaded().empty() || !tree.drives().empty()) return false;
+  for (const BodyTree::TimedForce& force : tree.timed_forces()) {
+    if (!force.signal.is_analytic()) return false;
+  }
   for (const RotorLink& rotor : tree.rotors()) {
     if (tree.body(rotor.link.body).rotor->acceleration) return false;
   }

@@ -358,7 +358,7 @@ Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& s
   if (rates.size() == 0) throw InvalidInput("nothing in this scene can move");
   Analysis result;
   const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
-  const bool logged = scene.follows_log();
+  const bool logged = scene.guide_follows_log();
   const Equilibria equilibria = find_equilibria(system, scene, start);
   result.starts = equilibria.starts;
   result.equilibria = rests(system, scene, equilibria, start);

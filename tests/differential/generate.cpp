@@ -769,6 +769,22 @@ void add_solve(Random& r, Scene& scene) {
   }
 }
 
+/// Writes some of the smooth functions of time as logs.
+void add_logs_of_signals(Random& r, Scene& scene) {
+  int count = 0;
+  const auto take = [&](Signal& s) {
+    if (s.empty() || !s.jumps.times.empty() || r.chance(0.6)) return;
+    s.file = "s" + std::to_string(count++) + ".csv";
+    scene.t_end = std::min(scene.t_end, 10.0);
+  };
+  for (Body& body : scene.bodies) {
+    take(body.force_in_time);
+    take(body.motion);
+    if (body.rotor) take(body.rotor->torque_in_time);
+    for (Load& load : body.loads) take(load.force_in_time);
+  }
+}
+
 }  // namespace
 
 Scene generate(Random r) {
@@ -795,6 +811,7 @@ Scene generate(Random r) {
   add_solve(r, scene);
   add_sensors(r, scene);
   for (Body& body : scene.bodies) body.has_units = r.chance(0.1);
+  add_logs_of_signals(r, scene);
   return scene;
 }
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <functional>
 
+#include "reference_guide.hpp"
+
 namespace differential {
 
 namespace {
@@ -76,6 +78,10 @@ std::string series(const Series& s) {
 /// Writes a signal; numbers for which the x component alone counts are written by `value`.
 std::string signal(const Signal& s, const std::function<std::string(const Vector&)>& value) {
   Inline table;
+  if (!s.file.empty()) {
+    table.add("file", "\"" + s.file + "\"");
+    return table.text();
+  }
   std::string pairs;
   for (std::size_t i = 0; i < s.jumps.times.size(); ++i) {
     pairs += (pairs.empty() ? "[" : ", [") + text(s.jumps.times[i]) + ", " +
@@ -401,20 +407,29 @@ bool Signal::empty() const {
 
 std::vector<double> Scene::jumps() const {
   std::vector<double> times;
-  const auto add = [&times](const Signal& s) {
-    times.insert(times.end(), s.jumps.times.begin(), s.jumps.times.end());
-  };
-  for (const Body& body : bodies) {
-    add(body.force_in_time);
-    add(body.motion);
-    if (body.rotor) add(body.rotor->torque_in_time);
-    for (const Load& load : body.loads) add(load.force_in_time);
+  for (const Signal* const s : signals()) {
+    times.insert(times.end(), s->jumps.times.begin(), s->jumps.times.end());
   }
   std::sort(times.begin(), times.end());
   return times;
 }
 
+std::vector<const Signal*> Scene::signals() const {
+  std::vector<const Signal*> result;
+  for (const Body& body : bodies) {
+    result.push_back(&body.force_in_time);
+    result.push_back(&body.motion);
+    if (body.rotor) result.push_back(&body.rotor->torque_in_time);
+    for (const Load& load : body.loads) result.push_back(&load.force_in_time);
+  }
+  return result;
+}
+
 bool Scene::has_log() const {
+  const std::vector<const Signal*> all = signals();
+  if (std::any_of(all.begin(), all.end(), [](const Signal* s) { return !s->file.empty(); })) {
+    return true;
+  }
   return std::any_of(guide.begin(), guide.end(), [](const Link& link) { return link.is_logged(); });
 }
 
@@ -451,7 +466,29 @@ Scene nearer(Scene scene) {
   return scene;
 }
 
+/// Samples a hundred times per radian, from before the run to after it.
+std::string samples(const Signal& signal, double t_end) {
+  double fastest = 1;
+  for (const Series::Term& term : signal.series.terms) {
+    fastest = std::max(fastest, term.frequency.radian());
+  }
+  const double step = 0.01 / fastest;
+  constexpr long outside = 16;
+  std::string result = "t,value,x,y,z\n";
+  for (long i = -outside; static_cast<double>(i - outside) * step <= t_end; ++i) {
+    const double t = static_cast<double>(i) * step;
+    const Vector v = reference::course_of(signal, t, t).value.cast<double>();
+    result += text(t);
+    for (const double x : {v.x(), v.x(), v.y(), v.z()}) result += "," + text(x);
+    result += "\n";
+  }
+  return result;
+}
+
 void write_logs(const Scene& scene, const std::filesystem::path& folder) {
+  for (const Signal* const s : scene.signals()) {
+    if (!s->file.empty()) std::ofstream(folder / s->file) << samples(*s, scene.t_end);
+  }
   for (std::size_t i = 0; i < scene.guide.size(); ++i) {
     const Link& link = scene.guide[i];
     if (!link.is_logged()) continue;

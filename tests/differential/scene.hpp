@@ -52,6 +52,7 @@ struct Signal {
   Series series = {};
   Vector rate = Vector::Zero();
   Jumps jumps = {};
+  std::string file = {};  ///< a log of the samples, instead of the terms
 
   [[nodiscard]] bool empty() const;
 };
@@ -187,6 +188,8 @@ struct Scene {
   int outputs = 20;         ///< evenly spaced after t = 0; from three on by a step
 
   [[nodiscard]] bool has_log() const;
+  /// The functions of time in forces and drives.
+  [[nodiscard]] std::vector<const Signal*> signals() const;
   /// The times at which something jumps, in order.
   [[nodiscard]] std::vector<double> jumps() const;
   [[nodiscard]] std::vector<double> times() const;

@@ -125,6 +125,10 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
   changes.emplace_back([i](Scene& s) { drop_body(s, i); });
   add([](Body& b) { b.parent = -1; });
   add([](Body& b) { b.has_units = false; });
+  add([](Body& b) {
+    b.force_in_time.file.clear(), b.motion.file.clear();
+    for (Load& load : b.loads) load.force_in_time.file.clear();
+  });
   add([](Body& b) { b.orientation.reset(); });
   add([](Body& b) { b.loads.clear(); });
   add([](Body& b) {

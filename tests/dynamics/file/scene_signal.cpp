@@ -3,15 +3,19 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <random>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <dynamics/file/joints.hpp>
+#include <dynamics/file/log_error.hpp>
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_system.hpp>
 
 #include <support/scene_text.hpp>
+#include <support/scratch.hpp>
 
 using namespace kreisel;
 using test::mistakes;
@@ -38,6 +42,32 @@ double end_rate(const std::string& text) {
   BOOST_TEST(motion.report.tolerance_kept);
   return motion.states.back().rates[0];
 }
+
+/// A scene beside a log of 0.3 sin(2 t): one number, or a vector along z. Rows are 20 ms apart.
+class Logged {
+ public:
+  explicit Logged(bool is_number, double noise = 0, unsigned seed = 1) {
+    std::mt19937 engine(seed);
+    std::ostringstream text;
+    text.precision(17);
+    text << (is_number ? "t,value,turn [deg]\n" : "t,a,b,c\n");
+    for (int i = -10; i <= 210; ++i) {
+      double off = 0;
+      for (int k = 0; k < 12; ++k) off += static_cast<double>(engine()) * 0x1p-32 - 0.5;
+      const double t = 0.02 * i;
+      const double value = 0.3 * std::sin(2 * t) + noise * off;
+      text << t << (is_number ? "," : ",0,0,") << value << (is_number ? ",0\n" : "\n");
+    }
+    (void)folder_.write("log.csv", text.str());
+  }
+
+  [[nodiscard]] SceneFile scene(const std::string& text) const {
+    return parse_scene(text, folder_.path() / "s.toml");
+  }
+
+ private:
+  test::Scratch folder_;
+};
 
 const std::string slide = "{ kind = \"prismatic\", axis = [0, 0, 1] }";
 const std::string universal = "{ kind = \"universal\", axis = [0, 0, 1], second_axis = [1, 0, 0] }";
@@ -168,11 +198,100 @@ BOOST_AUTO_TEST_CASE(guide_is_a_link_of_chains) {
   BOOST_TEST((now.origin_acceleration() - a).norm() <= 1e-14);
 }
 
+// 0.3 sin(2 t) at every 20 ms, beyond both ends of the run.
+BOOST_AUTO_TEST_CASE(log_is_a_function_of_time) {
+  const Logged number(true);
+  const SceneFile pushed = number.scene(body("force = { file = \"log.csv\" }"));
+  BOOST_TEST(pushed.forces_change);
+  BOOST_TEST(pushed.discontinuities.empty());
+  BOOST_TEST(pushed.log_files().size() == 1U);
+  BOOST_TEST(!pushed.guide_follows_log());
+  const auto run = run_scene(pushed);
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(run.report.method != "taylor");
+  BOOST_TEST(std::abs(run.states.back().rates[0] - 0.15 * (1 - std::cos(8.0))) <= 1e-10);
+  const Logged vector(false);
+  const auto thrown = run_scene(vector.scene(body(
+      "load = { force = { file = \"log.csv\", columns = { t = \"t\", x = \"a\", y = \"b\", z = "
+      "\"c\" } }, axes = \"guide\" }",
+      "{ kind = \"free\" }")));
+  BOOST_TEST(std::abs(thrown.states.back().rates[5] - 0.075 * (1 - std::cos(8.0))) <= 1e-10);
+}
+
+BOOST_AUTO_TEST_CASE(log_prescribes_a_motion) {
+  const Logged log(true);
+  const SceneFile swing = log.scene(body("drive = { angle = { file = \"log.csv\" } }"));
+  BOOST_TEST(std::abs(swing.start[0].coordinates[0]) <= 1e-12);
+  BOOST_TEST(std::abs(swing.start[0].rates[0] - 0.6) <= 1e-9);
+  const auto state = run_scene(swing).states.back();
+  BOOST_TEST(std::abs(state.coordinates[0] - 0.3 * std::sin(8.0)) <= 1e-9);
+  const std::string degrees =
+      body("drive = { angle = { file = \"log.csv\", angles = \"deg\", sigma = \"0 rad\" } }");
+  BOOST_TEST(std::abs(log.scene(degrees).start[0].rates[0] - 0.6 * 0.017453292519943295) <= 1e-10);
+  const std::string rolls = "angles = { roll = { file = \"log.csv\" } }";
+  const SceneGuide rolling = make_guide(log.scene(guide(rolls)));
+  BOOST_TEST(!rolling.knows_series());
+  const auto now = rolling(0.4);
+  BOOST_TEST(std::abs(now.V.value.resultant.x() - 0.6 * std::cos(0.8)) <= 1e-8);
+  BOOST_TEST(std::abs(now.dV.value.resultant.x() + 1.2 * std::sin(0.8)) <= 1e-6);
+}
+
+// White noise of a torque: the rate's error is its integral.
+BOOST_AUTO_TEST_CASE(error_of_a_log_is_estimated) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Logged log(true, 0.01, seed);
+    const SceneFile file = log.scene(body("force = { file = \"log.csv\" }"));
+    const auto model = make_model(file);
+    const auto run = model->solve(options_of(file), start_of(file));
+    const auto error = error_of_logs(file, *model, run, {});
+    BOOST_TEST_REQUIRE(error.has_value());
+    const double off = std::abs(run.states.back().rates[0] - 0.15 * (1 - std::cos(8.0)));
+    // Twice the standard deviation: 0.01 sqrt(0.02 s 4 s)/2.
+    const double estimate = error->joints[0].rates[0];
+    BOOST_TEST(estimate >= 0.5 * 0.01 * std::sqrt(0.08));
+    BOOST_TEST(estimate <= 3 * 0.01 * std::sqrt(0.08));
+    BOOST_TEST(off <= 1.5 * estimate);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(mistakes_in_logs_are_reported) {
+  const Logged log(true);
+  const std::pair<std::string, std::string> cases[] = {
+      {body("force = { file = \"none.csv\" }"), "none.csv: cannot be read"},
+      {body("force = { file = 3 }"), "a'.force.file: must be a text, not a whole number"},
+      {body("force = { file = \"\" }"), "a'.force.file: is empty"},
+      {body("force = { file = \"log.csv\", rate = 2 }"),
+       "a'.force.file: is given beside 'rate'; one of them says what the signal is"},
+      {body("force = { file = \"log.csv\", column = 2 }"), "a'.force.column: is no key here"},
+      {body("force = { file = \"log.csv\", columns = { x = 2 } }"),
+       "a'.force.columns.x: is no key here"},
+      {body("force = { file = \"log.csv\", sigma = -1 }"),
+       "a'.force.sigma: -1 must not be below 0"},
+      {body("force = { file = \"log.csv\", time_zero = 1 }"),
+       "a'.force.file: 'log.csv' goes from t = -1.2 s to 3.2 s and does not cover the run, 0 to 4 "
+       "s: change  time_zero,  or the times in [solve]"},
+      {body("load = { torque = { file = \"log.csv\" } }"), "a'.load.torque.file: "},
+      {body("drive = { angle = { file = \"log.csv\", columns = { t = \"t\", value = \"turn [deg]\" "
+            "} "
+            "} }"),
+       "a'.drive.angle.file: "},
+  };
+  for (const auto& [text, reason] : cases) {
+    std::string found = "none";
+    try {
+      (void)log.scene(text);
+    } catch (const SceneMistakes& error) {
+      found = error.what();
+    }
+    BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(mistakes_are_reported) {
   const std::pair<std::string, std::string> cases[] = {
       {body("force = {}"),
        "s.toml:6:9: body 'a'.force: is a function of time: give 'constant', 'rate' and 'terms', or "
-       "'steps', or 'points'"},
+       "'steps', 'points' or 'file'"},
       {body("force = { steps = [] }"), "s.toml:6:19: body 'a'.force.steps: is empty"},
       {body("force = { steps = 3 }"),
        "s.toml:6:19: body 'a'.force.steps: must be a list of [time, value]"},
@@ -190,7 +309,7 @@ BOOST_AUTO_TEST_CASE(mistakes_are_reported) {
        "signal is"},
       {body("force = { constnat = 1 }"),
        "s.toml:6:9: body 'a'.force: is a function of time: give 'constant', 'rate' and 'terms', or "
-       "'steps', or 'points'"},
+       "'steps', 'points' or 'file'"},
       {body("force = { rate = 1, constnat = 1 }"),
        "s.toml:6:21: body 'a'.force.constnat: is no key here (did you mean 'constant'?)"},
       {body("force = { terms = [{ amplitude = 1 }] }"),

@@ -117,6 +117,27 @@ BOOST_AUTO_TEST_CASE(coefficients_sum_up_to_it) {
   BOOST_TEST((c[0] == 0 && c[1] == 1.5 && c[2] == 0));
 }
 
+// t^3 on [0, 1], then its own Taylor polynomial on [1, 3].
+BOOST_AUTO_TEST_CASE(polynomials_hold_piece_by_piece) {
+  const Number f = Number::polynomials({{0, 1}, 3, 4, {0, 0, 0, 1, 1, 3, 3, 1}});
+  for (const double t : {0.0, 0.5, 1.0, 1.5, 3.0}) {
+    BOOST_TEST(f(t) == t * t * t);
+    BOOST_TEST(f.derivative(t, 1) == 3 * t * t);
+    BOOST_TEST(f.derivative(t, 2) == 6 * t);
+    BOOST_TEST(f.derivative(t, 3) == 6);
+    BOOST_TEST(f.derivative(t, 4) == 0);
+    BOOST_TEST(f.scaled(-2)(t) == -2 * t * t * t);
+  }
+  BOOST_TEST(!f.is_constant());
+  BOOST_TEST(!f.is_analytic());
+  BOOST_TEST(Number(1).is_analytic());
+  BOOST_TEST(f.discontinuities().empty());
+  BOOST_TEST(std::abs(f(3 + 1e-13) - 27) < 1e-11);
+  BOOST_CHECK_THROW((void)f(3.001), InvalidInput);
+  BOOST_CHECK_THROW((void)f(-0.001), InvalidInput);
+  BOOST_CHECK_THROW((void)Number::polynomials({{0, 1}, 3, 4, {0, 0, 0, 1}}), InvalidInput);
+}
+
 BOOST_AUTO_TEST_CASE(scaling_scales_all) {
   const Number f = Number(1, 2, {{3, 4, 5}}).scaled(10);
   BOOST_TEST(std::abs(f(0.5) - (20 + 30 * std::sin(7.0))) <= 60 * u);
