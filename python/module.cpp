@@ -178,8 +178,8 @@ kreisel::SceneFile requested(const Scene& scene, std::optional<double> t_end,
     throw kreisel::InvalidInput("t_end and times exclude each other: give one of them");
   if (times && times->empty()) throw kreisel::InvalidInput("times must not be empty");
   if (times) t_end = times->back();
-  if (t_end && !(*t_end > 0 && std::isfinite(*t_end))) {
-    throw kreisel::InvalidInput("t_end must be a number above 0");
+  if (t_end && !std::isfinite(*t_end)) {
+    throw kreisel::InvalidInput("t_end must be a finite number");
   }
   kreisel::SolveRequest request{t_end, tolerance, {}};
   if (method) {
@@ -187,6 +187,9 @@ kreisel::SceneFile requested(const Scene& scene, std::optional<double> t_end,
     if (!request.method) throw kreisel::InvalidInput("method '" + *method + "' is unknown");
   }
   kreisel::SceneFile file = kreisel::parse_scene(scene.text, scene.path, request);
+  if (times && times->front() < file.t_begin) {
+    throw kreisel::InvalidInput("times must not begin before t_begin of the scene");
+  }
   if (times) file.output_times = *times;
   if (file.output_times.empty() || file.output_times.back() < file.t_end) {
     file.output_times.push_back(file.t_end);

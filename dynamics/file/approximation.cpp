@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// States of the linear equations about a steady motion.
+/// States of the linear equations about a steady motion, at times since the start.
 class LinearMotion {
  public:
   static constexpr const char* method = "matrix exponential";
@@ -33,7 +33,7 @@ class LinearMotion {
     if (!steady.exists()) {
       throw InvalidInput("model 'linear': no steady motion to be linear about: " + steady.reason);
     }
-    about_ = steady_motion::linearized(system_, 0, steady.state);
+    about_ = steady_motion::linearized(system_, system_.begin(), steady.state);
   }
 
   /// Throws : ComputationFailed if the states overflow
@@ -60,7 +60,7 @@ class LinearMotion {
   steady_motion::Linearization about_;
 };
 
-/// States of the precession equations.
+/// States of the precession equations, at times since the start.
 class PrecessionMotion {
  public:
   static constexpr const char* method = "technical equations, verner98";
@@ -88,7 +88,9 @@ class Approximation final : public SceneSolver {
     const auto clock = std::chrono::steady_clock::now();
     Trajectory<JointState> result = exact_->solve(options, start);
     if (result.report.status != RunStatus::complete) return result;
-    const std::vector<VectorXd> states = motion_.states(joined(start), result.times);
+    std::vector<double> since = result.times;
+    for (double& t : since) t -= options.begin;
+    const std::vector<VectorXd> states = motion_.states(joined(start), since);
     ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
     // Relative to the sizes of the whole exact run: an approximation may start with other rates.
     distance.note_sizes(result.report.sizes);

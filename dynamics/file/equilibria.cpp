@@ -141,8 +141,9 @@ class Search {
       const int rate = directions_.rates + i;
       if (!directions_.held[static_cast<std::size_t>(rate)]) base_[q + i] = 0;
     }
-    const Places cyclic = directions_.cyclic(linearized(system, 0, base_).A,
-                                             linearized(system, 0, off(system, base_)).A);
+    const Places cyclic =
+        directions_.cyclic(linearized(system, system.begin(), base_).A,
+                           linearized(system, system.begin(), off(system, base_)).A);
     fixed_ = joined(directions_.held, cyclic);
     running_ = list(joined(directions_.running, cyclic));
     for (int i = 0; i < directions_.rates; ++i) {
@@ -169,8 +170,9 @@ class Search {
   /// at a start.
   void refine(const VectorXd& guess) {
     try {
-      const auto reached = find_equilibrium(
-          system_, 0, guess, {.held = list(fixed_), .running = running_, .most_iterations = 40});
+      const auto reached =
+          find_equilibrium(system_, system_.begin(), guess,
+                           {.held = list(fixed_), .running = running_, .most_iterations = 40});
       add(reached.state, reached.residual);
     } catch (const ComputationFailed&) {
       // Another start may converge.
@@ -195,7 +197,8 @@ class Search {
     double step = 0;
     double before = 0;
     for (int i = 0; i < 50; ++i) {
-      const auto there = detail::derivatives(system_, 0, y, tangent_.basis(y), detail::InTime::no);
+      const auto there =
+          detail::derivatives(system_, system_.begin(), y, tangent_.basis(y), detail::InTime::no);
       const auto r = detail::reduced(tangent_, y, there);
       const VectorXd a = r.v.tail(directions_.rates)(free_);
       const double size = a.cwiseAbs().maxCoeff();
@@ -218,7 +221,7 @@ class Search {
   }
 
   void add(VectorXd state, double residual) {
-    const Linearization there = linearized(system_, 0, state);
+    const Linearization there = linearized(system_, system_.begin(), state);
     const VectorXd& rate = there.rate;
     for (int i = 0; i < directions_.rates; ++i) {
       const bool runs = directions_.running[static_cast<std::size_t>(i)];
@@ -244,7 +247,7 @@ class Search {
 
   /// The accelerations of the coordinates that are searched.
   [[nodiscard]] VectorXd accelerations(const VectorXd& y) const {
-    const VectorXd rate = tangent_.inverse(y) * system_.rates(0, y);
+    const VectorXd rate = tangent_.inverse(y) * system_.rates(system_.begin(), y);
     return rate.tail(directions_.rates)(free_);
   }
 

@@ -86,6 +86,7 @@ class Beside {
   [[nodiscard]] End end_of(const SceneFile& scene, double tolerance) const {
     const std::unique_ptr<SceneSolver> other = make_model(scene);
     SolveOptions options;
+    options.begin = scene.t_begin;
     options.output_times = {run_.times.back()};
     options.tolerance = tolerance;
     options.discontinuities = scene.discontinuities;

@@ -96,7 +96,8 @@ std::vector<double> SensorReadings::row(const SceneSolver& model, double t,
 
 double SensorReadings::length(std::size_t sample) const {
   if (sample > 0) return times_[sample] - times_[sample - 1];
-  return times_.front() > 0 ? times_.front() : times_[1];
+  const double first = times_.front() - scene_.t_begin;
+  return first > 0 ? first : times_[1] - times_[0];
 }
 
 Vector3<double> SensorReadings::noise(std::size_t sensor, double t) {

@@ -96,7 +96,7 @@ SceneScale scale_of(const SceneFile& scene, const BodyTree& tree,
                     const std::vector<JointState>& states) {
   SceneScale scale;
   scale.angle = 1;
-  scale.turning = scene.t_end > 0 ? 1 / scene.t_end : 0;
+  scale.turning = scene.duration() > 0 ? 1 / scene.duration() : 0;
   double mass = 0;
   double momentum = 0;  // the greatest angular momentum of a body
   for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {

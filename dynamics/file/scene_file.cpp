@@ -77,7 +77,7 @@ class SceneReader {
   SceneFile read() {
     scene_.title = root_.text("title").value_or("");
     read_solve();
-    logs_.set_run({0, scene_.t_end});
+    logs_.set_run({scene_.t_begin, scene_.t_end});
     read_guide();
     read_gravity();
     give_gravity_to_rates();
@@ -100,16 +100,12 @@ class SceneReader {
       if (!root_.has("solve") && !request_.t_end) {
         root_.refuse_all("the table [solve] with its key 't_end' is missing");
       }
-      set_times({}, {});
+      scene_.t_end = request_.t_end.value_or(1);
+      if (!(scene_.t_end > 0)) root_.refuse_all("the run must end after t = 0 s");
+      if (mistakes_.none()) set_times({}, {});
       return;
     }
-    if (request_.t_end) {
-      [[maybe_unused]] const auto overruled =
-          solve->number("t_end", dimension::time, Range::positive);
-      scene_.t_end = *request_.t_end;
-    } else {
-      scene_.t_end = solve->required_number("t_end", dimension::time, Range::positive);
-    }
+    read_begin_and_end(*solve);
     if (const auto tolerance = solve->number("tolerance", dimension::number)) {
       if (*tolerance >= 1e-15 && *tolerance <= 1e-2) {
         scene_.tolerance = *tolerance;
@@ -128,12 +124,30 @@ class SceneReader {
     if (step && times) {
       solve->refuse("output_times", "is given beside 'output_step'; one of them says when");
     }
-    if (step && scene_.t_end / *step > most_outputs) {
+    if (step && scene_.duration() / *step > most_outputs) {
       solve->refuse("output_step", "asks for more than ten million rows");
     }
     if (times) check_times(*solve, *times);
     solve->finish();
     if (mistakes_.none()) set_times(step, times);
+  }
+
+  void read_begin_and_end(Section& solve) {
+    scene_.t_begin = solve.number("t_begin", dimension::time).value_or(0);
+    const auto end = solve.number("t_end", dimension::time);
+    if (!request_.t_end && !solve.has("t_end")) solve.refuse_missing("t_end");
+    const bool has_begin = scene_.t_begin != 0;
+    if (end && !(*end > scene_.t_begin)) {
+      solve.refuse("t_end", shown_time(*end) + (has_begin ? " s must be after t_begin, " +
+                                                                shown_time(scene_.t_begin) + " s"
+                                                          : " must be above 0"));
+    }
+    if (request_.t_end && !(*request_.t_end > scene_.t_begin)) {
+      solve.refuse(has_begin ? "t_begin" : "t_end",
+                   "the run must end after t = " + shown_time(scene_.t_begin) + " s, not at the " +
+                       shown_time(*request_.t_end) + " s that were asked for");
+    }
+    scene_.t_end = request_.t_end.value_or(end.value_or(scene_.t_begin + 1));
   }
 
   void read_model(Section& solve) {
@@ -151,8 +165,8 @@ class SceneReader {
     if (times.empty()) solve.refuse("output_times", "is empty");
     double before = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
-      if (times[i] < 0) {
-        solve.refuse("output_times", "begins before t = 0");
+      if (times[i] < scene_.t_begin) {
+        solve.refuse("output_times", "begins before t = " + shown_time(scene_.t_begin));
         return;
       }
       if (i > 0 && !(times[i] > before)) {
@@ -168,14 +182,14 @@ class SceneReader {
 
   void set_times(const std::optional<double>& given_step,
                  const std::optional<std::vector<double>>& given) {
-    if (scene_.t_end == 0) scene_.t_end = request_.t_end.value_or(1);
     const double end = scene_.t_end;
     if (given) {
       std::copy_if(given->begin(), given->end(), std::back_inserter(scene_.output_times),
                    [end](double t) { return t <= end; });
       return;
     }
-    scene_.output_times = detail::output_grid(0, end, given_step.value_or(end / 500));
+    scene_.output_times =
+        detail::output_grid(scene_.t_begin, end, given_step.value_or(scene_.duration() / 500));
   }
 
   /// Notes that forces change, and the times within the run at which the signal is discontinuous.
@@ -184,7 +198,7 @@ class SceneReader {
     if (signal.is_constant()) return;
     scene_.forces_change = true;
     for (const double t : signal.discontinuities()) {
-      if (t > 0 && t <= scene_.t_end) scene_.discontinuities.push_back(t);
+      if (t > scene_.t_begin && t <= scene_.t_end) scene_.discontinuities.push_back(t);
     }
   }
 
@@ -234,6 +248,9 @@ class SceneReader {
       link.origin_acceleration = read_series(guide, "origin_acceleration", dimension::acceleration);
       link.start = read_frame_start(guide);
       check_length(guide, link);
+      if (scene_.t_begin < 0) {
+        guide.refuse("kind", "'harmonic' is given by its start at t = 0; solve.t_begin is earlier");
+      }
       scene_.guide.emplace_back(std::move(link));
     }
     if (kind == "earth") read_earth(guide);
@@ -406,7 +423,7 @@ class SceneReader {
   std::optional<LogPlace> read_log_place(Section& guide, const std::vector<LogRequest>& columns) {
     const std::size_t before = mistakes_.count();
     const std::string name = guide.required_text("file");
-    const LogOptions options = read_log_options(guide, columns, {0, scene_.t_end});
+    const LogOptions options = read_log_options(guide, columns, {scene_.t_begin, scene_.t_end});
     if (name.empty() && guide.has("file") && guide.find("file")->is_string()) {
       guide.refuse("file", "is empty");
     }
@@ -487,10 +504,11 @@ class SceneReader {
                         const std::vector<double>& times) const {
     const double begin = times.front();
     const double end = times.back();
-    if (begin <= 0 && end >= scene_.t_end) return;
+    if (begin <= scene_.t_begin && end >= scene_.t_end) return;
     section.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
-                               shown_time(end) + " s and does not cover the run, 0 to " +
-                               shown_time(scene_.t_end) + " s" + time_hint(options, times));
+                               shown_time(end) + " s and does not cover the run, " +
+                               shown_time(scene_.t_begin) + " to " + shown_time(scene_.t_end) +
+                               " s" + time_hint(options, times, scene_.t_begin));
   }
 
   static std::string shown_time(double t) {
@@ -500,13 +518,14 @@ class SceneReader {
     return text.str();
   }
 
-  /// Suggests keys with which a log covers a run from 0 on, as the end of a message.
-  static std::string time_hint(const LogOptions& options, const std::vector<double>& times) {
+  /// Suggests keys with which a log covers a run from t_begin on, as the end of a message.
+  static std::string time_hint(const LogOptions& options, const std::vector<double>& times,
+                               double t_begin) {
     const double begin = times.front();
-    if (begin <= 0) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
+    if (begin <= t_begin) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
     if (options.window) {
-      return ": the run begins at t = 0; increase  time_zero  by " + shown_time(begin) +
-             " s and move  window  back by as much";
+      return ": the run begins at t = " + shown_time(t_begin) + "; increase  time_zero  by " +
+             shown_time(begin - t_begin) + " s and move  window  back by as much";
     }
     constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
     const double step = (times.back() - begin) / static_cast<double>(times.size() - 1);
@@ -717,21 +736,24 @@ class SceneReader {
   }
 
   /// Sets the start to the prescribed motion. A start in the file must not contradict it.
-  static void start_drive(Section& section, const Drive& drive, BodyDescription& body,
-                          JointStart& start) {
+  void start_drive(Section& section, const Drive& drive, BodyDescription& body,
+                   JointStart& start) const {
     if (!drive.motion || start.coordinates.size() != 1) return;
     const Signal<double>& motion = *drive.motion;
     auto initial = section.section("initial");
     const auto set = [&](double& number, double value, const std::string& key) {
       const bool is_given = initial && (initial->has(key) || initial->has(key + "_deg"));
       if (is_given && number != value) {
-        initial->refuse(initial->has(key) ? key : key + "_deg", "differs from 'drive' at t = 0");
+        initial->refuse(initial->has(key) ? key : key + "_deg",
+                        "differs from 'drive' at t = " + shown_time(scene_.t_begin));
       }
       number = value;
     };
     const JointType& type = joint_type(body.joint.kind);
-    if (!drive.is_rate) set(start.coordinates.front(), motion(0.0), type.coordinates[0].key);
-    set(start.rates.front(), motion.derivative(0, drive.is_rate ? 0 : 1), type.rates[0].key);
+    if (!drive.is_rate)
+      set(start.coordinates.front(), motion(scene_.t_begin), type.coordinates[0].key);
+    set(start.rates.front(), motion.derivative(scene_.t_begin, drive.is_rate ? 0 : 1),
+        type.rates[0].key);
     const int order = drive.is_rate ? 1 : 2;
     if (!motion.is_constant()) {
       body.acceleration = [motion, order](double t) { return motion.derivative(t, order); };
@@ -965,11 +987,11 @@ class SceneReader {
       if (section.has(key) && !off) section.refuse(key, "does not go with a rotor");
     }
     const double rate = start.rates.front();
-    if (speed && rate != 0 && (*speed)(0.0) != rate) {
+    if (speed && rate != 0 && (*speed)(scene_.t_begin) != rate) {
       rotor->refuse("speed", "differs from initial.rate");
     }
     if (!speed && rate == 0 && mode != "torque") rotor->refuse_missing("speed");
-    if (speed) start.rates.front() = (*speed)(0.0);
+    if (speed) start.rates.front() = (*speed)(scene_.t_begin);
     if (speed && !speed->is_constant()) check_speed(*rotor, *speed, mode, body);
     const bool acts = torque && !(torque->is_constant() && (*torque)(0.0) == 0);
     if (acts && mode != "torque") rotor->refuse("torque", "is for mode = 'torque'");

@@ -150,19 +150,23 @@ struct SceneFile {
   std::vector<JointStart> start;    ///< one for each body
   std::vector<NamedPoints> points;  ///< one for each body
   std::vector<SceneSensor> sensors;
-  double t_end = 0;
+  double t_begin = 0;
+  double t_end = 0;  ///< after t_begin
   double tolerance = 1e-10;
   Method method = Method::automatic;
   SceneModel model = SceneModel::exact;
-  std::vector<double> output_times;     ///< in order, within [0, t_end]
-  std::vector<double> discontinuities;  ///< times of jumps of forces, in order, within (0, t_end]
-  bool forces_change = false;           ///< loads, joint forces or rotor speeds change with time
-  std::vector<std::string> columns;     ///< chosen columns or groups of columns; empty: all
+  std::vector<double> output_times;  ///< in order, within [t_begin, t_end]
+  std::vector<double>
+      discontinuities;         ///< times of jumps of forces, in order, within (t_begin, t_end]
+  bool forces_change = false;  ///< loads, joint forces or rotor speeds change with time
+  std::vector<std::string> columns;  ///< chosen columns or groups of columns; empty: all
   bool reactions = false;
   bool terms = false;
   std::vector<SceneSignalLog> signal_logs = {};
   /// The same scene with other logs of functions of time.
   std::function<SceneFile(std::vector<SceneSignalLog>)> with_signal_logs = nullptr;
+
+  [[nodiscard]] double duration() const { return t_end - t_begin; }
 
   /// True if the guide is at rest, so that its motion need not be computed.
   [[nodiscard]] bool rests() const;

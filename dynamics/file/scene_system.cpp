@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -21,7 +22,7 @@ struct Outer;  // the frame of all links up to one
 using Motion = FrameMotion<Guide, Inertial>;
 
 /// Steps that end at t_end may evaluate the guide a rounding error later.
-constexpr double past_the_end = 1 + 1e-12;
+double just_after(double end) { return end + 1e-12 * std::abs(end); }
 
 template <class... Cases>
 struct Overloaded : Cases... {
@@ -39,7 +40,7 @@ template <class Frame>
 SceneGuide within(Frame known) {
   const auto frame = std::make_shared<const Frame>(std::move(known));
   return [frame](double t) {
-    return (*frame)(t > frame->end() && t <= frame->end() * past_the_end ? frame->end() : t);
+    return (*frame)(t > frame->end() && t <= just_after(frame->end()) ? frame->end() : t);
   };
 }
 
@@ -53,8 +54,7 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
           },
           [t_end](const scene_guide::Harmonic& kind) -> SceneGuide {
             return HarmonicFrame<>(kind.angular_velocity, kind.origin_acceleration, 0,
-                                   t_end * past_the_end, pose(kind.start),
-                                   kind.start.origin_velocity);
+                                   just_after(t_end), pose(kind.start), kind.start.origin_velocity);
           },
           [](const scene_guide::Earth& kind) -> SceneGuide {
             // The number includes the centrifugal part at the origin.

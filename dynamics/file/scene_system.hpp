@@ -34,7 +34,7 @@ class SceneGuide : public AnyGuide {
   }
 };
 
-/// The guide motion of a scene, for times in [0, t_end].
+/// The guide motion of a scene, for times in [t_begin, t_end].
 ///
 /// Cost   : one link costs as much as its kind, a chain one product of motions more for each link
 /// Throws : InvalidInput as the kinds do, for values that are not checked in the file

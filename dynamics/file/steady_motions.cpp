@@ -108,15 +108,15 @@ VectorXd off(const StudySystem& system, const VectorXd& y) {
   return tangent.moved(y, eta);
 }
 
-bool stays(const StudySystem& system, const Linearization& linear, double t_end) {
+bool stays(const StudySystem& system, const Linearization& linear, double duration) {
   const Tangent tangent = tangent_of(system, linear.state);
   const double fastest = linear.rate.cwiseAbs().maxCoeff();
-  std::vector<double> times{0.31 * t_end, 0.77 * t_end};
+  std::vector<double> times{0.31 * duration, 0.77 * duration};
   // Later times, so that no angle has changed by full rotations by chance.
-  if (fastest * t_end > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
+  if (fastest * duration > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
   return std::all_of(times.begin(), times.end(), [&](double t) {
     const VectorXd later = tangent.moved(linear.state, VectorXd(t * linear.rate));
-    const Linearization then = linearized(system, t, later);
+    const Linearization then = linearized(system, system.begin() + t, later);
     return (then.A - linear.A).norm() <= 1e-9 * linear.A.norm() &&
            (then.rate - linear.rate).norm() <= 1e-9 * (1 + linear.rate.norm());
   });
@@ -138,18 +138,19 @@ Steady steady_at(const StudySystem& system, const Linearization& linear) {
 
 }  // namespace
 
-Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_end) {
-  const Linearization at_guess = linearized(system, 0, guess);
+Steady find_steady(const StudySystem& system, const VectorXd& guess, double duration) {
+  const Linearization at_guess = linearized(system, system.begin(), guess);
   const double change = at_guess.unsteadiness.norm();
   const bool moves = at_guess.rate.norm() > 0;
   if (moves && change <= 1e-12 * at_guess.A.norm() * at_guess.rate.norm() &&
-      stays(system, at_guess, t_end)) {
+      stays(system, at_guess, duration)) {
     Steady steady = steady_at(system, at_guess);
     steady.kind = Steady::Kind::start;
     return steady;
   }
   const Directions directions(system);
-  const Places cyclic = directions.cyclic(at_guess.A, linearized(system, 0, off(system, guess)).A);
+  const Places cyclic =
+      directions.cyclic(at_guess.A, linearized(system, system.begin(), off(system, guess)).A);
   Places held = joined(directions.held, cyclic);
   for (const int first : directions.attitudes) {
     // Newton's steps would otherwise halve the angular velocity of a free body down to 0.
@@ -162,10 +163,10 @@ Steady find_steady(const StudySystem& system, const VectorXd& guess, double t_en
   Steady steady;
   try {
     const auto found =
-        find_equilibrium(system, 0, guess,
+        find_equilibrium(system, system.begin(), guess,
                          {.held = list(held), .running = list(joined(directions.running, cyclic))});
-    const Linearization there = linearized(system, 0, found.state);
-    if (!stays(system, there, t_end)) {
+    const Linearization there = linearized(system, system.begin(), found.state);
+    if (!stays(system, there, duration)) {
       steady.reason =
           "the linear equations change along the motion or with time (if periodically: --period)";
       return steady;
@@ -214,7 +215,7 @@ std::string driven_rotors(const StudySystem& system) {
 }
 
 double growth(const StudySystem& system, const VectorXd& state) {
-  return eigenvalues(linearized(system, 0, state).A).real().maxCoeff();
+  return eigenvalues(linearized(system, system.begin(), state).A).real().maxCoeff();
 }
 
 /// The equilibrium nearest to a state; null if there is none.
@@ -239,7 +240,7 @@ const Equilibrium* nearest(const StudySystem& system, const Equilibria& equilibr
 
 Equilibria find_equilibria(const StudySystem& system, const SceneFile& scene,
                            const VectorXd& start) {
-  return changes(scene).empty() ? find_equilibria(system, start, scene.t_end) : Equilibria{};
+  return changes(scene).empty() ? find_equilibria(system, start, scene.duration()) : Equilibria{};
 }
 
 Steady find_steady(const StudySystem& system, const SceneFile& scene, const VectorXd& start,
@@ -247,7 +248,7 @@ Steady find_steady(const StudySystem& system, const SceneFile& scene, const Vect
   Steady steady;
   steady.reason = changes(scene);
   if (!steady.reason.empty()) return steady;
-  steady = find_steady(system, start, scene.t_end);
+  steady = find_steady(system, start, scene.duration());
   if (steady.kind == Steady::Kind::start || (steady.exists() && steady.turns)) return steady;
   const Equilibrium* const near = nearest(system, equilibria, start);
   if (near == nullptr) {
@@ -260,7 +261,7 @@ Steady find_steady(const StudySystem& system, const SceneFile& scene, const Vect
     return steady;
   }
   const VectorXd state = in_turns_of(system, near->state, start);
-  Steady rest = steady_at(system, linearized(system, 0, state));
+  Steady rest = steady_at(system, linearized(system, system.begin(), state));
   rest.kind = Steady::Kind::found;
   rest.residual = near->residual;
   rest.distance = (state - start).cwiseAbs().maxCoeff();

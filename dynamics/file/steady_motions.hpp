@@ -83,11 +83,11 @@ template <class Kind>
 }
 
 /// True if the linear equations stay the same along the motion and with time.
-[[nodiscard]] bool stays(const StudySystem& system, const Linearization& linear, double t_end);
+[[nodiscard]] bool stays(const StudySystem& system, const Linearization& linear, double duration);
 
 /// The steady motion at the guess or next to it.
 [[nodiscard]] Steady find_steady(const StudySystem& system, const Eigen::VectorXd& guess,
-                                 double t_end);
+                                 double duration);
 
 /// Equilibria of a scene; none if its guide keeps changing.
 [[nodiscard]] Equilibria find_equilibria(const StudySystem& system, const SceneFile& scene,

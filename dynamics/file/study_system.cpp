@@ -37,7 +37,7 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 
 }  // namespace
 
-StudySystem::StudySystem(const SceneFile& scene) {
+StudySystem::StudySystem(const SceneFile& scene) : begin_(scene.t_begin) {
   SceneBodies in_gravity = bodies_in_gravity(scene);
   bodies_ = std::make_unique<const Bodies>(make_guide_of_equations(scene),
                                            std::move(in_gravity.bodies), in_gravity.gravity);
@@ -82,14 +82,14 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
   PrecessionOptions options;
   try {
     const PrecessionBodies<SceneGuide> model(*bodies_);
-    const auto [place, u] = model.start(0, start);
+    const auto [place, u] = model.start(begin_, start);
     check.velocities = static_cast<int>(u.size());
     if (rest.size() == 0) {
       check.not_tested = "there is no equilibrium about which";
-    } else if (const auto [middle, still] = model.start(0, rest); !at_rest(still)) {
+    } else if (const auto [middle, still] = model.start(begin_, rest); !at_rest(still)) {
       check.not_tested = "the carriers turn in the steady motion; the test is for a rest";
     } else {
-      const auto a = admissibility(model.forces(0, middle), stiffness(model, 0, middle));
+      const auto a = admissibility(model.forces(begin_, middle), stiffness(model, begin_, middle));
       check.rank = a.rank;
       check.test = {a.admissible(), reason(a.obstacle), a.greatest_shift, {}};
       for (const SlowRoot& root : a.slow) {
@@ -98,7 +98,7 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
       options.kept = a.kept;
     }
     try {
-      const auto motion = precession_motion(model, 0, place, u, t_end, options);
+      const auto motion = precession_motion(model, begin_, place, u, t_end, options);
       const PrecessionSample& last = motion.samples.back();
       check.kept = motion.kept;
       check.motion = {last.t, last.bound, 0, motion.valid_until, motion.slow};
@@ -119,10 +119,11 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
 std::vector<StudySystem::Vector> StudySystem::technical(const Vector& start,
                                                         const std::vector<double>& times) const {
   const PrecessionBodies<SceneGuide> model(*bodies_);
-  const auto [place, u] = model.start(0, start);
+  const auto [place, u] = model.start(begin_, start);
   PrecessionOptions options;
-  options.output_times = times;
-  const auto motion = precession_motion(model, 0, place, u, times.back(), options);
+  for (const double t : times) options.output_times.push_back(begin_ + t);
+  const auto motion =
+      precession_motion(model, begin_, place, u, options.output_times.back(), options);
   std::vector<Vector> states;
   for (const auto& sample : motion.outputs) {
     states.push_back(model.state(sample.t, sample.position, sample.velocity));

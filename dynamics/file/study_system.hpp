@@ -57,13 +57,15 @@ class StudySystem {
  public:
   using Vector = Eigen::VectorXd;
 
-  /// The guide is defined from 0 to the scene's t_end.
+  /// The guide is defined from the scene's t_begin to its t_end.
   explicit StudySystem(const SceneFile& scene);
   StudySystem(const StudySystem&) = delete;
   StudySystem& operator=(const StudySystem&) = delete;
   ~StudySystem();
 
   [[nodiscard]] const BodyTree& tree() const;
+  /// The time of the start.
+  [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] std::vector<int> blocks() const { return tree().blocks(); }
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
@@ -82,7 +84,7 @@ class StudySystem {
   [[nodiscard]] PrecessionCheck precession(const Vector& start, const Vector& rest,
                                            double t_end) const;
 
-  /// States by the precession equations at increasing times, until the motion is no longer slow.
+  /// States by the precession equations at increasing times since the start, until the motion is no longer slow.
   /// Angles of rotors do not change.
   ///
   /// Throws : InvalidInput if there are no such equations; ComputationFailed
@@ -91,6 +93,7 @@ class StudySystem {
 
  private:
   class Bodies;
+  double begin_;
   std::unique_ptr<const Bodies> bodies_;
 };
 

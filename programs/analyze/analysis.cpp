@@ -68,7 +68,7 @@ std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) 
 }
 
 Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
-  const kreisel::steady_motion::Linearization there = linearized(system, 0, state);
+  const kreisel::steady_motion::Linearization there = linearized(system, system.begin(), state);
   const Directions directions(system);
   const Places out = directions.without_roots(there.A);
   const std::vector<int> kept = list(out, false);
@@ -80,7 +80,7 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   if (kept.empty()) return linear;
   const MatrixXd A = there.A(kept, kept);
   MatrixXd slope = MatrixXd::Zero(A.rows(), A.cols());
-  if (linear.has_rotors) slope = system.momenta_slope(0, state)(kept, kept);
+  if (linear.has_rotors) slope = system.momenta_slope(system.begin(), state)(kept, kept);
   for (GyroscopicMode& mode : kreisel::rotor_spectrum(A, slope)) {
     if (mode.root.imag() < 0) continue;
     const Eigen::VectorXcd own = mode.shape;
@@ -134,11 +134,13 @@ bool has_potential(const kreisel::SceneFile& scene) {
 ///
 /// Source : Lagrange and Dirichlet; gyroscopic forces and dampers do not affect it
 bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibrium) {
-  const kreisel::steady_motion::Linearization there = linearized(system, 0, equilibrium.state);
+  const kreisel::steady_motion::Linearization there =
+      linearized(system, system.begin(), equilibrium.state);
   const Directions directions(system);
   const Places fixed =
       joined(directions.held,
-             directions.cyclic(there.A, linearized(system, 0, off(system, equilibrium.state)).A));
+             directions.cyclic(
+                 there.A, linearized(system, system.begin(), off(system, equilibrium.state)).A));
   std::vector<int> free;
   for (int i = 0; i < directions.rates; ++i) {
     if (!fixed[static_cast<std::size_t>(i)]) free.push_back(i);
@@ -286,7 +288,7 @@ double field_misses(const kreisel::StudySystem& system, const VectorXd& start, d
       }
       return tangent.moved(y, eta);
     };
-    const double t = share * period;
+    const double t = system.begin() + share * period;
     const VectorXd now = system.rates(t, turned(t));
     const VectorXd then = system.rates(t + period, turned(t + period));
     worst = std::max(worst, (then - now).norm() / (1 + now.norm()));
@@ -301,11 +303,12 @@ Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, d
   Floquet floquet;
   floquet.period = period;
   const Directions directions(system);
-  const Places cyclic = directions.cyclic(linearized(system, t_of_guide / 2, start).A,
-                                          linearized(system, t_of_guide / 2, off(system, start)).A);
+  const double middle = (system.begin() + t_of_guide) / 2;
+  const Places cyclic = directions.cyclic(linearized(system, middle, start).A,
+                                          linearized(system, middle, off(system, start)).A);
   try {
     const auto motion =
-        kreisel::periodic_motion(system, 0, period, start,
+        kreisel::periodic_motion(system, system.begin(), period, start,
                                  {.held = list(joined(directions.held, cyclic)),
                                   .running = list(joined(directions.running, cyclic)),
                                   .most_iterations = 20},
@@ -346,7 +349,7 @@ bool lost_spin(const kreisel::StudySystem& system, const VectorXd& start, const 
 
 kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& request) {
   const double period = period_of(scene, request).value_or(0);
-  scene.t_end = std::max({scene.t_end, 3 * period, 1.0});
+  scene.t_end = scene.t_begin + std::max({scene.duration(), 3 * period, 1.0});
   return scene;
 }
 
@@ -373,7 +376,7 @@ Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& s
     if (!result.steady.exists()) {
       throw kreisel::ComputationFailed("--campbell: no steady motion: " + result.steady.reason);
     }
-    result.campbell = sweep(system, *request.campbell, result.steady.state, scene.t_end);
+    result.campbell = sweep(system, *request.campbell, result.steady.state, scene.duration());
   }
   if (logged && !request.period) {
     result.notes.emplace_back("the guide follows a log: Floquet multipliers only with --period");

@@ -51,7 +51,7 @@ kreisel::JointState joints_of(const Result& result, const Eigen::VectorXd& state
 kreisel::SceneScale scale_of(const Result& result, const Eigen::VectorXd& state) {
   kreisel::SceneScale scale =
       ::scale_of(result.scene, result.system.tree(), {joints_of(result, state)});
-  scale.hold(result.system.reactions(0, state));
+  scale.hold(result.system.reactions(result.system.begin(), state));
   return scale;
 }
 
@@ -93,7 +93,8 @@ ordered_json json(const GyroscopicMode& mode, bool has_rotors) {
 ordered_json json(const Steady& steady, const Result& result,
                   const kreisel::SceneScale& scale = {}) {
   if (!steady.exists()) return {{"found", "none"}, {"reason", steady.reason}};
-  const kreisel::JointReactions reactions = result.system.reactions(0, steady.state);
+  const kreisel::JointReactions reactions =
+      result.system.reactions(result.system.begin(), steady.state);
   return {{"found", steady.kind == Steady::Kind::start ? "start" : "from the start"},
           {"motion", steady.turns ? "steady motion" : "equilibrium"},
           {"distance", steady.distance},
@@ -124,7 +125,8 @@ ordered_json json(const Rest& rest, const Result& result, const kreisel::SceneSc
           {"distance", rest.distance},
           {"residual", rest.equilibrium.residual},
           {"neutral", rest.equilibrium.neutral},
-          {"joints", joints_json(result, state, result.system.reactions(0, state), scale)},
+          {"joints", joints_json(result, state,
+                                 result.system.reactions(result.system.begin(), state), scale)},
           {"frame", rest.linear.frame},
           {"roots", roots_json(rest.linear)}};
 }
@@ -151,7 +153,7 @@ ordered_json json(const Floquet& floquet, const Result& result,
                            {"size", std::abs(m.root)},
                            {"error", m.error}});
   }
-  const auto reactions = result.system.reactions(0, floquet.start);
+  const auto reactions = result.system.reactions(result.system.begin(), floquet.start);
   return {{"period", floquet.period},
           {"verdict", name(floquet.verdict)},
           {"multipliers", multipliers},

@@ -62,6 +62,7 @@ struct Record {
   Record(const Request& request, const std::string& scene_text, const kreisel::SceneFile& scene,
          const kreisel::SceneSolver& solver)
       : model(solver),
+        t_begin(scene.t_begin),
         reactions(scene.reactions),
         sensors(scene),
         chosen(scene.columns.empty() ? std::vector<std::size_t>{}
@@ -70,6 +71,7 @@ struct Record {
         resume(*request.csv, identity(scene_text, scene)) {}
 
   const kreisel::SceneSolver& model;
+  double t_begin;
   bool reactions;
   kreisel::SensorReadings sensors;
   std::vector<std::size_t> chosen;  ///< columns; empty: all
@@ -95,9 +97,9 @@ struct Record {
   }
 
   /// Writes the checkpoint of a run that starts after these rows, or removes it if the run starts
-  /// at 0.
+  /// at t_begin.
   void begin_behind(double t, const RowFile::Mark& end) const {
-    if (t > 0) {
+    if (t > t_begin) {
       resume.write({t, t, end, {}});
     } else {
       resume.remove();
@@ -141,9 +143,10 @@ std::optional<Begin> from_checkpoint(const kreisel::SceneSolver& model,
                                      const std::vector<RowFile::Row>& rows, RowFile& file,
                                      Checkpoint& checkpoint) {
   const RowFile::Row* const last = row_at(rows, checkpoint.t);
-  const RowFile::Row* const first = checkpoint.begin > 0 ? row_at(rows, checkpoint.begin) : nullptr;
+  const bool goes_on = checkpoint.begin > scene.t_begin;
+  const RowFile::Row* const first = goes_on ? row_at(rows, checkpoint.begin) : nullptr;
   if (last == nullptr || last->end != checkpoint.row) return std::nullopt;
-  if (checkpoint.begin > 0 && first == nullptr) return std::nullopt;
+  if (goes_on && first == nullptr) return std::nullopt;
   Begin begin = first != nullptr ? from_row(model, scene, first->values) : from_the_start(scene);
   begin.latest = checkpoint.t;
   begin.options.checkpoint = std::move(checkpoint.numbers);
@@ -161,7 +164,7 @@ Begin from_rows(const kreisel::SceneSolver& model, Record& record,
   Begin begin = from_the_start(scene);
   if (rows.empty()) return begin;
   const std::vector<double>& start = rows.front().values;
-  if (start.front() == 0 && start != record.numbers_at(0, begin.state)) {
+  if (start.front() == scene.t_begin && start != record.numbers_at(scene.t_begin, begin.state)) {
     refuse_rows(record.rows, "the rows begin with another state than the scene");
   }
   const RowFile::Row& last = rows.back();
@@ -175,7 +178,7 @@ Begin from_rows(const kreisel::SceneSolver& model, Record& record,
   }
   if (found) {
     begin = *std::move(found);
-  } else if (last.values.front() <= 0) {
+  } else if (last.values.front() <= scene.t_begin) {
     record.rows.go_on(std::nullopt, std::nullopt);
     fmt::print(stderr, "simulate: beginning again, for there is no row but the start\n");
   } else {
@@ -227,11 +230,11 @@ kreisel::Trajectory<kreisel::JointState> compute(const kreisel::SceneFile& scene
     if (record && t <= latest) record->begin_again(options.begin);
     latest = t;
     const bool is_there =
-        options.begin > 0 && t == options.begin;  // the end of a run that was complete
+        options.begin > scene.t_begin && t == options.begin;  // the end of a run that was complete
     if (record && !is_there && (end_is_a_row || t < scene.t_end)) {
       record->rows.write(record->numbers_at(t, state));
     }
-    progress.report(t / scene.t_end,
+    progress.report((t - scene.t_begin) / scene.duration(),
                     [&] { return fmt::format("t = {:.4g} of {:.4g} s", t, scene.t_end); });
     return signals::caught() == 0 ? OutputAction::proceed : OutputAction::stop;
   };
@@ -282,7 +285,8 @@ int run(const Request& request) {
   kreisel::Trajectory<kreisel::JointState> trajectory =
       compute(scene, *model, begin, record, latest);
   const kreisel::RunReport& report = trajectory.report;
-  const double reached = trajectory.times.empty() ? std::max(0.0, latest) : trajectory.times.back();
+  const double reached =
+      trajectory.times.empty() ? std::max(scene.t_begin, latest) : trajectory.times.back();
   const bool complete = reached == scene.t_end && report.status == RunStatus::complete;
   if (signals::caught() != 0 && !complete) {
     fmt::print(stderr, "simulate: interrupted after t = {:.9g} of {:.9g} s{}\n", reached,

@@ -440,6 +440,14 @@ void add_loads(Random& r, Body& body) {
   } while (r.chance(0.15));
 }
 
+/// Sets the start of a drive to its motion.
+void start_motion(Body& body, double t) {
+  const reference::Course start = reference::course_of(body.motion, t, t);
+  const auto value = static_cast<double>(start.value.x());
+  if (!body.is_rate) body.angle = {{value, false}};
+  body.rate = {{body.is_rate ? value : static_cast<double>(start.rate.x()), false}};
+}
+
 /// Prescribes the angle, or its rate, which may be a broken line.
 void add_motion(Random& r, Body& body) {
   body.is_rate = r.chance(0.5);
@@ -448,10 +456,7 @@ void add_motion(Random& r, Body& body) {
     body.motion = body.is_rate ? any_signal(r, 1, along) : smooth_signal(r, 0.3, along);
   } while (body.motion.empty() ||
            (!body.motion.jumps.times.empty() && !body.motion.jumps.is_broken_line));
-  const reference::Course start = reference::course_of(body.motion, 0, 0);
-  const auto value = static_cast<double>(start.value.x());
-  if (!body.is_rate) body.angle = {{value, false}};
-  body.rate = {{body.is_rate ? value : static_cast<double>(start.rate.x()), false}};
+  start_motion(body, 0);
 }
 
 /// Locks the joint or drives it.
@@ -785,6 +790,19 @@ void add_logs_of_signals(Random& r, Scene& scene) {
   }
 }
 
+/// Moves the run to a later time, unless the guide is given by its start at t = 0.
+void add_begin(Random& r, Scene& scene) {
+  const bool has_start = std::any_of(scene.guide.begin(), scene.guide.end(), [](const Link& link) {
+    return link.kind == LinkKind::rotating || link.kind == LinkKind::harmonic;
+  });
+  if (has_start || r.chance(0.7)) return;
+  scene.t_begin = r.pick({0.5, 1.0, 3.0});
+  scene.t_end += scene.t_begin;
+  for (Body& body : scene.bodies) {
+    if (!body.motion.empty()) start_motion(body, scene.t_begin);
+  }
+}
+
 }  // namespace
 
 Scene generate(Random r) {
@@ -812,6 +830,7 @@ Scene generate(Random r) {
   add_sensors(r, scene);
   for (Body& body : scene.bodies) body.has_units = r.chance(0.1);
   add_logs_of_signals(r, scene);
+  add_begin(r, scene);
   return scene;
 }
 

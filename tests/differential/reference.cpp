@@ -127,8 +127,9 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
   Tree tree(scene);
   Steps steps(tree, tree.start());
   const std::vector<double> jumps = scene.jumps();
-  Real t = 0;
-  Real h = Real(times.back()) / 64;
+  auto t = Real(scene.t_begin);
+  const Real whole = Real(times.back()) - t;
+  Real h = whole / 64;
   for (const double time : times) {
     while (t < Real(time)) {
       if (steps.evaluations() > max_evaluations) return;
@@ -140,7 +141,7 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
       const Real factor = Real(0.8) * std::pow(tolerance / (off + Real(1e-19)), Real(1) / 15);
       if (!(off <= tolerance)) {
         h = length * (factor > Real(0.1) ? factor : Real(0.1));
-        if (h < Real(1e-14) * Real(times.back())) return;
+        if (h < Real(1e-14) * whole) return;
         continue;
       }
       taken.push_back({t, length, last && goal == Real(time)});
@@ -194,13 +195,15 @@ std::vector<int> blocks(const Scene& scene) {
 std::vector<double> start_reactions(const Scene& scene) {
   Tree tree(scene);
   const State start = tree.start();
-  return tree.reactions(0, start);
+  tree.stay_within(Real(scene.t_begin));
+  return tree.reactions(Real(scene.t_begin), start);
 }
 
 std::vector<double> start_readings(const Scene& scene) {
   Tree tree(scene);
   const State start = tree.start();
-  return tree.readings(0, start);
+  tree.stay_within(Real(scene.t_begin));
+  return tree.readings(Real(scene.t_begin), start);
 }
 
 ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times, double work) {

@@ -160,7 +160,7 @@ State Tree::start() {
 
 void Tree::start_body(int body, State& y, std::vector<Pose>& poses) {
   State none(size_);
-  const Motion guide = guide_.at(0, y, none);
+  const Motion guide = guide_.at(Real(scene_.t_begin), y, none);
   const Body& b = scene_.bodies[static_cast<std::size_t>(body)];
   Part& part = parts_[static_cast<std::size_t>(body)];
   const Pose base = b.parent < 0 ? Pose{guide.R, Vec::Zero(), Vec::Zero(), guide.w}

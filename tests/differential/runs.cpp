@@ -73,6 +73,7 @@ Answer run_by(const kreisel::SceneSolver& model, const Scene& scene, const kreis
               const std::string& method, const Limits& limits) {
   Answer answer{.asked = method};
   kreisel::SolveOptions options;
+  options.begin = file.t_begin;
   options.output_times = file.output_times;
   options.tolerance = file.tolerance;
   options.discontinuities = file.discontinuities;
@@ -119,11 +120,13 @@ kreisel::SceneFile roughly(kreisel::SceneFile file) {
 /// The same scene with 300 times between its outputs, and progressively more before the first.
 kreisel::SceneFile with_many_outputs(kreisel::SceneFile file) {
   constexpr int many = 320;
-  file.output_times = {0};
+  const double step = file.duration() / many;
+  file.output_times = {file.t_begin};
   for (double part = 1e-8; part < 1; part *= 1.5) {
-    file.output_times.push_back(part * (file.t_end / many));
+    file.output_times.push_back(file.t_begin + part * step);
   }
-  for (int i = 1; i <= many; ++i) file.output_times.push_back(i * (file.t_end / many));
+  for (int i = 1; i < many; ++i) file.output_times.push_back(file.t_begin + i * step);
+  file.output_times.push_back(file.t_end);
   return file;
 }
 
@@ -180,7 +183,7 @@ bool suits_equal_steps(const Scene& scene, const Answer& automatic) {
 
 std::vector<double> reactions(const kreisel::SceneSolver& model, const kreisel::SceneFile& file) {
   std::vector<double> result;
-  const kreisel::JointReactions carried = model.reactions(0, start_of(file));
+  const kreisel::JointReactions carried = model.reactions(file.t_begin, start_of(file));
   for (const auto& on_body : carried.on_body) {
     const auto& [force, torque] = on_body.value;
     result.insert(result.end(), force.begin(), force.end());
@@ -192,7 +195,8 @@ std::vector<double> reactions(const kreisel::SceneSolver& model, const kreisel::
 /// The readings of sensors, quaternions as x, y, z, w.
 std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& model,
                              const kreisel::SceneFile& file) {
-  std::vector<double> result = kreisel::SensorReadings(file).row(model, 0, start_of(file));
+  std::vector<double> result =
+      kreisel::SensorReadings(file).row(model, file.t_begin, start_of(file));
   auto at = result.begin();
   for (const Sensor& sensor : scene.sensors) {
     switch (sensor.kind) {

@@ -437,7 +437,9 @@ Vector radian(const Vector& v, bool degrees) { return degrees ? Vector(v * degre
 
 std::vector<double> Scene::times() const {
   std::vector<double> result;
-  for (int i = 1; i < outputs; ++i) result.push_back(i * (t_end / outputs));
+  for (int i = 1; i < outputs; ++i) {
+    result.push_back(t_begin + i * ((t_end - t_begin) / outputs));
+  }
   result.push_back(t_end);
   return result;
 }
@@ -503,11 +505,13 @@ std::string to_toml(const Scene& scene) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) result += sensor(scene.sensors[i], i);
   result +=
       "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) + "\n";
+  if (scene.t_begin != 0) result += "t_begin = " + text(scene.t_begin) + "\n";
   if (!scene.model.empty()) result += "model = \"" + scene.model + "\"\n";
   if (!scene.method.empty()) result += "method = \"" + scene.method + "\"\n";
   return result +
-         (scene.outputs < 3 ? "output_times = " + list(scene.times())
-                            : "output_step = " + text(scene.t_end / scene.outputs)) +
+         (scene.outputs < 3
+              ? "output_times = " + list(scene.times())
+              : "output_step = " + text((scene.t_end - scene.t_begin) / scene.outputs)) +
          "\n" + (scene.reports ? "[report]\nreactions = true\nterms = true\n" : "");
 }
 

@@ -180,6 +180,7 @@ struct Scene {
   std::optional<bool> gradient = {};  ///< as in the file
   std::vector<Body> bodies = {};
   std::vector<Sensor> sensors = {};
+  double t_begin = 0;
   double t_end = 1;
   double tolerance = 1e-10;
   std::string model = {};   ///< an approximation; empty: none

@@ -193,7 +193,8 @@ std::vector<Change> changes_of(const Scene& scene) {
   changes.emplace_back([](Scene& s) { s.outputs = 1; });
   changes.emplace_back([](Scene& s) { s.tolerance = 1e-10; });
   for (const double factor : {0.1, 0.5}) {
-    changes.emplace_back([factor](Scene& s) { s.t_end *= factor; });
+    changes.emplace_back(
+        [factor](Scene& s) { s.t_end = s.t_begin + factor * (s.t_end - s.t_begin); });
   }
   add_number_changes(scene, changes);
   return changes;

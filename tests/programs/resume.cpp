@@ -135,8 +135,9 @@ BOOST_AUTO_TEST_SUITE(resuming)
 // more time.
 BOOST_AUTO_TEST_CASE(continues_exactly_after_300_kills) {
   std::mt19937 random(1);
-  for (const auto& [method, t_end] : {std::pair("verner98", "600"), std::pair("taylor", "800"),
-                                      std::pair("gauss16", "150"), std::pair("radau13", "400")}) {
+  for (const auto& [method, t_end] :
+       {std::pair("verner98", "600"), std::pair("taylor", "500\nt_begin = -300"),
+        std::pair("gauss16", "150"), std::pair("radau13", "400")}) {
     const Case c(method, t_end);
     int kills = 0;
     double longest = 0.2;
@@ -195,11 +196,13 @@ BOOST_AUTO_TEST_CASE(continues_after_new_steps) {
 }
 
 BOOST_AUTO_TEST_CASE(does_not_lose_the_row_of_the_start) {
-  const Case c("taylor", "2");
-  c.folder.write("part.csv", line(c.rows, 0) + line(c.rows, 1));
-  c.check(c.run("--resume"));
-  c.folder.write("part.csv", line(c.rows, 0));
-  c.check(c.run("--resume"));
+  for (const char* const times : {"2", "2\nt_begin = -1", "2\nt_begin = 1"}) {
+    const Case c("taylor", times);
+    c.folder.write("part.csv", line(c.rows, 0) + line(c.rows, 1));
+    c.check(c.run("--resume"));
+    c.folder.write("part.csv", line(c.rows, 0));
+    c.check(c.run("--resume"));
+  }
 }
 
 // Bytes of the first line, and some of the numbers after it.

@@ -471,6 +471,58 @@ BOOST_AUTO_TEST_CASE(makes_output_times) {
   BOOST_TEST(times("output_step = 1", {.t_end = 2}) == std::vector<double>({0, 1, 2}));
 }
 
+BOOST_AUTO_TEST_CASE(begins_at_another_time) {
+  const auto from = [](const std::string& keys, const std::string& of_body = "") {
+    return scene(body + of_body + "\n[solve]\n" + keys);
+  };
+  const SceneFile later = from("t_begin = 2\nt_end = 3\noutput_step = 0.5");
+  BOOST_TEST(later.t_begin == 2);
+  BOOST_TEST(later.output_times == std::vector<double>({2, 2.5, 3}));
+  BOOST_TEST(options_of(later).begin == 2);
+  const SceneFile pushed =
+      from("t_begin = -1\nt_end = 2", "force = { steps = [[-1, 7], [0, 5], [1, 3], [2.5, 1]] }");
+  BOOST_TEST(pushed.discontinuities == std::vector<double>({0, 1}));
+  BOOST_TEST(std::abs(run_scene(pushed).states.back().rates[0] - (7 + 5 + 3)) < 1e-9);
+  const SceneFile driven = from("t_begin = 2\nt_end = 3", "drive = { angle = { rate = 0.5 } }");
+  BOOST_TEST(driven.start[0].coordinates[0] == 1);
+  const SceneFile turned =
+      from("t_begin = 2\nt_end = 3",
+           "rotor = { mode = \"regulated\", speed = { constant = 1, rate = 4 } }");
+  BOOST_TEST(turned.start[0].rates[0] == 9);
+  BOOST_TEST(std::abs(run_scene(turned).states.back().rates[0] - 13) < 1e-9);
+}
+
+// On moving guides, with a force that oscillates.
+BOOST_AUTO_TEST_CASE(goes_on_where_another_run_stopped) {
+  const std::string guides[] = {
+      "",
+      "kind = \"rotating\"\nangular_velocity = [0.3, 0, 0.5]\norigin_acceleration = [1, 0, 0]\n",
+      "kind = \"harmonic\"\nangular_velocity = { terms = [{ amplitude = [1, 0, 0], frequency = 2 "
+      "}] }\n",
+      "kind = \"motion\"\nposition = { terms = [{ amplitude = [1, 0, 0], frequency = 2 }] }\n",
+      site + "gravity = \"normal\"\n"};
+  const std::string pendulum =
+      "[[body]]\nname = \"a\"\njoint = { kind = \"universal\", axis = [0, 0, 1], second_axis = [0, "
+      "1, 0] "
+      "}\nmass = 2\ncentre = [0.3, 0.1, 0]\ninertia = [1, 2, 2]\n"
+      "force = { terms = [{ amplitude = 1, frequency = 3 }] }\ninitial = { angle = [0.1, 0.2] }\n";
+  for (const std::string& guide : guides) {
+    const std::string text = (guide.empty() ? "" : "[guide]\n" + guide) + pendulum + "[solve]\n";
+    const SceneFile whole = scene(text + "t_end = 4\noutput_times = [1.5, 4]\n");
+    const auto first = run_scene(whole);
+    SceneFile rest = scene(text + "t_begin = 1.5\nt_end = 4\noutput_times = [4]\n");
+    const JointState& middle = first.states.front();
+    rest.start[0].coordinates.assign(middle.coordinates.begin(), middle.coordinates.end());
+    rest.start[0].rates.assign(middle.rates.begin(), middle.rates.end());
+    const auto second = run_scene(rest);
+    const JointState& a = first.states.back();
+    const JointState& b = second.states.back();
+    BOOST_TEST(second.report.tolerance_kept);
+    BOOST_TEST((a.coordinates - b.coordinates).norm() < 1e-8, guide);
+    BOOST_TEST((a.rates - b.rates).norm() < 1e-8, guide);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(sets_equations_and_tolerance) {
   const auto solve = [](const std::string& rest) { return scene(body + run + rest); };
   BOOST_TEST((solve("model = \"linear\"").model == SceneModel::linear));
@@ -588,6 +640,16 @@ BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
       {solve("output_times = [0.5, 1.5]\n"), "solve.output_times: goes on after t_end"},
       {solve("output_times = 0.5\n"),
        "solve.output_times: must be a list of numbers, not a number"},
+      {body + "[solve]\nt_begin = 2\nt_end = 1\n",
+       "s.toml:9:9: solve.t_end: 1 s must be after t_begin, 2 s"},
+      {solve("t_begin = \"soon\"\n"), "s.toml:9:11: solve.t_begin: must be a number, not a text"},
+      {body + "[solve]\nt_begin = 2\nt_end = 3\noutput_times = [1, 3]\n",
+       "solve.output_times: begins before t = 2"},
+      {body + "[solve]\nt_begin = 2\n", "solve.t_end: is missing"},
+      {"[guide]\nkind = \"harmonic\"\norigin_acceleration = { constant = [1, 0, 0] }\n" + body +
+           "[solve]\nt_begin = -1\nt_end = 1\n",
+       "s.toml:2:8: guide.kind: 'harmonic' is given by its start at t = 0; solve.t_begin is "
+       "earlier"},
       {"solve = true\n" + body, "s.toml:1:9: solve: must be a table, not true or false"},
       {guide("kind = \"chain\"\n"), "guide.links: is missing"},
       {guide("kind = \"chain\"\nlinks = []\n"), "guide.links: is empty"},
