@@ -33,7 +33,9 @@
 #include <dynamics/law/momentum.hpp>
 #include <dynamics/law/relative.hpp>
 #include <dynamics/law/vector_form.hpp>
+#include <dynamics/load/drag.hpp>
 #include <dynamics/load/load.hpp>
+#include <dynamics/load/magnet.hpp>
 #include <dynamics/load/oblate_gravitation.hpp>
 #include <dynamics/load/orbit_gravitation.hpp>
 #include <dynamics/load/signal_load.hpp>

@@ -1,3 +1,5 @@
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +18,8 @@
 #include <dynamics/file/text_file.hpp>
 #include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
+#include <dynamics/load/drag.hpp>
+#include <dynamics/load/magnet.hpp>
 #include <dynamics/load/signal_load.hpp>
 #include <dynamics/tree/joint/list.hpp>
 #include <motor/error.hpp>
@@ -1086,19 +1090,68 @@ class SceneReader {
       loads.push_back(*load);
     }
     for (Section& load : loads) {
-      if (!load.has("force") && !load.has("torque")) load.refuse_missing("force");
-      const Vector3<double> zero = Vector3<double>::Zero();
-      const auto force =
-          detail::read_signal<Vector3<double>>(load, "force", dimension::force).value_or(zero);
-      const auto torque =
-          detail::read_signal<Vector3<double>>(load, "torque", dimension::torque).value_or(zero);
-      const Vector3<double> point = load.vector("point", dimension::length).value_or(zero);
-      const std::string axes = load.choice("axes", {"body", "guide", "inertial"});
+      const std::string kind = load.choice("kind", {"force", "drag", "magnet"});
+      if (load.has("kind") && load.peek("kind") != kind) {  // the other keys cannot be checked
+        load.ignore_rest();
+        continue;
+      }
+      if (kind == "force") read_force(load, body);
+      if (kind == "drag") body.loads.emplace_back(read_drag(load));
+      if (kind == "magnet") body.loads.emplace_back(read_magnet(load));
       load.finish();
-      if (axes == "body") add_load<Body>(body, force, torque, point);
-      if (axes == "guide") add_load<Guide>(body, force, torque, point);
-      if (axes == "inertial") add_load<Inertial>(body, force, torque, point);
     }
+  }
+
+  void read_force(Section& load, BodyDescription& body) {
+    if (!load.has("force") && !load.has("torque")) load.refuse_missing("force");
+    const Vector3<double> zero = Vector3<double>::Zero();
+    const auto force =
+        detail::read_signal<Vector3<double>>(load, "force", dimension::force).value_or(zero);
+    const auto torque =
+        detail::read_signal<Vector3<double>>(load, "torque", dimension::torque).value_or(zero);
+    const Vector3<double> point = load.vector("point", dimension::length).value_or(zero);
+    const std::string axes = load.choice("axes", {"body", "guide", "inertial"});
+    if (axes == "body") add_load<Body>(body, force, torque, point);
+    if (axes == "guide") add_load<Guide>(body, force, torque, point);
+    if (axes == "inertial") add_load<Inertial>(body, force, torque, point);
+  }
+
+  /// A matrix of a drag, which must not drive the body; 0 if it is missing.
+  static Matrix3<double> read_resistance(Section& load, const char* key, const Dimension& of) {
+    const Matrix3<double> zero = Matrix3<double>::Zero();
+    const Matrix3<double> result = load.matrix(key, of).value_or(zero);
+    const Matrix3<double> symmetric = (result + result.transpose()) / 2;
+    constexpr double slack = 32 * std::numeric_limits<double>::epsilon();
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Matrix3<double>>(symmetric).eigenvalues().minCoeff();
+    if (!(least >= -slack * symmetric.norm())) {
+      load.refuse(key, "would drive the body: its symmetric part must have no negative eigenvalue");
+    }
+    return result;
+  }
+
+  static Drag<> read_drag(Section& load) {
+    if (!load.has("linear") && !load.has("quadratic") && !load.has("angular")) {
+      load.refuse_missing("linear");
+    }
+    Drag<> drag;
+    const Dimension per_speed = dimension::force / dimension::velocity;
+    drag.linear = read_resistance(load, "linear", per_speed);
+    drag.quadratic = read_resistance(load, "quadratic", per_speed / dimension::velocity);
+    drag.angular = read_resistance(load, "angular", dimension::torque / dimension::angular_rate);
+    drag.point = load.vector("point", dimension::length).value_or(drag.point);
+    return drag;
+  }
+
+  Magnet read_magnet(Section& load) {
+    if (!load.has("field")) load.refuse_missing("field");
+    Magnet magnet{load.required_vector("moment", dimension::magnetic_moment)};
+    const auto field = detail::read_signal<Vector3<double>>(load, "field", dimension::flux_density);
+    if (field) {
+      note(*field);
+      magnet.field = *field;
+    }
+    return magnet;
   }
 
   template <class Axes>

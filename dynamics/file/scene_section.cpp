@@ -342,6 +342,26 @@ Vector3<double> Section::required_vector(std::string_view key, const Dimension& 
   return vector(key, of).value_or(Vector3<double>::UnitX());
 }
 
+std::optional<Matrix3<double>> Section::matrix(std::string_view key, const Dimension& of) {
+  const toml::node* const node = find(key);
+  const toml::array* const rows = node == nullptr ? nullptr : node->as_array();
+  if (rows == nullptr || rows->empty() || !rows->get(0)->is_array()) {
+    const auto diagonal = vector(key, of);
+    return diagonal ? std::optional<Matrix3<double>>(diagonal->asDiagonal()) : std::nullopt;
+  }
+  Matrix3<double> result;
+  bool good = rows->size() == 3;
+  for (std::size_t i = 0; good && i < 3; ++i) {
+    const auto row = numbers_in(*rows->get(i), path_to(key) + "[" + std::to_string(i) + "]", {of});
+    if (!row) return std::nullopt;
+    good = row->size() == 3;
+    if (good) result.row(static_cast<Eigen::Index>(i)) << (*row)[0], (*row)[1], (*row)[2];
+  }
+  if (good) return result;
+  refuse(key, "must be 3 numbers, or 3 rows of 3 numbers");
+  return std::nullopt;
+}
+
 std::optional<std::string> Section::text(std::string_view key) {
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;

@@ -106,6 +106,9 @@ class Section {
   [[nodiscard]] std::optional<Vector3<double>> vector(std::string_view key, const Dimension& of);
   [[nodiscard]] Vector3<double> required_vector(std::string_view key, const Dimension& of);
 
+  /// A matrix: 3 numbers are its diagonal, or 3 rows of 3 numbers.
+  [[nodiscard]] std::optional<Matrix3<double>> matrix(std::string_view key, const Dimension& of);
+
   /// A list of  [time, value].  A value is one number or `width` numbers in brackets. Returns rows
   /// of the time and the numbers. Times must increase.
   [[nodiscard]] std::optional<std::vector<std::vector<double>>> timed_rows(std::string_view key,

@@ -121,6 +121,7 @@ std::string described(const Dimension& of) {
       {torque / angle, "a stiffness (N m/rad)"},
       {force / velocity, "a damping (N s/m)"},
       {torque / angular_rate, "a damping (N m s/rad)"},
+      {force / (velocity * velocity), "a quadratic drag (N s^2/m^2)"},
       {length / angle, "a pitch (m/rad)"},
       {gravitation, "a gravitational parameter (m^3/s^2)"},
       {flux_density, "a flux density (T)"},

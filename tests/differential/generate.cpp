@@ -440,6 +440,25 @@ void add_loads(Random& r, Body& body) {
   } while (r.chance(0.15));
 }
 
+/// A drag or a magnet on some bodies that are no rotors.
+void add_other_loads(Random& r, Body& body) {
+  if (body.rotor || r.chance(0.9)) return;
+  Load load;
+  load.kind = r.chance(0.5) ? LoadKind::drag : LoadKind::magnet;
+  if (load.kind == LoadKind::drag) {
+    load.linear = body.mass * vector(r, 0.01, 1).cwiseAbs();
+    load.quadratic = body.mass * vector(r, 0.01, 1).cwiseAbs();
+    load.angular = body.inertia.front() * vector(r, 0.01, 1).cwiseAbs();
+    if (r.chance(0.4)) load.point = vector(r, 0.1, 1);
+  } else {
+    load.moment = body.inertia.front() * vector(r, 0.1, 10);
+    do {
+      load.field = any_signal(r, 1, [&r] { return direction(r); });
+    } while (load.field.empty());
+  }
+  body.loads.push_back(load);
+}
+
 /// Sets the start of a drive to its motion.
 void start_motion(Body& body, double t) {
   const reference::Course start = reference::course_of(body.motion, t, t);
@@ -786,7 +805,10 @@ void add_logs_of_signals(Random& r, Scene& scene) {
     take(body.force_in_time);
     take(body.motion);
     if (body.rotor) take(body.rotor->torque_in_time);
-    for (Load& load : body.loads) take(load.force_in_time);
+    for (Load& load : body.loads) {
+      take(load.force_in_time);
+      take(load.field);
+    }
   }
 }
 
@@ -829,6 +851,7 @@ Scene generate(Random r) {
   add_solve(r, scene);
   add_sensors(r, scene);
   for (Body& body : scene.bodies) body.has_units = r.chance(0.1);
+  for (Body& body : scene.bodies) add_other_loads(r, body);
   add_logs_of_signals(r, scene);
   add_begin(r, scene);
   return scene;

@@ -451,7 +451,25 @@ void Tree::add_force(int body, const Relative& r, const Vec& force) {
   right_.segment<3>(6 * index + 3) -= r.reach.cross(force);
 }
 
+/// Drag of a medium that moves with the guide.
+void Tree::add_drag(const Load& load, int body, const Motion& guide) {
+  const Pose& b = poses_[static_cast<std::size_t>(body)];
+  const Vec lever = b.R * (wide(load.point) - parts_[static_cast<std::size_t>(body)].centre);
+  const Vec v = b.R.transpose() * (b.v + b.w.cross(lever) - guide.w.cross(b.x + lever));
+  const Vec w = b.R.transpose() * (b.w - guide.w);
+  const Vec force = -(b.R * (wide(load.linear) + v.norm() * wide(load.quadratic)).cwiseProduct(v));
+  right_.segment<3>(6 * body) += force;
+  right_.segment<3>(6 * body + 3) += lever.cross(force) - b.R * wide(load.angular).cwiseProduct(w);
+}
+
 void Tree::add_load(Real t, const Load& load, int body, const Motion& guide) {
+  if (load.kind == LoadKind::drag) return add_drag(load, body, guide);
+  if (load.kind == LoadKind::magnet) {
+    const Mat R = poses_[static_cast<std::size_t>(body)].R;
+    right_.segment<3>(6 * body + 3) +=
+        (R * wide(load.moment)).cross(guide.R * course_of(load.field, t, within_).value);
+    return;
+  }
   const Pose& b = poses_[static_cast<std::size_t>(body)];
   const Mat axes = load.axes == Axes::body    ? b.R
                    : load.axes == Axes::guide ? guide.R
@@ -635,6 +653,9 @@ Sizes Tree::sizes(Real t, const State& y) {
     sum.energy += part.mass * (b.v.squaredNorm() / 2 + g * guide_.depth(guide, b.x)) +
                   b.w.norm() * spin.norm();
     sum.momentum += part.mass * b.v.norm() * (1 + b.x.norm()) + spin.norm();
+    for (const Load& load : body.loads) {
+      sum.energy += wide(load.moment).norm() * course_of(load.field, t, t).value.norm();
+    }
     for (std::size_t k = 0; k < body.stiffness.size(); ++k) {
       const Eigen::Index angle = body.kind == JointKind::universal ? Eigen::Index(k) : 0;
       Real stretch = angle_count(body.kind) > 0 ? std::abs(y[part.angles + angle]) : 0;

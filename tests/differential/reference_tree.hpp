@@ -111,6 +111,7 @@ class Tree {
   void add_gravity(int body, Real t, const Motion& guide);
   void add_torque(int body, const Vec& torque);
   void add_force(int body, const Relative& r, const Vec& force);
+  void add_drag(const Load& load, int body, const Motion& guide);
   void add_load(Real t, const Load& load, int body, const Motion& guide);
   void solve();
   [[nodiscard]] Vec turned_off(int body, const Relative& r) const;

@@ -317,17 +317,47 @@ std::string rotor(const Rotor& rotor) {
   return "rotor = " + table.text() + "\n";
 }
 
-std::string loads(const Body& body) {
+/// A diagonal as 3 rows.
+std::string rows(const Vector& v) {
+  return "[" + list(Vector(v.x(), 0, 0)) + ", " + list(Vector(0, v.y(), 0)) + ", " +
+         list(Vector(0, 0, v.z())) + "]";
+}
+
+std::string drag(const Load& load) {
+  Inline table;
+  table.add("kind", "\"drag\"");
+  table.add("linear", list(load.linear));
+  table.add("quadratic", rows(load.quadratic));
+  table.add_vector("angular", load.angular);
+  table.add_vector("point", load.point);
+  return table.text();
+}
+
+std::string magnet(const Load& load) {
+  Inline table;
+  table.add("kind", "\"magnet\"");
+  table.add("moment", list(load.moment));
+  table.add("field", vector_signal(load.field));
+  return table.text();
+}
+
+std::string given(const Load& load) {
   static const char* const axes[] = {"body", "guide", "inertial"};
+  Inline table;
+  const bool is_timed = !load.force_in_time.empty();
+  table.add("force", is_timed ? vector_signal(load.force_in_time) : list(load.force));
+  table.add_vector("torque", load.torque);
+  table.add_vector("point", load.point);
+  table.add("axes", std::string("\"") + axes[static_cast<int>(load.axes)] + "\"");
+  return table.text();
+}
+
+std::string loads(const Body& body) {
   std::string all;
   for (const Load& load : body.loads) {
-    Inline table;
-    const bool is_timed = !load.force_in_time.empty();
-    table.add("force", is_timed ? vector_signal(load.force_in_time) : list(load.force));
-    table.add_vector("torque", load.torque);
-    table.add_vector("point", load.point);
-    table.add("axes", std::string("\"") + axes[static_cast<int>(load.axes)] + "\"");
-    all += (all.empty() ? "" : ", ") + table.text();
+    all += (all.empty() ? "" : ", ") + (load.kind == LoadKind::drag     ? drag(load)
+                                        : load.kind == LoadKind::magnet ? magnet(load)
+                                                                        : given(load));
   }
   if (all.empty()) return {};
   return "load = " + (body.loads.size() == 1 ? all : "[" + all + "]") + "\n";
@@ -420,7 +450,9 @@ std::vector<const Signal*> Scene::signals() const {
     result.push_back(&body.force_in_time);
     result.push_back(&body.motion);
     if (body.rotor) result.push_back(&body.rotor->torque_in_time);
-    for (const Load& load : body.loads) result.push_back(&load.force_in_time);
+    for (const Load& load : body.loads) {
+      result.insert(result.end(), {&load.force_in_time, &load.field});
+    }
   }
   return result;
 }

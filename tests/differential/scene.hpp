@@ -101,12 +101,20 @@ using kreisel::JointKind;
 
 enum class Axes { body, guide, inertial };
 
+enum class LoadKind { force, drag, magnet };
+
 struct Load {
+  LoadKind kind = LoadKind::force;
   Vector force = Vector::Zero();
   Vector torque = Vector::Zero();
   Vector point = Vector::Zero();
   Axes axes = Axes::body;
-  Signal force_in_time = {};  ///< instead of the force
+  Signal force_in_time = {};       ///< instead of the force
+  Vector linear = Vector::Zero();  ///< of a drag, diagonals on body axes
+  Vector quadratic = Vector::Zero();
+  Vector angular = Vector::Zero();
+  Vector moment = Vector::Zero();  ///< of a magnet
+  Signal field = {};
 };
 
 enum class RotorMode { free, regulated, torque };

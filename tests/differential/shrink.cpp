@@ -40,7 +40,10 @@ void for_each(Body& body, const std::function<void(double&)>& f) {
   if (body.rotor) f(body.rotor->speed.value);
   if (body.rotor) f(body.rotor->torque);
   for (Load& load : body.loads) {
-    for (Vector* const v : {&load.force, &load.torque, &load.point}) for_each(*v, f);
+    for (Vector* const v : {&load.force, &load.torque, &load.point, &load.linear, &load.quadratic,
+                            &load.angular, &load.moment}) {
+      for_each(*v, f);
+    }
   }
 }
 
@@ -127,7 +130,7 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
   add([](Body& b) { b.has_units = false; });
   add([](Body& b) {
     b.force_in_time.file.clear(), b.motion.file.clear();
-    for (Load& load : b.loads) load.force_in_time.file.clear();
+    for (Load& load : b.loads) load.force_in_time.file.clear(), load.field.file.clear();
   });
   add([](Body& b) { b.orientation.reset(); });
   add([](Body& b) { b.loads.clear(); });
