@@ -299,7 +299,9 @@ void print(const Floquet& floquet, const Result& result) {
     fmt::print("  {:20.12g} {:+20.12g} {:14.9g} {:10.1e}\n", root.real(), root.imag(),
                std::abs(m.root), m.error);
   }
-  joint_tables::print("the motion that repeats itself, at t = 0",
+  const std::string title =
+      fmt::format("the motion that repeats itself, at t = {:.9g}", result.system.begin());
+  joint_tables::print(title.c_str(),
                       json(floquet, result, scale_of(result, floquet.start))["start"]);
 }
 
