@@ -7,16 +7,13 @@
 #include <utility>
 
 #include <dynamics/file/columns.hpp>
-#include <dynamics/file/log_options.hpp>
-#include <dynamics/file/motion_log.hpp>
-#include <dynamics/file/rates_log.hpp>
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/file/scene_guide.hpp>
 #include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/scene_signal.hpp>
 #include <dynamics/file/sensor_keys.hpp>
 #include <dynamics/file/signal_log.hpp>
 #include <dynamics/file/text_file.hpp>
-#include <dynamics/guide/log_noise.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/drag.hpp>
 #include <dynamics/load/magnet.hpp>
@@ -59,8 +56,6 @@ std::vector<Dimension> forces_by(const std::vector<JointQuantity>& quantities) {
   return result;
 }
 
-Vector3<double> three(const std::vector<double>& x) { return {x[0], x[1], x[2]}; }
-
 /// The message of a library check, without the prefix that names the object.
 std::string reason(const InvalidInput& error) {
   const std::string text = error.what();
@@ -82,9 +77,11 @@ class SceneReader {
     scene_.title = root_.text("title").value_or("");
     read_solve();
     logs_.set_run({scene_.t_begin, scene_.t_end});
-    read_guide();
-    read_gravity();
-    give_gravity_to_rates();
+    detail::GuideSection guide =
+        detail::read_guide(root_, path_, scene_.t_begin, scene_.t_end, mistakes_);
+    read_gravity(guide);
+    detail::give_gravity_to_rates(guide, scene_.gravity);
+    scene_.guide = std::move(guide.links);
     read_bodies();
     scene_.sensors = detail::read_sensors(root_, scene_.bodies, scene_.points, mistakes_.none());
     read_report();
@@ -142,14 +139,16 @@ class SceneReader {
     if (!request_.t_end && !solve.has("t_end")) solve.refuse_missing("t_end");
     const bool has_begin = scene_.t_begin != 0;
     if (end && !(*end > scene_.t_begin)) {
-      solve.refuse("t_end", shown_time(*end) + (has_begin ? " s must be after t_begin, " +
-                                                                shown_time(scene_.t_begin) + " s"
-                                                          : " must be above 0"));
+      solve.refuse("t_end", detail::shown_time(*end) +
+                                (has_begin ? " s must be after t_begin, " +
+                                                 detail::shown_time(scene_.t_begin) + " s"
+                                           : " must be above 0"));
     }
     if (request_.t_end && !(*request_.t_end > scene_.t_begin)) {
       solve.refuse(has_begin ? "t_begin" : "t_end",
-                   "the run must end after t = " + shown_time(scene_.t_begin) + " s, not at the " +
-                       shown_time(*request_.t_end) + " s that were asked for");
+                   "the run must end after t = " + detail::shown_time(scene_.t_begin) +
+                       " s, not at the " + detail::shown_time(*request_.t_end) +
+                       " s that were asked for");
     }
     scene_.t_end = request_.t_end.value_or(end.value_or(scene_.t_begin + 1));
   }
@@ -170,7 +169,7 @@ class SceneReader {
     double before = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
       if (times[i] < scene_.t_begin) {
-        solve.refuse("output_times", "begins before t = " + shown_time(scene_.t_begin));
+        solve.refuse("output_times", "begins before t = " + detail::shown_time(scene_.t_begin));
         return;
       }
       if (i > 0 && !(times[i] > before)) {
@@ -212,362 +211,10 @@ class SceneReader {
     times.erase(std::unique(times.begin(), times.end()), times.end());
   }
 
-  void read_guide() {
-    if (!root_.has("guide")) {
-      scene_.guide.emplace_back(scene_guide::Resting{});
-      return;
-    }
-    if (auto guide = root_.section("guide")) read_links(*guide, 0);
-    if (scene_.guide.empty()) scene_.guide.emplace_back(scene_guide::Resting{});
-  }
-
-  void read_links(Section& guide, int depth) {
-    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth", "table",
-                                         "rates",    "motion",   "orbit",    "chain"};
-    const std::string kind =
-        depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
-    if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
-        guide.find("kind")->as_string()->get() != kind) {
-      // The other keys of an unknown kind cannot be checked.
-      if (guide.has("kind") || depth > 0) guide.ignore_rest();
-    }
-    if (kind == "inertial") scene_.guide.emplace_back(scene_guide::Resting{});
-    if (kind == "rotating") {
-      if (!guide.has("angular_velocity") && !guide.has("angular_velocity_deg")) {
-        guide.refuse_missing("angular_velocity");
-      }
-      const auto turning = guide.angles("angular_velocity", 3, dimension::angular_rate);
-      scene_.guide.emplace_back(scene_guide::Rotating{
-          turning ? three(*turning) : Vector3<double>(Vector3<double>::UnitX()),
-          guide.vector("origin_acceleration", dimension::acceleration)
-              .value_or(Vector3<double>::Zero()),
-          read_frame_start(guide)});
-    }
-    if (kind == "harmonic") {
-      const bool turns = guide.has("angular_velocity") || guide.has("angular_velocity_deg");
-      if (!turns && !guide.has("origin_acceleration")) guide.refuse_missing("angular_velocity");
-      scene_guide::Harmonic link;
-      link.angular_velocity =
-          read_angular_series(guide, "angular_velocity", dimension::angular_rate);
-      link.origin_acceleration = read_series(guide, "origin_acceleration", dimension::acceleration);
-      link.start = read_frame_start(guide);
-      check_length(guide, link);
-      if (scene_.t_begin < 0) {
-        guide.refuse("kind", "'harmonic' is given by its start at t = 0; solve.t_begin is earlier");
-      }
-      scene_.guide.emplace_back(std::move(link));
-    }
-    if (kind == "earth") read_earth(guide);
-    if (kind == "table") read_table(guide);
-    if (kind == "rates") read_rates(guide);
-    if (kind == "motion") read_motion(guide);
-    if (kind == "orbit") read_orbit(guide);
-    if (kind == "chain") {
-      constexpr int deepest = 8;
-      if (!guide.has("links")) guide.refuse_missing("links");
-      std::vector<Section> links = guide.sections("links");
-      if (guide.has("links") && links.empty() && guide.find("links")->is_array()) {
-        guide.refuse("links", "is empty");
-      }
-      if (depth == deepest) {
-        guide.refuse("links", "is a chain in a chain, nine deep");
-        links.clear();
-      }
-      for (Section& link : links) read_links(link, depth + 1);
-    }
-    guide.finish();
-  }
-
-  static HarmonicSeries<double> read_series(Section& guide, std::string_view key,
-                                            const KeyDimension& of) {
-    HarmonicSeries<double> series;
-    auto section = guide.section(key);
-    if (!section) return series;
-    series.constant =
-        three(section->numbers("constant", 3, of).value_or(std::vector<double>(3, 0)));
-    for (Section& term : section->sections("terms")) {
-      if (!term.has("amplitude")) term.refuse_missing("amplitude");
-      const auto amplitude = term.numbers("amplitude", 3, of);
-      const auto frequency = term.angle("frequency", dimension::angular_rate);
-      if (!term.has("frequency") && !term.has("frequency_deg")) term.refuse_missing("frequency");
-      series.terms.push_back({amplitude ? three(*amplitude) : Vector3<double>::UnitX(),
-                              frequency.value_or(1),
-                              term.angle("phase", dimension::angle).value_or(0)});
-      term.finish();
-    }
-    section->finish();
-    return series;
-  }
-
-  /// Reads a series in radian, or in degrees if the key ends in _deg.
-  static HarmonicSeries<double> read_angular_series(Section& guide, const std::string& key,
-                                                    const Dimension& of) {
-    const std::string in_degrees = key + "_deg";
-    if (!guide.has(in_degrees)) return read_series(guide, key, of);
-    if (guide.has(key)) guide.refuse(in_degrees, "is given in radian too, as '" + key + "'");
-    HarmonicSeries<double> series = read_series(guide, in_degrees, std::nullopt);
-    series.constant *= detail::radian_per_degree;
-    for (auto& term : series.terms) term.amplitude *= detail::radian_per_degree;
-    return series;
-  }
-
-  /// Checks the memory of HarmonicFrame: a piece of 1 kB for each 1/(2 Omega).
-  void check_length(Section& guide, const scene_guide::Harmonic& link) const {
-    double turning = link.angular_velocity.constant.norm();
-    double frequency = 0;
-    for (const auto* const series : {&link.angular_velocity, &link.origin_acceleration}) {
-      for (const auto& term : series->terms) {
-        if (series == &link.angular_velocity) turning += term.amplitude.norm();
-        frequency = std::max(frequency, std::abs(term.frequency));
-      }
-    }
-    constexpr double most_pieces = 1e6;
-    if (2 * (turning / 2 + frequency) * scene_.t_end > most_pieces) {
-      guide.refuse("kind",
-                   "'harmonic' turns too fast for so long a run: over half a million radian");
-    }
-  }
-
-  static scene_guide::Start read_frame_start(Section& guide) {
-    const Vector3<double> zero = Vector3<double>::Zero();
-    return {quaternion(guide, "attitude").value_or(Eigen::Quaterniond::Identity()),
-            guide.vector("origin_position", dimension::length).value_or(zero),
-            guide.vector("origin_velocity", dimension::velocity).value_or(zero)};
-  }
-
-  void read_earth(Section& guide) {
-    scene_guide::Earth link;
-    link.site.latitude = guide.required_number("latitude_deg", std::nullopt);
-    link.site.height = guide.required_number("height", dimension::length);
-    link.site.azimuth = guide.required_number("azimuth_deg", std::nullopt);
-    link.site.rotation_rate =
-        guide.angle("rate", dimension::angular_rate).value_or(link.site.rotation_rate);
-    if (!scene_.guide.empty()) {
-      guide.refuse("kind",
-                   "'earth' must be the first link: the earth moves against no frame but "
-                   "the inertial one");
-    }
-    const toml::node* const gravity = guide.find("gravity");
-    if (guide.has_number("gravity")) {
-      link.gravity = guide.number("gravity", dimension::acceleration, Range::positive);
-      if (link.gravity) site_gravity_ = scene_gravity::AtSite{*link.gravity};
-    } else if (gravity != nullptr && guide.choice("gravity", {"normal", "none"}) == "normal") {
-      site_gravity_ = scene_gravity::Ellipsoid{};
-    }
-    try {
-      check(link.site);
-    } catch (const InvalidInput& error) {
-      const std::string text = error.what();
-      const char* const key = text.starts_with("latitude")  ? "latitude_deg"
-                              : text.starts_with("azimuth") ? "azimuth_deg"
-                              : text.starts_with("height")  ? "height"
-                                                            : "rate";
-      guide.refuse(key, text.substr(text.find("= ") + 2));
-    }
-    scene_.guide.emplace_back(std::move(link));
-  }
-
-  void read_motion(Section& guide) {
-    PoseSignals pose;
-    const auto take = [](Section& from, const std::string& key, const auto& signal, auto& to) {
-      if (!signal) return;
-      const auto jumps = signal->discontinuities();
-      if (!jumps.empty()) {
-        from.refuse(from.has(key) ? key : key + "_deg",
-                    "jumps, or its rate does, at t = " + shown_time(jumps.front()) +
-                        " s, which takes an infinite force; give 'constant', 'rate' and 'terms'");
-        return;
-      }
-      to = *signal;
-    };
-    if (!guide.has("position") && !guide.has("angles")) guide.refuse_missing("position");
-    take(guide, "position",
-         detail::read_signal<Vector3<double>>(guide, "position", dimension::length), pose.position);
-    if (auto angles = guide.section("angles")) {
-      take(*angles, "yaw", detail::read_angle_signal(*angles, "yaw", dimension::angle), pose.yaw);
-      take(*angles, "pitch", detail::read_angle_signal(*angles, "pitch", dimension::angle),
-           pose.pitch);
-      take(*angles, "roll", detail::read_angle_signal(*angles, "roll", dimension::angle),
-           pose.roll);
-      angles->finish();
-    }
-    scene_.guide.emplace_back(scene_guide::Motion{std::move(pose)});
-  }
-
-  void read_orbit(Section& guide) {
-    if (!scene_.guide.empty()) {
-      guide.refuse("kind",
-                   "'orbit' must be the first link: it is about a planet's centre, which rests "
-                   "inertially");
-    }
-    OrbitElements<> orbit;
-    orbit.semi_major_axis =
-        guide.required_number("semi_major_axis", dimension::length, Range::positive);
-    orbit.eccentricity = guide.number("eccentricity", dimension::number).value_or(0);
-    if (!(orbit.eccentricity >= 0 && orbit.eccentricity < 1)) {
-      guide.refuse("eccentricity", "must be from 0 to below 1: an orbit is an ellipse");
-    }
-    orbit.inclination = guide.angle("inclination", dimension::angle).value_or(0);
-    orbit.node = guide.angle("node", dimension::angle).value_or(0);
-    orbit.perigee = guide.angle("perigee", dimension::angle).value_or(0);
-    orbit.anomaly = guide.angle("anomaly", dimension::angle).value_or(0);
-    orbit.parameter =
-        guide.number("mu", dimension::gravitation, Range::positive).value_or(orbit.parameter);
-    if (guide.flag("j2")) orbit.j2 = OblateGravitation<>{}.j2;
-    scene_.guide.emplace_back(scene_guide::Orbit{orbit});
-  }
-
-  /// A log's file and its options; nothing if they are wrong.
-  struct LogPlace {
-    std::string name;
-    std::filesystem::path file;
-    LogOptions options;
-  };
-
-  std::optional<LogPlace> read_log_place(Section& guide, const std::vector<LogRequest>& columns) {
-    const std::size_t before = mistakes_.count();
-    const std::string name = guide.required_text("file");
-    const LogOptions options = read_log_options(guide, columns, {scene_.t_begin, scene_.t_end});
-    if (name.empty() && guide.has("file") && guide.find("file")->is_string()) {
-      guide.refuse("file", "is empty");
-    }
-    if (mistakes_.count() > before) return std::nullopt;
-    return LogPlace{name, path_.parent_path() / name, options};
-  }
-
-  void read_table(Section& guide) {
-    (void)guide.has("sigma");  // read with the log; a known key also if that fails
-    const auto place = read_log_place(guide, motion_log_columns());
-    if (!place) return;
-    try {
-      MotionLog<double> log = read_motion_log(place->file, place->options).motion;
-      check_covers_run(guide, place->name, place->options, log.times);
-      const LogSpline spline = read_smoothing(guide, log, {dimension::number, dimension::length});
-      scene_.guide.emplace_back(scene_guide::Table{place->file, std::move(log), spline});
-    } catch (const InvalidInput& error) {
-      guide.refuse("file", error.what());
-    }
-  }
-
-  void read_rates(Section& guide) {
-    if (!scene_.guide.empty()) {
-      guide.refuse("kind",
-                   "'rates' must be the first link: gyros measure against the inertial "
-                   "frame");
-    }
-    RatesStart start;
-    start.attitude = quaternion(guide, "attitude").value_or(start.attitude);
-    start.velocity = guide.vector("origin_velocity", dimension::velocity).value_or(start.velocity);
-    const bool felt =
-        guide.choice("acceleration", {"specific force", "kinematic"}) == "specific force";
-    const auto gravity = guide.vector("gravity", dimension::acceleration);
-    start.gravity = gravity.value_or(start.gravity);
-    if (!felt && guide.has("gravity")) {
-      guide.refuse("gravity", "is for acceleration = 'specific force'");
-    }
-    auto place = read_log_place(guide, rates_log_columns());
-    if (!place) return;
-    place->options.run.reset();  // the attitude belongs to the first time of the log
-    try {
-      RatesLog log = read_rates_log(place->file, place->options);
-      check_covers_run(guide, place->name, place->options, log.times);
-      if (gravity && log.accelerations.empty()) {
-        guide.refuse("gravity",
-                     "is what logged accelerations lack, and this log has none; leave it out");
-      }
-      if (felt && !log.accelerations.empty() && !guide.has("gravity")) {
-        rates_without_gravity_ = guide;
-      }
-      const RatesFrame<> checked(log, start);
-      const LogSpline spline =
-          read_smoothing(guide, log, {dimension::angular_rate, dimension::acceleration});
-      scene_.guide.emplace_back(scene_guide::Rates{place->file, std::move(log), start, spline});
-    } catch (const InvalidInput& error) {
-      guide.refuse("file", error.what());
-    }
-  }
-
-  /// Passes gravity to logged specific forces: the guide's own, or uniform gravity of the scene.
-  void give_gravity_to_rates() {
-    if (!rates_without_gravity_) return;
-    const auto* const uniform = std::get_if<UniformGravity<Inertial>>(&scene_.gravity);
-    if (uniform == nullptr) {
-      rates_without_gravity_->refuse(
-          "acceleration",
-          "'specific force' needs gravity: 'gravity' = [x, y, z] in m/s^2 on inertial axes, or "
-          "[gravity] kind = 'inertial'");
-      return;
-    }
-    if (scene_.guide.empty()) return;
-    if (auto* const rates = std::get_if<scene_guide::Rates>(&scene_.guide.front())) {
-      rates->start.gravity = uniform->g;
-    }
-  }
-
-  void check_covers_run(Section& section, const std::string& name, const LogOptions& options,
-                        const std::vector<double>& times) const {
-    const double begin = times.front();
-    const double end = times.back();
-    if (begin <= scene_.t_begin && end >= scene_.t_end) return;
-    section.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
-                               shown_time(end) + " s and does not cover the run, " +
-                               shown_time(scene_.t_begin) + " to " + shown_time(scene_.t_end) +
-                               " s" + time_hint(options, times, scene_.t_begin));
-  }
-
-  static std::string shown_time(double t) {
-    std::ostringstream text;
-    text.precision(15);
-    text << t;
-    return text.str();
-  }
-
-  /// Suggests keys with which a log covers a run from t_begin on, as the end of a message.
-  static std::string time_hint(const LogOptions& options, const std::vector<double>& times,
-                               double t_begin) {
-    const double begin = times.front();
-    if (begin <= t_begin) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
-    if (options.window) {
-      return ": the run begins at t = " + shown_time(t_begin) + "; increase  time_zero  by " +
-             shown_time(begin - t_begin) + " s and move  window  back by as much";
-    }
-    constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
-    const double step = (times.back() - begin) / static_cast<double>(times.size() - 1);
-    const char* unit = nullptr;
-    if (begin > 1e3 * since_1970) unit = "ms";
-    if (begin > 1e6 * since_1970 || step > 1e3) unit = "us";
-    if (begin > 1e9 * since_1970 || step > 1e6) unit = "ns";
-    const bool hint = unit != nullptr && !options.time_unit;
-    return ": give  " + (hint ? "time_unit = \"" + std::string(unit) + "\"  and  " : "") +
-           "time_zero = \"first\"";
-  }
-
-  /// The smoothing spline of a log of two quantities, attitude and position or angular rate and
-  /// acceleration, of the dimensions `of`. The noise is `sigma`: one number, or one for each
-  /// quantity. Without `sigma` it is estimated from the log.
-  template <class Log>
-  static LogSpline read_smoothing(Section& guide, const Log& log,
-                                  const std::vector<Dimension>& of) {
-    LogNoise::Components sigma;
-    if (guide.has("sigma")) {
-      const auto given = guide.number_or_list("sigma", of);
-      if (!given) return {};
-      if (*std::min_element(given->begin(), given->end()) < 0) {
-        guide.refuse("sigma", "must not be below 0");
-        return {};
-      }
-      sigma.head<4>().setConstant(given->front());
-      sigma.tail<3>().setConstant(given->back());
-    } else {
-      sigma = smoothing_sigma(noise_of(log));
-    }
-    return smoothing(log, sigma);
-  }
-
-  void read_gravity() {
+  void read_gravity(const detail::GuideSection& guide) {
     scene_.gravity = scene_gravity::None{};
     if (!root_.has("gravity")) {
-      scene_.gravity = site_gravity_;
+      scene_.gravity = guide.gravity;
       return;
     }
     auto gravity = root_.section("gravity");
@@ -583,8 +230,7 @@ class SceneReader {
       scene_.gravity =
           UniformGravity<Inertial>{gravity->required_vector("vector", dimension::acceleration)};
     }
-    const bool on_earth =
-        !scene_.guide.empty() && std::holds_alternative<scene_guide::Earth>(scene_.guide.front());
+    const bool on_earth = std::holds_alternative<scene_guide::Earth>(guide.links.front());
     if (kind == "earth") {
       scene_.gravity = scene_gravity::Ellipsoid{};
       if (gravity->choice("field", {"normal", "j2"}) == "j2")
@@ -599,14 +245,13 @@ class SceneReader {
     if (kind == "orbit") {
       const bool gradient = !gravity->has("gradient") || gravity->flag("gradient");
       scene_.gravity = scene_gravity::OnOrbit{gradient};
-      const bool on_orbit =
-          !scene_.guide.empty() && std::holds_alternative<scene_guide::Orbit>(scene_.guide.front());
+      const bool on_orbit = std::holds_alternative<scene_guide::Orbit>(guide.links.front());
       if (!on_orbit) {
         gravity->refuse("kind",
                         "'orbit' needs a guide of kind 'orbit', or a chain that begins with one");
       }
     }
-    const bool number = std::holds_alternative<scene_gravity::AtSite>(site_gravity_);
+    const bool number = std::holds_alternative<scene_gravity::AtSite>(guide.gravity);
     if (number && kind != "none") {
       gravity->refuse("kind", "'" + kind +
                                   "' gives gravity a second time; guide.gravity is a "
@@ -734,7 +379,7 @@ class SceneReader {
     note(motion);
     if (drive.is_rate ? !motion.jumps() : motion.is_smooth()) return;
     section.refuse(drive.key, "jumps, or its rate does, at t = " +
-                                  shown_time(motion.discontinuities().front()) +
+                                  detail::shown_time(motion.discontinuities().front()) +
                                   " s, which takes an infinite force; give " +
                                   (drive.is_rate ? "'points'" : "'constant', 'rate' and 'terms'"));
   }
@@ -749,7 +394,7 @@ class SceneReader {
       const bool is_given = initial && (initial->has(key) || initial->has(key + "_deg"));
       if (is_given && number != value) {
         initial->refuse(initial->has(key) ? key : key + "_deg",
-                        "differs from 'drive' at t = " + shown_time(scene_.t_begin));
+                        "differs from 'drive' at t = " + detail::shown_time(scene_.t_begin));
       }
       number = value;
     };
@@ -1016,7 +661,7 @@ class SceneReader {
       rotor.refuse(key, "changes with time, which a rotor with a load cannot");
     }
     if (speed.jumps()) {
-      rotor.refuse(key, "jumps at t = " + shown_time(speed.discontinuities().front()) +
+      rotor.refuse(key, "jumps at t = " + detail::shown_time(speed.discontinuities().front()) +
                             " s, which takes an infinite torque; give 'points'");
     }
   }
@@ -1180,8 +825,6 @@ class SceneReader {
   Mistakes& mistakes_;
   detail::SignalLogs& logs_;
   SceneFile scene_;
-  std::optional<Section> rates_without_gravity_ = {};  ///< of a link that has specific forces
-  scene_gravity::Field site_gravity_ = scene_gravity::None{};  ///< gravity given by the guide
 };
 
 /// Refuses deeply nested keys, because the parser is recursive. No scene needs such keys.

@@ -149,6 +149,13 @@ template <class Value>
 
 }  // namespace
 
+std::string shown_time(double t) {
+  std::ostringstream text;
+  text.precision(15);
+  text << t;
+  return text.str();
+}
+
 template <class Value>
 Signal<Value> read_signal_table(Section table, const KeyDimension& of) {
   std::vector<std::string> given;

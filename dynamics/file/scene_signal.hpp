@@ -11,8 +11,11 @@
 
 namespace kreisel::detail {
 
-/// The signal of a table: { constant, rate, terms }, { steps }, { points } or { file }. Its values have the
-/// dimension `of`. Notes mistakes in the table.
+/// A time in a message, in 15 digits.
+[[nodiscard]] std::string shown_time(double t);
+
+/// The signal of a table: { constant, rate, terms }, { steps }, { points } or { file }. Its values
+/// have the dimension `of`. Notes mistakes in the table.
 template <class Value>
 [[nodiscard]] Signal<Value> read_signal_table(Section table, const KeyDimension& of);
 
