@@ -17,7 +17,9 @@
 #include <dynamics/guide/analytic.hpp>
 #include <dynamics/guide/any_guide.hpp>
 #include <dynamics/guide/chain.hpp>
+#include <dynamics/guide/course.hpp>
 #include <dynamics/guide/earth.hpp>
+#include <dynamics/guide/ellipsoid.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/orbit.hpp>
 #include <dynamics/guide/posed.hpp>

@@ -65,9 +65,7 @@ class TrueNumbers {
 
 SensorReadings::SensorReadings(const SceneFile& scene)
     : scene_(scene), times_(options_of(scene).output_times) {
-  if (std::holds_alternative<scene_gravity::OnOrbit>(scene.gravity)) {
-    inertial_guide_ = make_guide(scene);
-  }
+  if (has_guide_of_equations(scene)) inertial_guide_ = make_guide(scene);
   for (const SceneSensor& sensor : scene.sensors) {
     noises_.emplace_back(sensor.errors.value_or(SensorErrors{}), sensor.name);
     latest_.emplace_back(Vector3<double>::Zero());

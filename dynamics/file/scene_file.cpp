@@ -79,6 +79,7 @@ class SceneReader {
     logs_.set_run({scene_.t_begin, scene_.t_end});
     detail::GuideSection guide =
         detail::read_guide(root_, path_, scene_.t_begin, scene_.t_end, mistakes_);
+    scene_.discontinuities = std::move(guide.discontinuities);
     read_gravity(guide);
     detail::give_gravity_to_rates(guide, scene_.gravity);
     scene_.guide = std::move(guide.links);
@@ -230,15 +231,16 @@ class SceneReader {
       scene_.gravity =
           UniformGravity<Inertial>{gravity->required_vector("vector", dimension::acceleration)};
     }
-    const bool on_earth = std::holds_alternative<scene_guide::Earth>(guide.links.front());
+    const bool on_earth = std::holds_alternative<scene_guide::Earth>(guide.links.front()) ||
+                          std::holds_alternative<scene_guide::Course>(guide.links.front());
     if (kind == "earth") {
       scene_.gravity = scene_gravity::Ellipsoid{};
       if (gravity->choice("field", {"normal", "j2"}) == "j2")
         scene_.gravity = OblateGravitation<>{};
       if (!on_earth) {
         gravity->refuse("kind",
-                        "'earth' needs a guide of kind 'earth', or a chain that begins "
-                        "with one");
+                        "'earth' needs a guide of kind 'earth' or 'course', or a chain that "
+                        "begins with one");
       }
     }
     if (kind == "point" || kind == "j2") scene_.gravity = read_planet(*gravity, kind == "j2");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/file/scene_sensor.hpp>
+#include <dynamics/guide/course.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/orbit.hpp>
@@ -81,7 +82,12 @@ struct Orbit {
   OrbitElements<double> elements;
 };
 
-using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates, Motion, Orbit>;
+/// A vehicle over the WGS84 ellipsoid.
+struct Course {
+  CoursePlan plan = {};  ///< its `gravity` is the field at all bodies
+};
+
+using Link = std::variant<Resting, Rotating, Harmonic, Earth, Table, Rates, Motion, Orbit, Course>;
 
 }  // namespace scene_guide
 
@@ -93,7 +99,8 @@ struct None {};
 /// Gravitation of the WGS84 ellipsoid at every body's centre of mass.
 struct Ellipsoid {};
 
-/// The effective gravity at the site of the earth frame, along its x axis, the same for all bodies.
+/// The effective gravity at the site of the earth frame or of a level vehicle, along its x axis, the
+/// same for all bodies.
 struct AtSite {
   double magnitude = 0;  ///< m/s^2
 };

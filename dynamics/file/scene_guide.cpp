@@ -29,8 +29,8 @@ class GuideReader {
 
  private:
   void read_links(Section& guide, int depth) {
-    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth", "table",
-                                         "rates",    "motion",   "orbit",    "chain"};
+    const std::vector<std::string> kinds{"inertial", "rotating", "harmonic", "earth",  "table",
+                                         "rates",    "motion",   "orbit",    "course", "chain"};
     const std::string kind =
         depth == 0 ? guide.choice("kind", kinds) : guide.required_choice("kind", kinds);
     if (!guide.has("kind") || guide.find("kind")->as_string() == nullptr ||
@@ -69,6 +69,7 @@ class GuideReader {
     if (kind == "rates") read_rates(guide);
     if (kind == "motion") read_motion(guide);
     if (kind == "orbit") read_orbit(guide);
+    if (kind == "course") read_course(guide);
     if (kind == "chain") {
       constexpr int deepest = 8;
       if (!guide.has("links")) guide.refuse_missing("links");
@@ -154,13 +155,7 @@ class GuideReader {
                    "'earth' must be the first link: the earth moves against no frame but "
                    "the inertial one");
     }
-    const toml::node* const gravity = guide.find("gravity");
-    if (guide.has_number("gravity")) {
-      link.gravity = guide.number("gravity", dimension::acceleration, Range::positive);
-      if (link.gravity) guide_.gravity = scene_gravity::AtSite{*link.gravity};
-    } else if (gravity != nullptr && guide.choice("gravity", {"normal", "none"}) == "normal") {
-      guide_.gravity = scene_gravity::Ellipsoid{};
-    }
+    link.gravity = read_gravity(guide);
     try {
       check(link.site);
     } catch (const InvalidInput& error) {
@@ -172,6 +167,94 @@ class GuideReader {
       guide.refuse(key, text.substr(text.find("= ") + 2));
     }
     guide_.links.emplace_back(std::move(link));
+  }
+
+  /// Reads gravity on the earth, as a number or by name. Returns the number.
+  std::optional<double> read_gravity(Section& guide) {
+    const toml::node* const gravity = guide.find("gravity");
+    if (gravity == nullptr) return std::nullopt;
+    if (guide.has_number("gravity")) {
+      const auto number = guide.number("gravity", dimension::acceleration, Range::positive);
+      if (number) guide_.gravity = scene_gravity::AtSite{*number};
+      return number;
+    }
+    if (guide.choice("gravity", {"normal", "none"}) == "normal") {
+      guide_.gravity = scene_gravity::Ellipsoid{};
+    }
+    return std::nullopt;
+  }
+
+  void read_course(Section& guide) {
+    if (!guide_.links.empty()) {
+      guide.refuse("kind",
+                   "'course' must be the first link: the earth moves against no frame but the "
+                   "inertial one");
+    }
+    if (t_begin_ < 0) {
+      guide.refuse("kind", "'course' is given by its start at t = 0; solve.t_begin is earlier");
+    }
+    const std::size_t before = mistakes_.count();
+    CoursePlan plan;
+    plan.latitude = read_degrees(guide, "latitude", true);
+    plan.longitude = read_degrees(guide, "longitude", false);
+    plan.heading = read_degrees(guide, "heading", true);
+    plan.height = guide.number("height", dimension::length).value_or(0);
+    plan.speed = guide.required_number("speed", dimension::velocity);
+    plan.turn_rate =
+        read_angle_signal(guide, "turn_rate", dimension::angular_rate).value_or(plan.turn_rate);
+    plan.acceleration = read_signal<double>(guide, "acceleration", dimension::acceleration)
+                            .value_or(plan.acceleration);
+    plan.climb = read_signal<double>(guide, "climb", dimension::velocity).value_or(plan.climb);
+    read_bank(guide, plan);
+    plan.gravity = read_gravity(guide);
+    if (mistakes_.count() == before && t_end_ > 0) check_course(guide, plan);
+    guide_.discontinuities = plan.discontinuities(t_end_);
+    guide_.links.emplace_back(scene_guide::Course{std::move(plan)});
+  }
+
+  /// An angle in degrees: the value of key_deg, or of the key in radian.
+  static double read_degrees(Section& guide, const std::string& key, bool is_required) {
+    const std::string in_degrees = key + "_deg";
+    if (guide.has(in_degrees)) {
+      if (guide.has(key)) guide.refuse(in_degrees, "is given in radian too, as '" + key + "'");
+      return guide.number(in_degrees, std::nullopt).value_or(0);
+    }
+    if (is_required && !guide.has(key)) guide.refuse_missing(in_degrees);
+    return guide.number(key, dimension::angle).value_or(0) / radian_per_degree;
+  }
+
+  static void read_bank(Section& guide, CoursePlan& plan) {
+    const std::string word = guide.peek("bank");
+    const bool is_angle = word.find_first_of("+-.0123456789") == 0 || word.empty();
+    if (is_angle) {
+      plan.bank = read_angle_signal(guide, "bank", dimension::angle).value_or(plan.bank);
+      return;
+    }
+    plan.is_coordinated = guide.choice("bank", {"none", "coordinated"}) == "coordinated";
+    if (guide.has("bank_deg")) guide.refuse("bank_deg", "is given beside 'bank'");
+  }
+
+  void check_course(Section& guide, const CoursePlan& plan) const {
+    const auto given = [&guide](const std::string& key) {
+      return guide.has(key + "_deg") ? key + "_deg" : key;
+    };
+    if (const auto jump = impact(plan, t_end_)) {
+      const bool is_bank = jump->key == std::string_view("bank");
+      guide.refuse(given(jump->key),
+                   "jumps, or its rate does, at t = " + shown_time(jump->t) +
+                       " s, which takes an infinite " +
+                       (plan.is_coordinated ? "torque beside bank = 'coordinated'" : "force") +
+                       (is_bank || plan.is_coordinated ? "; give 'constant', 'rate' and 'terms'"
+                                                       : "; give 'points'"));
+      return;
+    }
+    try {
+      check(plan, t_end_);
+    } catch (const InvalidInput& error) {
+      const std::string text = error.what();
+      const std::size_t end = text.find(" = ");
+      guide.refuse(given(text.substr(0, end)), text.substr(end + 3));
+    }
   }
 
   void read_motion(Section& guide) {

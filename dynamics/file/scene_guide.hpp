@@ -14,6 +14,7 @@ namespace kreisel::detail {
 struct GuideSection {
   std::vector<scene_guide::Link> links;                  ///< never empty
   scene_gravity::Field gravity = scene_gravity::None{};  ///< given by the guide
+  std::vector<double> discontinuities = {};              ///< times within the run, in any order
   std::optional<Section> rates_without_gravity = {};     ///< of a link that has specific forces
 };
 

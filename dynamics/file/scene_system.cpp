@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <dynamics/file/scene_system.hpp>
+#include <dynamics/guide/course.hpp>
 #include <dynamics/guide/earth_frame.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
@@ -72,7 +73,10 @@ SceneGuide make_link(const scene_guide::Link& link, double t_end) {
             if (kind.pose.is_analytic()) return frame;
             return [frame](double t) { return frame(t); };  // without a Taylor series
           },
-          [](const scene_guide::Orbit& kind) -> SceneGuide { return OrbitFrame<>(kind.elements); }},
+          [](const scene_guide::Orbit& kind) -> SceneGuide { return OrbitFrame<>(kind.elements); },
+          [t_end](const scene_guide::Course& kind) -> SceneGuide {
+            return within(CourseFrame<>(kind.plan, t_end));
+          }},
       link);
 }
 
@@ -109,11 +113,33 @@ SceneGuide chained(std::vector<SceneGuide> links) {
   };
 }
 
+/// The course of a vehicle whose gravity is a number; null for other scenes.
+const CoursePlan* course_in_given_gravity(const SceneFile& scene) {
+  const auto* const course = std::get_if<scene_guide::Course>(&scene.guide.front());
+  const bool given = std::holds_alternative<scene_gravity::AtSite>(scene.gravity);
+  return course != nullptr && given ? &course->plan : nullptr;
+}
+
+/// The frame whose x axis is along an effective gravity that is given as a number.
+SceneGuide level_frame(const SceneFile& scene) {
+  const CoursePlan* const course = course_in_given_gravity(scene);
+  if (course == nullptr) return make_link(scene.guide.front(), scene.t_end);
+  CoursePlan level = *course;
+  level.bank = {};
+  level.is_coordinated = false;
+  return make_link(scene_guide::Course{std::move(level)}, scene.t_end);
+}
+
 const OrbitElements<>& orbit_of(const SceneFile& scene) {
   return std::get<scene_guide::Orbit>(scene.guide.front()).elements;
 }
 
 }  // namespace
+
+bool has_guide_of_equations(const SceneFile& scene) {
+  return std::holds_alternative<scene_gravity::OnOrbit>(scene.gravity) ||
+         course_in_given_gravity(scene) != nullptr;
+}
 
 SceneGuide make_guide(const SceneFile& scene) { return chained(make_links(scene)); }
 
@@ -121,6 +147,9 @@ SceneGuide make_guide_of_equations(const SceneFile& scene) {
   std::vector<SceneGuide> links = make_links(scene);
   if (std::holds_alternative<scene_gravity::OnOrbit>(scene.gravity)) {
     links.front() = OrbitAxes<>(orbit_of(scene));
+  }
+  if (const CoursePlan* const course = course_in_given_gravity(scene)) {
+    links.front() = within(CourseAxes<>(*course, scene.t_end));
   }
   return chained(std::move(links));
 }
@@ -134,23 +163,22 @@ SceneBodies bodies_in_gravity(const SceneFile& scene) {
     }
   };
   std::visit(
-      Overloaded{
-          [](const scene_gravity::None&) {},
-          [&result](const UniformGravity<Guide>& g) { result.gravity = g; },
-          [&result](const UniformGravity<Inertial>& g) { result.gravity = g; },
-          [&](const scene_gravity::Ellipsoid&) { add_to_all(EarthGravitation{}); },
-          [&](const OblateGravitation<>& planet) { add_to_all(planet); },
-          [&](const scene_gravity::OnOrbit& orbit) {
-            add_to_all(OrbitGravitation<>(orbit_of(scene), orbit.gradient));
-          },
-          [&](const scene_gravity::AtSite& site) {
-            const Vector3<double> g(site.magnitude, 0, 0);
-            if (scene.guide.size() == 1) {
-              result.gravity = UniformGravity<Guide>{g};
-            } else {
-              add_to_all(SiteWeight{make_link(scene.guide.front(), scene.t_end), site.magnitude});
-            }
-          }},
+      Overloaded{[](const scene_gravity::None&) {},
+                 [&result](const UniformGravity<Guide>& g) { result.gravity = g; },
+                 [&result](const UniformGravity<Inertial>& g) { result.gravity = g; },
+                 [&](const scene_gravity::Ellipsoid&) { add_to_all(EarthGravitation{}); },
+                 [&](const OblateGravitation<>& planet) { add_to_all(planet); },
+                 [&](const scene_gravity::OnOrbit& orbit) {
+                   add_to_all(OrbitGravitation<>(orbit_of(scene), orbit.gradient));
+                 },
+                 [&](const scene_gravity::AtSite& site) {
+                   const Vector3<double> g(site.magnitude, 0, 0);
+                   if (scene.guide.size() == 1 && course_in_given_gravity(scene) == nullptr) {
+                     result.gravity = UniformGravity<Guide>{g};
+                   } else {
+                     add_to_all(SiteWeight{level_frame(scene), site.magnitude});
+                   }
+                 }},
       scene.gravity);
   return result;
 }

@@ -40,9 +40,13 @@ class SceneGuide : public AnyGuide {
 /// Throws : InvalidInput as the kinds do, for values that are not checked in the file
 [[nodiscard]] SceneGuide make_guide(const SceneFile& scene);
 
+/// True if make_guide_of_equations() differs from make_guide().
+[[nodiscard]] bool has_guide_of_equations(const SceneFile& scene);
+
 /// The guide motion for a system with the bodies of bodies_in_gravity(). It equals make_guide()
-/// except for gravity of kind orbit. Then the motion is relative to a frame that moves with the
-/// orbit's origin and does not rotate. The origin's acceleration is part of the gravity.
+/// except for gravity of kind orbit, and on a course for gravity given as a number. Then the motion
+/// is relative to a frame that moves with the guide's origin and does not rotate. The origin's
+/// acceleration, or on a course its centrifugal part, is part of the gravity.
 [[nodiscard]] SceneGuide make_guide_of_equations(const SceneFile& scene);
 
 /// The bodies of a scene for BodySystem. Gravity that is not uniform is one of their loads.

@@ -197,6 +197,8 @@ std::string changes(const SceneFile& scene) {
   if (std::any_of(scene.guide.begin(), scene.guide.end(), moves)) {
     return "the guide moves as functions of time";
   }
+  const auto* const course = std::get_if<scene_guide::Course>(&scene.guide.front());
+  if (course != nullptr && !course->plan.rests()) return "the guide moves over the earth";
   if (scene.forces_change) return "a force, a torque, a drive or a rotor's speed changes with time";
   return "";
 }

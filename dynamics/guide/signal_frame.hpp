@@ -14,6 +14,31 @@
 
 namespace kreisel {
 
+namespace detail {
+
+/// The value of a signal at a time in double, in dual numbers, or as a series.
+template <class Value, class T>
+[[nodiscard]] SignalValue<Value, T> value_at(const Signal<Value>& signal, const T& t) {
+  if constexpr (std::is_same_v<T, PowerSeries>) {
+    std::array<Value, PowerSeries::most_order + 1> c;
+    const auto places = static_cast<std::size_t>(t.order()) + 1;
+    signal.coefficients(t[0], t[1], std::span(c).first(places));
+    if constexpr (std::is_same_v<Value, double>) {
+      return PowerSeries::of(t.order(), [&c](std::size_t k) { return c[k]; });
+    } else {
+      Vector3<PowerSeries> result;
+      for (int i = 0; i < 3; ++i) {
+        result[i] = PowerSeries::of(t.order(), [&c, i](std::size_t k) { return c[k][i]; });
+      }
+      return result;
+    }
+  } else {
+    return signal(t);
+  }
+}
+
+}  // namespace detail
+
 /// Position and attitude as signals: a rotation about z by the yaw, about the new y by the pitch,
 /// about the new x by the roll.
 ///
@@ -41,29 +66,9 @@ struct PoseSignals {
 
   template <class T>
   [[nodiscard]] Pose<T> operator()(const T& t) const {
-    const YawPitchRoll<T> angles{at(yaw, t), at(pitch, t), at(roll, t)};
-    return {angles.rotation(), at(position, t)};
-  }
-
- private:
-  template <class Value, class T>
-  [[nodiscard]] static detail::SignalValue<Value, T> at(const Signal<Value>& signal, const T& t) {
-    if constexpr (std::is_same_v<T, PowerSeries>) {
-      std::array<Value, PowerSeries::most_order + 1> c;
-      const auto places = static_cast<std::size_t>(t.order()) + 1;
-      signal.coefficients(t[0], t[1], std::span(c).first(places));
-      if constexpr (std::is_same_v<Value, double>) {
-        return PowerSeries::of(t.order(), [&c](std::size_t k) { return c[k]; });
-      } else {
-        Vector3<PowerSeries> result;
-        for (int i = 0; i < 3; ++i) {
-          result[i] = PowerSeries::of(t.order(), [&c, i](std::size_t k) { return c[k][i]; });
-        }
-        return result;
-      }
-    } else {
-      return signal(t);
-    }
+    using detail::value_at;
+    const YawPitchRoll<T> angles{value_at(yaw, t), value_at(pitch, t), value_at(roll, t)};
+    return {angles.rotation(), value_at(position, t)};
   }
 };
 

@@ -104,8 +104,10 @@ bool is_steady(const kreisel::SceneFile& scene) {
   const auto* const orbit = std::get_if<kreisel::scene_guide::Orbit>(&scene.guide.front());
   const bool is_circle =
       orbit == nullptr || (orbit->elements.eccentricity == 0 && orbit->elements.j2 == 0);
+  const auto* const course = std::get_if<kreisel::scene_guide::Course>(&scene.guide.front());
+  const bool travels = course != nullptr && !course->plan.rests();
   return scene.guide.size() == 1 && !has_link<Harmonic>(scene) && !has_link<Table>(scene) &&
-         !has_link<Motion>(scene) && is_circle;
+         !has_link<Motion>(scene) && is_circle && !travels;
 }
 
 /// True if the forces on bodies at rest cannot deliver unlimited energy. These forces are gravity
@@ -113,8 +115,10 @@ bool is_steady(const kreisel::SceneFile& scene) {
 /// potential, and dampers.
 bool has_potential(const kreisel::SceneFile& scene) {
   const auto* const planet = std::get_if<kreisel::OblateGravitation<>>(&scene.gravity);
-  const bool turns_along = planet != nullptr && has_link<kreisel::scene_guide::Earth>(scene) &&
-                           planet->centre.isZero(0) && planet->pole.head<2>().isZero(0);
+  const bool on_earth =
+      has_link<kreisel::scene_guide::Earth>(scene) || has_link<kreisel::scene_guide::Course>(scene);
+  const bool turns_along =
+      planet != nullptr && on_earth && planet->centre.isZero(0) && planet->pole.head<2>().isZero(0);
   const bool stands_still =
       std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity) ||
       (planet != nullptr && !turns_along);

@@ -75,7 +75,8 @@ ordered_json named(const std::vector<kreisel::JointQuantity>& quantities) {
 /// The direction opposite to gravity, if the scene has one.
 Eigen::Vector3d up(const kreisel::SceneFile& scene) {
   Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
-  if (std::holds_alternative<kreisel::scene_guide::Earth>(scene.guide.front())) {
+  if (std::holds_alternative<kreisel::scene_guide::Earth>(scene.guide.front()) ||
+      std::holds_alternative<kreisel::scene_guide::Course>(scene.guide.front())) {
     down = Eigen::Vector3d::UnitX();
   }
   if (std::holds_alternative<kreisel::scene_guide::Orbit>(scene.guide.front())) {

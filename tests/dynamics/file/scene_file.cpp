@@ -590,7 +590,7 @@ BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
       {"a = 1\na = 2\n", "is no TOML"},
       {"[guide]\nkind = \"rotatin\"\n" + body + run,
        "s.toml:2:8: guide.kind: 'rotatin' is none of 'inertial', 'rotating', 'harmonic', 'earth', "
-       "'table', 'rates', 'motion', 'orbit' or 'chain' (did you mean 'rotating'?)"},
+       "'table', 'rates', 'motion', 'orbit', 'course' or 'chain' (did you mean 'rotating'?)"},
       {"[guide]\nkind = \"rotating\"\n" + body + run,
        "s.toml:1:1: guide.angular_velocity: is missing"},
       {"[guide]\nkind = \"earth\"\nlatitude_deg = 91\nheight = 0\nazimuth_deg = 0\n" + body + run,
