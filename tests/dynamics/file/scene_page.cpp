@@ -624,6 +624,9 @@ BOOST_AUTO_TEST_CASE(series_are_used_if_they_are_known) {
   BOOST_TEST(method(one(swung,
                         "[guide]\nkind = \"earth\"\nlatitude_deg = 50\nheight = 0\n"
                         "azimuth_deg = 0\ngravity = \"normal\"\n")) != "taylor");
+  BOOST_TEST(method(one(swung,
+                        "[guide]\nkind = \"course\"\nlatitude_deg = 50\nheading_deg = 0\n"
+                        "speed = 10\n")) != "taylor");
 }
 
 // Splitting is refused for scenes of a file, as are models that do not fit, with the reason.
