@@ -257,7 +257,32 @@ Link orbit(Random& r) {
   return link;
 }
 
+/// A ship or an aircraft, away from the poles, where the reference has singular angles.
+Link course(Random& r) {
+  Link link{.kind = LinkKind::course};
+  const auto along = [&r] { return Vector(sign(r) * Vector::UnitX()); };
+  const auto in_steps = [&r, &along](double size, bool is_line) {
+    Signal s = any_signal(r, size, along);
+    s.jumps.is_broken_line = s.jumps.is_broken_line || is_line;
+    return s;
+  };
+  Vehicle& vehicle = link.vehicle;
+  vehicle.latitude = r.chance(0.5) ? Angle{r.pick({0.0, 30.0, 50.0, -70.0}), true}
+                                   : Angle{rounded(r.between(-1.2, 1.2), 3)};
+  if (r.chance(0.4)) vehicle.longitude = angle(r);
+  vehicle.heading = r.chance(0.6) ? Angle{90.0 * r.below(4), true} : angle(r);
+  vehicle.height = r.pick({0.0, 0.0, 100.0, 10000.0});
+  vehicle.speed = r.pick({0.0, 10.0, 10.0, 250.0, -5.0});
+  if (r.chance(0.5)) vehicle.turn_rate = in_steps(r.pick({0.01, 0.1}), true);
+  if (r.chance(0.4)) vehicle.acceleration = in_steps(0.5, false);
+  if (r.chance(0.3)) vehicle.climb = in_steps(1, true);
+  if (r.chance(0.3)) vehicle.bank = smooth_signal(r, 0.2, along);
+  link.gravity = r.pick<const char*>({"\"normal\"", "\"normal\"", "9.81", "\"none\"", ""});
+  return link;
+}
+
 Link any_link(Random& r, bool first) {
+  if (first && r.chance(0.1)) return course(r);
   if (first && r.chance(0.08)) return orbit(r);
   const double u = r.uniform();
   if (u < 0.25) return rotating(r);
@@ -274,6 +299,12 @@ void add_guide(Random& r, Scene& scene) {
   scene.guide.push_back(any_link(r, true));
   while (scene.guide.size() < 3 && r.chance(0.15)) scene.guide.push_back(any_link(r, false));
   scene.chain_in_chain = scene.guide.size() > 1 && r.chance(0.3);
+  // The reference takes a number on the axes of the whole guide.
+  Link& first = scene.guide.front();
+  const bool is_level = scene.guide.size() == 1 && first.vehicle.bank.empty();
+  if (first.kind == LinkKind::course && !is_level && first.gravity == "9.81") {
+    first.gravity = "\"normal\"";
+  }
 }
 
 /// The acceleration that accelerometers do not measure.
@@ -300,7 +331,8 @@ void add_gravity(Random& r, Scene& scene) {
     if (r.chance(0.4)) scene.gradient = r.chance(0.5);
     return;
   }
-  const bool on_earth = !scene.guide.empty() && scene.guide.front().kind == LinkKind::earth;
+  const bool on_earth = !scene.guide.empty() && (scene.guide.front().kind == LinkKind::earth ||
+                                                 scene.guide.front().kind == LinkKind::course);
   if (on_earth) {
     if (scene.guide.front().gravity == "\"none\"" && r.chance(0.5)) {
       scene.gravity = r.chance(0.7) ? GravityKind::earth : GravityKind::earth_j2;
@@ -815,7 +847,8 @@ void add_logs_of_signals(Random& r, Scene& scene) {
 /// Moves the run to a later time, unless the guide is given by its start at t = 0.
 void add_begin(Random& r, Scene& scene) {
   const bool has_start = std::any_of(scene.guide.begin(), scene.guide.end(), [](const Link& link) {
-    return link.kind == LinkKind::rotating || link.kind == LinkKind::harmonic;
+    return link.kind == LinkKind::rotating || link.kind == LinkKind::harmonic ||
+           link.kind == LinkKind::course;
   });
   if (has_start || r.chance(0.7)) return;
   scene.t_begin = r.pick({0.5, 1.0, 3.0});

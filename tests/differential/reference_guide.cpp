@@ -1,6 +1,8 @@
 #include "reference_guide.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace differential::reference {
 
@@ -30,8 +32,10 @@ Oscillation at(const Series& s, Real t, bool degrees = false) {
   return sum;
 }
 
-bool has_state(const Link& link) {
-  return link.kind == LinkKind::rotating || link.kind == LinkKind::harmonic;
+/// The numbers of a link in the state.
+Eigen::Index state_size(const Link& link) {
+  if (link.kind == LinkKind::course) return 5;
+  return link.kind == LinkKind::rotating || link.kind == LinkKind::harmonic ? 10 : 0;
 }
 
 /// Sine and cosine of degrees, exact at multiples of 90.
@@ -140,8 +144,8 @@ constexpr Real earth_gm = 3.986004418e14L;
 constexpr Real earth_j2 = 1.08262982131e-3L;
 
 /// A frame that turns about an axis from an angle on.
-Motion turning(const Vec& axis, Real angle, Real rate) {
-  return {Eigen::AngleAxis<Real>(angle, axis).toRotationMatrix(), rate * axis};
+Motion turning(const Vec& axis, Real angle, Real rate, Real rate_of_rate = 0) {
+  return {Eigen::AngleAxis<Real>(angle, axis).toRotationMatrix(), rate * axis, rate_of_rate * axis};
 }
 
 /// The eccentric anomaly by bisection.
@@ -222,6 +226,50 @@ Motion along_orbit(const Orbit& o, Real t) {
   return on(apse, in_plane(o, n, t));
 }
 
+/// A vehicle relative to the inertial frame, by the rates of latitude, longitude and heading.
+///
+///   lat' = v cos(hdg)/(M + h),   lon' = v sin(hdg)/((N + h) cos(lat)),
+///   hdg' = turn_rate + lon' sin(lat)
+Motion along_course(const Vehicle& vehicle, Real t, Real within, const Real* y, Real* rates) {
+  const Real lat = y[0], heading = y[2], h = y[3], v = y[4];
+  const Course turn = course_of(vehicle.turn_rate, t, within);
+  const Course climb = course_of(vehicle.climb, t, within);
+  const Real dv = course_of(vehicle.acceleration, t, within).value.x();
+  const Real dh = climb.value.x();
+  const Real e2 = flattening * (2 - flattening);
+  const Real s = std::sin(lat), c = std::cos(lat);
+  const Real w = 1 - e2 * s * s;
+  const Real N = equator / std::sqrt(w);
+  const Real M = N * (1 - e2) / w;
+  const Real north = v * std::cos(heading), east = v * std::sin(heading);
+  const Real dlat = north / (M + h);
+  const Real dlon = east / ((N + h) * c);
+  const Real dheading = turn.value.x() + dlon * s;
+  const Real numbers[] = {dlat, dlon, dheading, dh, dv};
+  std::copy(std::begin(numbers), std::end(numbers), rates);
+
+  const Real dnorth = dv * std::cos(heading) - east * dheading;
+  const Real deast = dv * std::sin(heading) + north * dheading;
+  const Real dN = N * e2 * s * c * dlat / w;
+  const Real dM = 3 * M * e2 * s * c * dlat / w;
+  const Real ddlat = (dnorth - dlat * (dM + dh)) / (M + h);
+  const Real ddlon = (deast - dlon * ((dN + dh) * c - (N + h) * s * dlat)) / ((N + h) * c);
+  const Real ddheading = turn.rate.x() + ddlon * s + dlon * c * dlat;
+
+  // x up, y east, z north
+  Motion place =
+      on(turning(Vec::UnitZ(), y[1], dlon, ddlon), turning(-Vec::UnitY(), lat, dlat, ddlat));
+  place.x = place.R * Vec((N + h) - N * e2 * s * s, 0, -N * e2 * s * c);
+  place.v = place.R * Vec(dh, east, north);
+  place.a = place.R * Vec(climb.rate.x(), deast, dnorth) + place.w.cross(place.v);
+  Motion level;  // x down, y west, z north
+  level.R = Vec(-1, -1, 1).asDiagonal();
+  const Course bank = course_of(vehicle.bank, t, within);
+  const Motion banked = turning(Vec::UnitZ(), bank.value.x(), bank.rate.x(), bank.second_rate.x());
+  const Motion headed = on(place, turning(Vec::UnitX(), -heading, -dheading, -ddheading));
+  return on(turning(Vec::UnitZ(), earth_rate * t, earth_rate), on(on(headed, level), banked));
+}
+
 }  // namespace
 
 Course course_of(const Signal& signal, Real t, Real within) {
@@ -288,13 +336,20 @@ Vec ellipsoid_gravitation(const Vec& place) {
 }
 
 Guide::Guide(const Scene& scene) : scene_(scene) {
-  for (const Link& link : scene.guide) size_ += has_state(link) ? 10 : 0;
+  for (const Link& link : scene.guide) size_ += state_size(link);
 }
 
 void Guide::start(State& y) const {
   Eigen::Index begin = 0;
   for (const Link& link : scene_.guide) {
-    if (!has_state(link)) continue;
+    if (state_size(link) == 0) continue;
+    if (link.kind == LinkKind::course) {
+      const Vehicle& vehicle = link.vehicle;
+      y.segment<5>(begin) << Real(vehicle.latitude.radian()), Real(vehicle.longitude.radian()),
+          Real(vehicle.heading.radian()), Real(vehicle.height), Real(vehicle.speed);
+      begin += 5;
+      continue;
+    }
     y.segment<4>(begin) = unit_quaternion(link.attitude).coeffs();
     y.segment<3>(begin + 4) = wide(link.origin_position);
     y.segment<3>(begin + 7) = wide(link.origin_velocity);
@@ -308,6 +363,7 @@ Motion Guide::own(const Link& link, Real t, const Real* y, Real* rates) const {
   if (link.kind == LinkKind::motion) return moved(link, t);
   if (link.kind == LinkKind::inertial) return {};
   if (link.kind == LinkKind::orbit) return along_orbit(link.orbit, t);
+  if (link.kind == LinkKind::course) return along_course(link.vehicle, t, within_, y, rates);
   const Oscillation u =
       link.kind == LinkKind::harmonic
           ? differential::reference::at(link.turning, t, link.turns_in_degrees)
@@ -333,13 +389,17 @@ Motion Guide::at(Real t, const State& y, State& rates) const {
   Eigen::Index begin = 0;
   for (const Link& link : scene_.guide) {
     whole = on(whole, own(link, t, y.data() + begin, rates.data() + begin));
-    if (has_state(link)) begin += 10;
+    begin += state_size(link);
   }
   return whole;
 }
 
 void Guide::project(State& y) const {
-  for (Eigen::Index i = 0; i < size_; i += 10) y.segment<4>(i).normalize();
+  Eigen::Index begin = 0;
+  for (const Link& link : scene_.guide) {
+    if (state_size(link) == 10) y.segment<4>(begin).normalize();
+    begin += state_size(link);
+  }
 }
 
 bool Guide::has_gradient() const {
@@ -355,7 +415,9 @@ Real Guide::depth(const Motion& motion, const Vec& place) const {
 
 Vec Guide::gravity(Real t, const Motion& motion, const Vec& place) const {
   const Vec given = wide(scene_.gravity_vector);
-  const bool on_earth = !scene_.guide.empty() && scene_.guide.front().kind == LinkKind::earth;
+  const bool on_course = !scene_.guide.empty() && scene_.guide.front().kind == LinkKind::course;
+  const bool on_earth =
+      on_course || (!scene_.guide.empty() && scene_.guide.front().kind == LinkKind::earth);
   switch (scene_.gravity) {
     case GravityKind::none: return Vec::Zero();
     case GravityKind::uniform: return motion.R * given;
@@ -374,7 +436,10 @@ Vec Guide::gravity(Real t, const Motion& motion, const Vec& place) const {
   const Link& site = scene_.guide.front();
   if (site.gravity == "\"normal\"") return ellipsoid_gravitation(motion.x + place);
   if (!has_number(site)) return Vec::Zero();
-  return earth(site, t).R * Vec(std::stold(site.gravity), 0, 0);
+  const Vec down(std::stold(site.gravity), 0, 0);
+  if (!on_course) return earth(site, t).R * down;
+  // The number includes the centrifugal acceleration, which the motion has too.
+  return motion.R * down - earth_rate * earth_rate * Vec(motion.x.x(), motion.x.y(), 0);
 }
 
 }  // namespace differential::reference

@@ -26,7 +26,8 @@ struct Motion {
 };
 
 /// The guide of a scene. Links without a closed form are integrated with the state. Each rotating
-/// or harmonic link adds ten numbers: attitude, position and velocity relative to the link before.
+/// or harmonic link adds ten numbers: attitude, position and velocity relative to the link before. A
+/// course adds latitude, longitude, heading, height and speed.
 class Guide {
  public:
   explicit Guide(const Scene& scene);
@@ -36,6 +37,9 @@ class Guide {
 
   /// Motion and rates of the state's first size() numbers.
   [[nodiscard]] Motion at(Real t, const State& y, State& rates) const;
+
+  /// Takes functions of time on the pieces that contain t.
+  void stay_within(Real t) { within_ = t; }
 
   /// Normalises the attitude quaternions.
   void project(State& y) const;
@@ -54,6 +58,7 @@ class Guide {
 
   const Scene& scene_;
   Eigen::Index size_ = 0;
+  Real within_ = 0;
 };
 
 /// A function of time with its first and second rate, on the piece that contains `within`.

@@ -31,7 +31,10 @@ class Tree {
   /// on body axes.
   [[nodiscard]] std::vector<double> reactions(Real t, const State& y);
   /// Takes functions of time on the pieces that contain t: the middle of a step.
-  void stay_within(Real t) { within_ = t; }
+  void stay_within(Real t) {
+    within_ = t;
+    guide_.stay_within(t);
+  }
   /// Readings of the scene's sensors: three numbers for each vector, for an attitude the quaternion
   /// x, y, z, w.
   [[nodiscard]] std::vector<double> readings(Real t, const State& y);

@@ -154,6 +154,27 @@ Keys orbit_keys(const Orbit& orbit) {
   return result;
 }
 
+Keys course_keys(const Link& link) {
+  const Vehicle& vehicle = link.vehicle;
+  Keys result{
+      {"kind", "\"course\""}, {"height", text(vehicle.height)}, {"speed", text(vehicle.speed)}};
+  const auto add_angle = [&result](const char* key, const Angle& angle) {
+    result.emplace_back(angle_key(key, angle.degrees), text(angle.value));
+  };
+  add_angle("latitude", vehicle.latitude);
+  add_angle("longitude", vehicle.longitude);
+  add_angle("heading", vehicle.heading);
+  const auto add = [&result](const char* key, const Signal& s) {
+    if (!s.empty()) result.emplace_back(key, number_signal(s));
+  };
+  add("turn_rate", vehicle.turn_rate);
+  add("acceleration", vehicle.acceleration);
+  add("climb", vehicle.climb);
+  add("bank", vehicle.bank);
+  if (!link.gravity.empty()) result.emplace_back("gravity", link.gravity);
+  return result;
+}
+
 /// The keys of a guide frame.
 Keys keys(const Link& link, std::size_t index, double t_end) {
   switch (link.kind) {
@@ -170,6 +191,7 @@ Keys keys(const Link& link, std::size_t index, double t_end) {
               {"position", vector_signal(link.position)},
               {"angles", angles(link.angles)}};
     case LinkKind::orbit: return orbit_keys(link.orbit);
+    case LinkKind::course: return course_keys(link);
     case LinkKind::earth: break;
   }
   Keys result{{"kind", "\"earth\""},
@@ -446,6 +468,10 @@ std::vector<double> Scene::jumps() const {
 
 std::vector<const Signal*> Scene::signals() const {
   std::vector<const Signal*> result;
+  for (const Link& link : guide) {
+    const Vehicle& v = link.vehicle;
+    result.insert(result.end(), {&v.turn_rate, &v.acceleration, &v.climb, &v.bank});
+  }
   for (const Body& body : bodies) {
     result.push_back(&body.force_in_time);
     result.push_back(&body.motion);

@@ -68,7 +68,20 @@ struct Orbit {
   bool j2 = false;
 };
 
-enum class LinkKind { inertial, rotating, harmonic, earth, table, rates, motion, orbit };
+/// A vehicle over the earth: its start, and its speeds as functions of time, as in the file.
+struct Vehicle {
+  Angle latitude = {};
+  Angle longitude = {};
+  Angle heading = {};
+  double height = 0;
+  double speed = 0;
+  Signal turn_rate = {};
+  Signal acceleration = {};
+  Signal climb = {};
+  Signal bank = {};
+};
+
+enum class LinkKind { inertial, rotating, harmonic, earth, table, rates, motion, orbit, course };
 
 struct Link {
   LinkKind kind = LinkKind::inertial;
@@ -84,11 +97,12 @@ struct Link {
   double height = 0;
   double azimuth = 0;  ///< degrees
   std::optional<Angle> rate = {};
-  std::string gravity = {};  ///< of an earth, as in the file; empty: not given
+  std::string gravity = {};  ///< of an earth or a course, as in the file; empty: not given
   Log log = {};
   Signal position = {};               ///< of a motion
   std::array<Signal, 3> angles = {};  ///< yaw, pitch, roll
   Orbit orbit = {};
+  Vehicle vehicle = {};
 
   [[nodiscard]] bool is_logged() const {
     return kind == LinkKind::table || kind == LinkKind::rates;

@@ -103,6 +103,11 @@ void add_guide_changes(const Scene& scene, std::vector<Change>& changes) {
     changes.emplace_back([i](Scene& s) { s.guide[i].turning = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].orbit.eccentricity = 0; });
     changes.emplace_back([i](Scene& s) { s.guide[i].orbit.j2 = false; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].vehicle.turn_rate = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].vehicle.acceleration = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].vehicle.climb = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].vehicle.bank = {}; });
+    changes.emplace_back([i](Scene& s) { s.guide[i].vehicle.speed = 0; });
     changes.emplace_back([i](Scene& s) { s.guide[i].pushing = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].position = {}; });
     changes.emplace_back([i](Scene& s) { s.guide[i].angles = {}; });
