@@ -54,6 +54,7 @@
 #include <dynamics/rigid/free_body.hpp>
 #include <dynamics/rigid/small_oscillations.hpp>
 #include <dynamics/sensor/errors.hpp>
+#include <dynamics/sensor/increments.hpp>
 #include <dynamics/sensor/sensors.hpp>
 #include <dynamics/signal/signal.hpp>
 #include <dynamics/solve/error_measure.hpp>

@@ -23,17 +23,39 @@ Vector3<double> normal(MemberRandom& random) {
   return n;
 }
 
+Vector3<double> distorted(const SensorErrors& errors, const Vector3<double>& truth,
+                          const Vector3<double>& noise) {
+  const Vector3<double>& m = errors.misalignment;
+  Vector3<double> y = truth;
+  if (!m.isZero(0)) y = Eigen::AngleAxisd(-m.norm(), m.normalized()) * y;
+  return y + errors.scale.cwiseProduct(y) + errors.bias + noise;
+}
+
+double rounded(const SensorErrors& errors, double x) {
+  return errors.resolution > 0 ? std::round(x / errors.resolution) * errors.resolution : x;
+}
+
+double limited(const SensorErrors& errors, double x) {
+  return errors.range > 0 ? std::clamp(x, -errors.range, errors.range) : x;
+}
+
 }  // namespace
 
 Vector3<double> misread(const SensorErrors& errors, const Vector3<double>& truth,
                         const Vector3<double>& noise) {
-  const Vector3<double>& m = errors.misalignment;
-  Vector3<double> y = truth;
-  if (!m.isZero(0)) y = Eigen::AngleAxisd(-m.norm(), m.normalized()) * y;
-  y += errors.scale.cwiseProduct(y) + errors.bias + noise;
-  for (double& x : y) {
-    if (errors.resolution > 0) x = std::round(x / errors.resolution) * errors.resolution;
-    if (errors.range > 0) x = std::clamp(x, -errors.range, errors.range);
+  Vector3<double> y = distorted(errors, truth, noise);
+  for (double& x : y) x = limited(errors, rounded(errors, x));
+  return y;
+}
+
+Vector3<double> misread_increment(const SensorErrors& errors, const Vector3<double>& truth,
+                                  double period, const Vector3<double>& noise,
+                                  Vector3<double>& rest) {
+  Vector3<double> y = distorted(errors, truth / period, noise);
+  for (int k = 0; k < 3; ++k) {
+    const double whole = period * limited(errors, y[k]) + rest[k];
+    y[k] = rounded(errors, whole);
+    rest[k] = whole - y[k];
   }
   return y;
 }

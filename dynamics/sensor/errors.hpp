@@ -33,7 +33,7 @@ struct SensorErrors {
   Vector3<double> noise = Vector3<double>::Zero();  ///< y/sqrt(Hz): density of the white noise
   Vector3<double> drift = Vector3<double>::Zero();  ///< y/s/sqrt(Hz): of the walk's steps
   Correlation correlation = {};
-  double resolution = 0;  ///< y; 0: none
+  double resolution = 0;  ///< y, or y s of increments; 0: none
   double range = 0;       ///< y; 0: none
   std::uint64_t seed = 0;
 
@@ -46,6 +46,18 @@ struct SensorErrors {
 KREISEL_API [[nodiscard]] Vector3<double> misread(const SensorErrors& errors,
                                                   const Vector3<double>& truth,
                                                   const Vector3<double>& noise);
+
+/// The reading of an instrument that integrates over `period` seconds, as inertial units do. Errors
+/// of the mean rate are as above. `resolution` is that of the increment, and what rounding leaves
+/// out is added to the next increment: the sum of all readings is off by half a step at most.
+///
+/// truth : the increment, y s
+/// rest  : remainder of the previous increment, initially 0; replaced by that of this one
+KREISEL_API [[nodiscard]] Vector3<double> misread_increment(const SensorErrors& errors,
+                                                            const Vector3<double>& truth,
+                                                            double period,
+                                                            const Vector3<double>& noise,
+                                                            Vector3<double>& rest);
 
 /// The noise of an instrument, generated sample by sample.
 ///

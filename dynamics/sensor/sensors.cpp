@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <dynamics/sensor/sensors.hpp>
 
 namespace kreisel {
@@ -80,6 +82,27 @@ PointReading PointSensor::operator()(const SystemKinematics& system) const {
 
 Matrix3<double> AttitudeSensor::operator()(const SystemKinematics& system) const {
   return from_guide(against, system) * system.body(body).R;
+}
+
+double AzimuthSensor::operator()(const SystemKinematics& system) const {
+  using Matrix2 = Eigen::Matrix2d;
+  const Vector down =
+      (gravitation(system, body, at) - system.guide.origin_acceleration()).normalized();
+  const Vector axis = std::abs(down.z()) < 0.9 ? Vector::UnitZ() : Vector::UnitX();
+  const Vector first = (axis - down.dot(axis) * down).normalized();
+  Eigen::Matrix<double, 2, 3> level;
+  level << first.transpose(), down.cross(first).transpose();
+
+  const PointReading point = seen_from_guide(system.body(body), at);
+  const double turn = down.dot(system.guide.V.value.resultant);
+  const Matrix2 across = (Matrix2() << 0, -turn, turn, 0).finished();
+  const Eigen::Vector2d p = level * (point.position - pivot);
+  const Eigen::Vector2d relative = level * point.velocity;
+  const Eigen::Vector2d v = relative + across * p;
+  const Eigen::Vector2d a = level * point.acceleration + across * (relative + v);
+  const Matrix2 pull = a * p.transpose();
+  const Matrix2 S = v * v.transpose() - (pull + pull.transpose()) / 2;
+  return reference + std::atan2(2 * S(0, 1), S(0, 0) - S(1, 1)) / 2;
 }
 
 Motor<> ReactionSensor::operator()(const SystemKinematics& system) const {

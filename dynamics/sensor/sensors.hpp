@@ -97,6 +97,31 @@ struct KREISEL_API AttitudeSensor {
   [[nodiscard]] Matrix3<double> operator()(const SystemKinematics& system) const;
 };
 
+/// The direction of the plane in which a point of a pendulum swings.
+///
+/// p, v and a are horizontal: position relative to the pivot, and its derivatives in a frame that
+/// does not turn about the vertical. The swing is an ellipse, and the reading is the direction of
+/// its major axis, which is an eigenvector of
+///
+///   S = v v^t - (a p^t + p a^t)/2
+///
+/// For small swings a = -w^2 p, and S is constant. At turning points the reading is the direction of
+/// p. A pendulum that circles has no plane; its reading is arbitrary.
+///
+/// Frame  : an angle about the direction of apparent gravity at the guide's origin, which is
+///          clockwise from above: from the guide's z axis, or from x if z is within 26 degrees of
+///          vertical. In [-pi/2, pi/2], plus `reference`
+/// Units  : rad
+/// Error  : of a plane swing of any size <= 1e-14 (tests/dynamics/sensor/sensors)
+struct KREISEL_API AzimuthSensor {
+  int body = 0;
+  Vector3<double> at = Vector3<double>::Zero();
+  Vector3<double> pivot = Vector3<double>::Zero();  ///< on guide axes, from the guide's origin
+  double reference = 0;                             ///< rad: azimuth of the axis
+
+  [[nodiscard]] double operator()(const SystemKinematics& system) const;
+};
+
 /// The force and torque of a body's joint on the body, about a point of the body.
 ///
 ///   (R; M_O - p x R),  p = at

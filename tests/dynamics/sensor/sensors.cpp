@@ -84,6 +84,27 @@ BOOST_AUTO_TEST_CASE(on_a_pendulum) {
   }
 }
 
+// Swings about a horizontal axis whose plane has the angle -b from x, clockwise from above.
+BOOST_AUTO_TEST_CASE(azimuth_of_a_plane_swing) {
+  const double m = 2, s = 0.5, g = 9.8125;
+  const auto bob = described(
+      "bob", "guide", {.kind = JointKind::spherical},
+      InertiaTensor<Body>::about_centre(m, {0, 0, -s}, Vector(0.3, 0.3, 0.1).asDiagonal()));
+  const BodySystem<RestingFrame<>> system{
+      RestingFrame<>{}, {bob}, UniformGravity<Guide>{{0, 0, -g}}};
+  BodyWorkspace w = system.workspace();
+  for (const double b : {0.3, -1.2, 0.0}) {
+    const Vector axis(std::sin(b), -std::cos(b), 0);
+    for (const auto& [angle, rate] : {std::pair(0.7, 0.0), {1e-6, 0.0}, {-0.4, 1.5}, {0.0, 2.0}}) {
+      const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, axis));
+      Eigen::VectorXd y(7);
+      y << q.coeffs(), rate * axis;
+      const auto now = kinematics(system, 0, y, w);
+      BOOST_TEST(std::abs(AzimuthSensor{0, {0, 0, -1}}(now) + b) <= 1e-14);
+    }
+  }
+}
+
 // Coning: the attitude (cos a/2; sin a/2 cos wt, sin a/2 sin wt, 0) has on its own axes the rate
 // w (-sin a sin wt, sin a cos wt, -2 sin^2 a/2).
 BOOST_AUTO_TEST_CASE(gyro_in_coning) {

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include <motor/api.hpp>
+#include <motor/motor.hpp>
+
+namespace kreisel {
+
+/// The readings of gyros and accelerometers on one triad of axes.
+///
+/// Units  : rad/s, m/s^2
+struct InertialReading {
+  Vector3<double> angular_velocity = Vector3<double>::Zero();
+  Vector3<double> specific_force = Vector3<double>::Zero();
+};
+
+/// The integrals of the readings w and f of an inertial unit over a period.
+///
+/// `rotation` and `velocity` include coning and sculling: with the attitude q at the period's
+/// beginning, the attitude at its end is q exp(rotation/2), and the specific force has changed the
+/// velocity by R(q) velocity. `angle` and `force` are the integrals of the components alone.
+///
+///   p' = p w/2,   velocity' = R(p) f,   angle' = w,   force' = f,   p = exp(rotation/2)
+///
+/// The rotation vector is determined up to whole turns and is the one nearest to `angle`.
+///
+/// Frame  : the unit's own axes; for rotation and velocity those at the beginning of the period
+/// Units  : rad, m/s
+/// Source : J. E. Bortz, A new mathematical formulation for strapdown inertial navigation, IEEE
+///          Trans. Aerospace and Electronic Systems 7 (1971), 61-66
+struct Increments {
+  Vector3<double> rotation = Vector3<double>::Zero();
+  Vector3<double> velocity = Vector3<double>::Zero();
+  Vector3<double> angle = Vector3<double>::Zero();
+  Vector3<double> force = Vector3<double>::Zero();
+};
+
+/// The unknowns of these equations, for integration beside the equations of a system.
+struct KREISEL_API IncrementEquations {
+  static constexpr int count = 13;  ///< vector part of p, its real part, velocity, angle, force
+  using Numbers = Eigen::Matrix<double, count, 1>;
+
+  static constexpr std::array blocks{3, 1, 3, 3, 3};  ///< that share a unit and a size
+
+  [[nodiscard]] static Numbers start();
+  [[nodiscard]] static Numbers rates(const Numbers& numbers, const InertialReading& reading);
+  [[nodiscard]] static Increments increments(const Numbers& numbers);
+};
+
+/// The increments of an inertial unit from begin to end, by adaptive steps.
+///
+/// readings : function of time
+/// breaks   : times at which the readings jump
+/// Error    : <= 1e-14 of the integrals of |w| and |f|
+///            (tests/dynamics/sensor/increments: coning and sculling in closed form)
+/// Cost     : 16 readings for each step of verner98
+/// Throws   : ComputationFailed if the readings are not finite
+KREISEL_API [[nodiscard]] Increments increments(
+    const std::function<InertialReading(double t)>& readings, double begin, double end,
+    const std::vector<double>& breaks = {});
+
+}  // namespace kreisel
