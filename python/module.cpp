@@ -190,7 +190,9 @@ kreisel::SceneFile requested(const Scene& scene, std::optional<double> t_end,
   if (times && times->front() < file.t_begin) {
     throw kreisel::InvalidInput("times must not begin before t_begin of the scene");
   }
-  if (times) file.output_times = *times;
+  if (times) {
+    file.output_times = with_samples(*times, file.sensors, file.t_begin, file.t_end);
+  }
   if (file.output_times.empty() || file.output_times.back() < file.t_end) {
     file.output_times.push_back(file.t_end);
   }

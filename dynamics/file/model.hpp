@@ -38,6 +38,9 @@ class SceneSolver {
   [[nodiscard]] virtual Terms equation_terms() const = 0;
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const = 0;
+  /// The field  y' = result  of the exact equations. y has the coordinates of all joints, then the
+  /// rates.
+  virtual void rates(double t, const Eigen::VectorXd& y, Eigen::VectorXd& result) const = 0;
   /// The motion of all bodies and the reactions of their joints.
   [[nodiscard]] virtual SystemKinematics kinematics(double t, const JointState& state) const = 0;
   /// The pose of a body relative to the guide.

@@ -84,9 +84,10 @@ class SceneReader {
     detail::give_gravity_to_rates(guide, scene_.gravity);
     scene_.guide = std::move(guide.links);
     read_bodies();
-    scene_.sensors = detail::read_sensors(root_, scene_.bodies, scene_.points, mistakes_.none());
+    scene_.sensors = detail::read_sensors(root_, scene_, mistakes_.none());
     read_report();
     put_discontinuities_in_order();
+    add_samples();
     if (mistakes_.none()) scene_.columns = detail::read_output(root_, columns(scene_));
     (void)root_.has("output");
     root_.finish();
@@ -187,6 +188,7 @@ class SceneReader {
   void set_times(const std::optional<double>& given_step,
                  const std::optional<std::vector<double>>& given) {
     const double end = scene_.t_end;
+    outputs_are_given_ = given || given_step;
     if (given) {
       std::copy_if(given->begin(), given->end(), std::back_inserter(scene_.output_times),
                    [end](double t) { return t <= end; });
@@ -204,6 +206,16 @@ class SceneReader {
     for (const double t : signal.discontinuities()) {
       if (t > scene_.t_begin && t <= scene_.t_end) scene_.discontinuities.push_back(t);
     }
+  }
+
+  /// Makes the samples of sensors rows of the run. They replace the default rows.
+  void add_samples() {
+    std::vector<double>& times = scene_.output_times;
+    const bool none = std::none_of(scene_.sensors.begin(), scene_.sensors.end(),
+                                   [](const SceneSensor& sensor) { return sensor.period > 0; });
+    if (none || !mistakes_.none()) return;
+    if (!outputs_are_given_) times = {scene_.t_end};
+    times = with_samples(times, scene_.sensors, scene_.t_begin, scene_.t_end);
   }
 
   void put_discontinuities_in_order() {
@@ -827,6 +839,7 @@ class SceneReader {
   Mistakes& mistakes_;
   detail::SignalLogs& logs_;
   SceneFile scene_;
+  bool outputs_are_given_ = false;
 };
 
 /// Refuses deeply nested keys, because the parser is recursive. No scene needs such keys.

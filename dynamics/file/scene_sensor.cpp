@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/scene_sensor.hpp>
 
@@ -27,17 +32,66 @@ SensorPart joint_part(const BodyDescription& body) {
 
 }  // namespace
 
+namespace {
+
+/// True if two times are the same but for the rounding of multiples of a step.
+bool is_same_time(double a, double b) {
+  return std::abs(a - b) <=
+         4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), 1e-300);
+}
+
+double sample_time(const SceneSensor& sensor, double begin, double count) {
+  return begin + count * sensor.period;
+}
+
+}  // namespace
+
+std::optional<std::size_t> sample_at(const SceneSensor& sensor, double begin, double t) {
+  const double count = std::round((t - begin) / sensor.period);
+  if (count < 0 || !is_same_time(sample_time(sensor, begin, count), t)) return std::nullopt;
+  return static_cast<std::size_t>(count);
+}
+
+std::vector<double> with_samples(const std::vector<double>& output_times,
+                                 const std::vector<SceneSensor>& sensors, double begin,
+                                 double end) {
+  std::vector<double> times = output_times;
+  for (const SceneSensor& sensor : sensors) {
+    if (!(sensor.period > 0)) continue;
+    std::vector<double> merged;
+    auto next = times.begin();
+    for (double count = 0;; ++count) {
+      const double sample = sample_time(sensor, begin, count);
+      if (sample > end && !is_same_time(sample, end)) break;
+      while (next != times.end() && *next < sample && !is_same_time(*next, sample)) {
+        merged.push_back(*next++);
+      }
+      const bool is_there = next != times.end() && is_same_time(*next, sample);
+      merged.push_back(is_there ? *next++ : std::min(sample, end));
+    }
+    merged.insert(merged.end(), next, times.end());
+    times = std::move(merged);
+  }
+  return times;
+}
+
 std::vector<SensorPart> parts(const SceneSensor& sensor,
                               const std::vector<BodyDescription>& bodies) {
   using Parts = std::vector<SensorPart>;
-  const auto instrument = [&sensor](const char* unit) {
-    Parts result{vector("value", unit)};
-    if (sensor.errors) result.push_back(vector("true", unit));
+  const bool integrates = sensor.increments != SensorIncrements::none;
+  const auto instrument = [&](SensorPart value) {
+    Parts result{std::move(value)};
+    if (sensor.errors) result.push_back({"true", result[0].components, result[0].units});
     return result;
   };
   return std::visit(
-      Overloaded{[&](const Gyro&) { return instrument("rad/s"); },
-                 [&](const Accelerometer&) { return instrument("m/s^2"); },
+      Overloaded{[&](const Gyro&) {
+                   return instrument(integrates ? vector("dtheta", "rad")
+                                                : vector("value", "rad/s"));
+                 },
+                 [&](const Accelerometer&) {
+                   return instrument(integrates ? vector("dv", "m/s") : vector("value", "m/s^2"));
+                 },
                  [](const PointSensor&) {
                    return Parts{vector("position", "m"), vector("velocity", "m/s"),
                                 vector("acceleration", "m/s^2")};
@@ -52,6 +106,9 @@ std::vector<SensorPart> parts(const SceneSensor& sensor,
                  },
                  [](const ReactionSensor&) {
                    return Parts{vector("force", "N"), vector("torque", "N m")};
+                 },
+                 [](const AzimuthSensor&) {
+                   return Parts{{"value", {"azimuth"}, {"rad"}}};
                  }},
       sensor.kind);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,15 +30,32 @@ struct Joint {
   int body = 0;
 };
 
-using Kind = std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor>;
+using Kind =
+    std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor, AzimuthSensor>;
 
 }  // namespace scene_sensor
+
+/// The integrals that a gyro or an accelerometer reads instead of the values: rotation and velocity
+/// of Increments, or angle and force.
+enum class SensorIncrements { none, compensated, uncompensated };
 
 struct SceneSensor {
   std::string name;
   scene_sensor::Kind kind = Gyro{};
   std::optional<SensorErrors> errors = {};  ///< for a gyro or an accelerometer; none: ideal
+  double period = 0;                        ///< s, from sample to sample; 0: the output times
+  SensorIncrements increments = SensorIncrements::none;
 };
+
+/// The index of the sample at time t of a run from `begin`; nothing if there is none. Times may
+/// differ by rounding.
+[[nodiscard]] std::optional<std::size_t> sample_at(const SceneSensor& sensor, double begin,
+                                                   double t);
+
+/// Output times and the sample times of all sensors from begin to end, in order.
+[[nodiscard]] std::vector<double> with_samples(const std::vector<double>& output_times,
+                                               const std::vector<SceneSensor>& sensors,
+                                               double begin, double end);
 
 /// Numbers of a reading that belong together: "value", "true", "position", "force" and the like.
 struct SensorPart {

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
+#include <variant>
 
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/quoted.hpp>
@@ -18,18 +20,19 @@ std::string listed(const std::vector<std::string>& names) {
   return result.empty() ? "there are none" : "there are " + result;
 }
 
+constexpr double most_samples = 1e7;
+
 class SensorReader {
  public:
-  SensorReader(const std::vector<BodyDescription>& bodies, const std::vector<NamedPoints>& points,
-               bool sound)
-      : bodies_(bodies), points_(points), sound_(sound) {
-    for (const BodyDescription& body : bodies) names_.push_back(body.name);
+  SensorReader(const SceneFile& scene, bool sound)
+      : scene_(scene), bodies_(scene.bodies), points_(scene.points), sound_(sound) {
+    for (const BodyDescription& body : bodies_) names_.push_back(body.name);
   }
 
   SceneSensor read(Section& section, const std::string& name) {
     SceneSensor sensor{.name = name};
     const std::string kind = section.required_choice(
-        "kind", {"gyro", "accelerometer", "point", "attitude", "joint", "reaction"});
+        "kind", {"gyro", "accelerometer", "point", "attitude", "joint", "reaction", "azimuth"});
     if (section.peek("kind") != kind) {  // the other keys cannot be checked
       section.ignore_rest();
       return sensor;
@@ -40,15 +43,52 @@ class SensorReader {
     if (kind == "attitude") sensor.kind = attitude(section);
     if (kind == "joint") sensor.kind = joint(section);
     if (kind == "reaction") sensor.kind = reaction(section);
+    if (kind == "azimuth") sensor.kind = azimuth(section);
     const bool is_instrument = kind == "gyro" || kind == "accelerometer";
+    sensor.period = period(section);
     if (is_instrument) {
+      sensor.increments = increments(section);
       sensor.errors =
-          errors(section, kind == "gyro" ? dimension::angular_rate : dimension::acceleration);
+          errors(section, kind == "gyro" ? dimension::angular_rate : dimension::acceleration,
+                 sensor.increments != SensorIncrements::none);
     }
     return sensor;
   }
 
  private:
+  double period(Section& section) const {
+    const double result = section.number("period", dimension::time, Range::positive).value_or(0);
+    if (result > 0 && scene_.duration() / result > most_samples) {
+      section.refuse("period", "asks for more than ten million samples");
+    }
+    return result;
+  }
+
+  /// Reads the key `increments`.
+  SensorIncrements increments(Section& section) const {
+    const toml::node* const node = section.find("increments");
+    if (node == nullptr) return SensorIncrements::none;
+    SensorIncrements result = SensorIncrements::none;
+    if (node->is_string()) {
+      result = SensorIncrements::uncompensated;
+      if (const std::string word = section.peek("increments"); word != "uncompensated") {
+        section.refuse("increments",
+                       "must be true, false or 'uncompensated', not " + in_quotes(word));
+      }
+    } else if (section.flag("increments")) {
+      result = SensorIncrements::compensated;
+    }
+    if (result == SensorIncrements::none) return result;
+    if (!section.has("period")) {
+      section.refuse("increments", "needs 'period', over which the reading is integrated");
+    }
+    if (scene_.model != SceneModel::exact) {
+      section.refuse("increments",
+                     std::string("needs the model 'exact', not '") + name(scene_.model) + "'");
+    }
+    return result;
+  }
+
   /// The body at a required key.
   int body(Section& section, const char* key) {
     if (!section.has(key)) section.refuse_missing(key);
@@ -148,6 +188,30 @@ class SensorReader {
     return sensor;
   }
 
+  /// The pivot of a pendulum is the joint of its first body on the guide.
+  AzimuthSensor azimuth(Section& section) {
+    AzimuthSensor sensor{body(section, "body")};
+    sensor.at = at(section, sensor.body);
+    sensor.pivot = pivot(sensor.body);
+    if (const auto* const earth = std::get_if<scene_guide::Earth>(&scene_.guide.front())) {
+      sensor.reference = earth->site.azimuth * (std::numbers::pi / 180);
+    }
+    if (std::holds_alternative<scene_gravity::None>(scene_.gravity)) {
+      section.refuse("kind", "'azimuth' needs [gravity], which gives the vertical");
+    }
+    return sensor;
+  }
+
+  Vector3<double> pivot(int body) const {
+    const BodyDescription* link = &bodies_[static_cast<std::size_t>(body)];
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const auto parent = std::find(names_.begin(), names_.end(), link->parent);
+      if (parent == names_.end()) break;
+      link = &bodies_[static_cast<std::size_t>(parent - names_.begin())];
+    }
+    return link->joint.position;
+  }
+
   static Vector3<double> three(const std::optional<std::vector<double>>& numbers) {
     if (!numbers) return Vector3<double>::Zero();
     return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
@@ -191,7 +255,8 @@ class SensorReader {
 
   /// Reads the errors of a sensor whose readings have the dimension `of`. Those of an angular rate
   /// may be in degrees.
-  static std::optional<SensorErrors> errors(Section& section, const Dimension& of) {
+  static std::optional<SensorErrors> errors(Section& section, const Dimension& of,
+                                            bool integrates) {
     if (!has_errors(section)) return std::nullopt;
     SensorErrors result;
     result.misalignment = three(section.angles("misalignment", 3, dimension::angle));
@@ -207,12 +272,13 @@ class SensorReader {
                             correlation->required_number("time", dimension::time, Range::positive)};
       correlation->finish();
     }
-    result.resolution = limit(section, "resolution", of);
+    result.resolution = limit(section, "resolution", integrates ? of * dimension::time : of);
     result.range = limit(section, "range", of);
     result.seed = seed(section);
     return result;
   }
 
+  const SceneFile& scene_;
   const std::vector<BodyDescription>& bodies_;
   const std::vector<NamedPoints>& points_;
   bool sound_;
@@ -243,11 +309,11 @@ NamedPoints read_points(Section& body) {
   return points;
 }
 
-std::vector<SceneSensor> read_sensors(Section& root, const std::vector<BodyDescription>& bodies,
-                                      const std::vector<NamedPoints>& points, bool sound) {
+std::vector<SceneSensor> read_sensors(Section& root, const SceneFile& scene, bool sound) {
+  const std::vector<BodyDescription>& bodies = scene.bodies;
   std::vector<SceneSensor> result;
   if (!root.has("sensor") || bodies.empty()) return result;
-  SensorReader reader(bodies, points, sound);
+  SensorReader reader(scene, sound);
   std::set<std::string> names;
   const std::vector<std::string> of_bodies = columns(bodies, true);
   std::set<std::string> taken(of_bodies.begin(), of_bodies.end());

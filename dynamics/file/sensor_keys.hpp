@@ -4,20 +4,17 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/scene_section.hpp>
-#include <dynamics/file/scene_sensor.hpp>
-#include <dynamics/tree/description.hpp>
 
 namespace kreisel::detail {
 
 /// Reads the key `points` of a body.
 [[nodiscard]] NamedPoints read_points(Section& body);
 
-/// Reads the list [[sensor]] of a scene. `points` are the points of each body; `sound` is true if
-/// the bodies have no mistakes.
-[[nodiscard]] std::vector<SceneSensor> read_sensors(Section& root,
-                                                    const std::vector<BodyDescription>& bodies,
-                                                    const std::vector<NamedPoints>& points,
+/// Reads the list [[sensor]] of a scene whose bodies, points, model and end are known. `sound` is
+/// true if the bodies have no mistakes.
+[[nodiscard]] std::vector<SceneSensor> read_sensors(Section& root, const SceneFile& scene,
                                                     bool sound);
 
 /// The columns that [output] chooses among the known ones; empty without [output].

@@ -77,6 +77,7 @@ struct Record {
   std::vector<std::size_t> chosen;  ///< columns; empty: all
   RowFile rows;
   ResumeFile resume;
+  std::vector<std::vector<double>> earlier = {};    ///< rows before this run that sensors depend on
   std::chrono::steady_clock::time_point next = {};  ///< when the next checkpoint is due
 
   /// The numbers of a row, in the order of the columns.
@@ -85,6 +86,14 @@ struct Record {
     const std::vector<double> own = sensors.row(model, t, state);
     numbers.insert(numbers.end(), own.begin(), own.end());
     return of_chosen(std::move(numbers));
+  }
+
+  /// Brings the sensors to their state after the earlier rows up to t.
+  void read_up_to(double t) {
+    for (const auto& numbers : earlier) {
+      if (numbers.front() > t) break;
+      (void)sensors.row(model, numbers.front(), state_of(model.tree(), numbers));
+    }
   }
 
   /// The entries of the chosen columns.
@@ -110,6 +119,7 @@ struct Record {
   /// the rows, and the next run starts again too.
   void begin_again(double begin) {
     rows.begin_again();
+    read_up_to(begin);
     if (const auto end = rows.end()) begin_behind(begin, *end);
     next = {};
   }
@@ -192,6 +202,10 @@ Begin from_rows(const kreisel::SceneSolver& model, Record& record,
   }
   for (const RowFile::Row& row : rows) {
     if (row.values.front() <= begin.latest) begin.rows.push_back(row.values);
+  }
+  if (record.sensors.need_all_rows()) {
+    record.earlier = begin.rows;
+    record.read_up_to(begin.latest);
   }
   return begin;
 }
@@ -304,7 +318,13 @@ int run(const Request& request) {
     fmt::print(stderr, "simulate: interrupted while the error of the log was estimated\n");
     return exit_status::of_signal();
   }
-  const Result result{scene, *model, trajectory, scene.reactions, scene.terms, *log_error};
+  const Result result{scene,
+                      *model,
+                      trajectory,
+                      scene.reactions,
+                      scene.terms,
+                      *log_error,
+                      SensorReadings(scene).last_row(*model, trajectory)};
   require_finite(result);
   print(result, request.json);
   if (request.plot) draw(result, *request.plot);

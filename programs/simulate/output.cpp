@@ -109,10 +109,7 @@ ordered_json log_errors(const Result& result) {
 
 /// The last reading of each sensor, by the names of its parts.
 ordered_json final_sensors(const Result& result, const kreisel::SceneScale& scale) {
-  kreisel::SensorReadings readings(result.scene);
-  const std::vector<double> numbers =
-      readings.row(result.model, result.run.times.back(), result.run.states.back());
-  auto next = numbers.begin();
+  auto next = result.readings.begin();
   ordered_json table = ordered_json::object();
   for (const kreisel::SceneSensor& sensor : result.scene.sensors) {
     ordered_json& entry = table[sensor.name];

@@ -16,6 +16,7 @@ struct Result {
   bool reactions;
   bool terms;
   kreisel::LogError log_error = {};
+  std::vector<double> readings = {};  ///< of all sensors at the end
 };
 
 /// Sizes from all states of a run, and from the reactions in the first and the last state.

@@ -798,6 +798,10 @@ Sensor sensor(Random& r, const Scene& scene) {
   const bool is_lost = !scene.guide.empty() && scene.guide.front().kind == LinkKind::rates;
   if (is_point && is_lost && result.against == inertial_frame) result.against = guide_frame;
   result.on = is_point && r.chance(0.5) ? frame(r, scene) : result.against;
+  const bool integrates =
+      result.kind == SensorKind::gyro || result.kind == SensorKind::accelerometer;
+  const bool suits = integrates && scene.model.empty() && scene.t_end <= 5;
+  if (suits && r.chance(0.3)) result.period = scene.t_end / 8;
   return result;
 }
 

@@ -51,6 +51,7 @@ class Judge {
     if (answers_.misread) add("reader: title, method or report differs from the file", "");
     judge_reactions();
     judge_readings();
+    judge_increments();
     for (const Answer& answer : answers_.by_method) {
       judge_failure(answer);
       if (!answer.answered) continue;
@@ -145,9 +146,10 @@ class Judge {
         const bool is_point = sensor.kind == SensorKind::point;
         const bool is_force = sensor.kind == SensorKind::accelerometer ||
                               sensor.kind == SensorKind::reaction || (is_point && k == 2);
-        parts.push_back({sensor.kind, begin, sensor.kind == SensorKind::attitude ? 4U : 3U,
-                         is_point && k < 2, is_force});
-        begin += parts.back().count;
+        const Part part{sensor.kind, begin, sensor.kind == SensorKind::attitude ? 4U : 3U,
+                        is_point && k < 2, is_force};
+        begin += part.count;
+        if (!(sensor.period > 0)) parts.push_back(part);  // increments are 0 at the start
       }
     }
     return parts;
@@ -186,6 +188,12 @@ class Judge {
       add("a sensor is wrong", fmt::format("number {}, kind {}, by {:.3g} of {:.3g}", part.begin,
                                            static_cast<int>(part.kind), off, norm(part)));
     }
+  }
+
+  /// Increments of gyros re-integrate to the attitude.
+  void judge_increments() {
+    if (!answers_.increments_off || *answers_.increments_off <= 1e-8) return;
+    add("increments of a gyro are wrong", fmt::format("by {:.3g} rad", *answers_.increments_off));
   }
 
   void judge_invariants(const Answer& answer) {

@@ -62,6 +62,7 @@ struct Answers {
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
   std::vector<double> reactions = {};            ///< at the start, as in start_reactions()
   std::vector<double> readings = {};             ///< at the start, as in start_readings()
+  std::optional<double> increments_off = {};     ///< from the attitudes of the same run, rad
   bool misread = false;                          ///< requests of the file besides the motion, read
                                                  ///< wrongly
 };

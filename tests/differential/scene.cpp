@@ -417,6 +417,10 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
     keys.emplace_back("against", frame_name(sensor.against));
   }
   if (is_point && sensor.on != sensor.against) keys.emplace_back("axes", frame_name(sensor.on));
+  if (sensor.period > 0) {
+    keys.emplace_back("period", fmt::format("{}", sensor.period));
+    keys.emplace_back("increments", "true");
+  }
   std::string result = "[[sensor]]\n";
   for (const auto& [key, value] : keys) result += key + " = " + value + "\n";
   return result;

@@ -190,6 +190,7 @@ struct Sensor {
   std::optional<Eigen::Vector4d> axes = {};  ///< w, x, y, z
   int against = guide_frame;
   int on = guide_frame;  ///< axes of a point
+  double period = 0;     ///< of increments; 0: values
 };
 
 struct Scene {

@@ -22,6 +22,11 @@ namespace {
 
 const std::string simulate = KREISEL_SIMULATE;
 
+/// A sensor whose increments depend on all earlier ones.
+const std::string gyro =
+    "[[sensor]]\nname = \"gyro\"\nkind = \"gyro\"\nbody = \"lower\"\nperiod = 0.1\n"
+    "increments = true\nnoise = 1e-3\ndrift = 1e-4\nresolution = 1e-3\n";
+
 std::string two_rods(const std::string& method, const std::string& t_end) {
   const std::string rod =
       "joint = { kind = \"revolute\", axis = [0, 1, 0], position = [0, 0, PLACE] }\n"
@@ -33,7 +38,7 @@ std::string two_rods(const std::string& method, const std::string& t_end) {
   return "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[[body]]\nname = \"upper\"\n" +
          at("0") + "initial = { angle = 0.5 }\n[[body]]\nname = \"lower\"\nparent = \"upper\"\n" +
          at("-1") + "[solve]\nt_end = " + t_end + "\ntolerance = 1e-9\noutput_step = 0.05\n" +
-         "method = \"" + method + "\"\n";
+         "method = \"" + method + "\"\n" + (method == "verner98" ? gyro : "");
 }
 
 /// A scene, its uninterrupted run, and a CSV file for the stopped one.

@@ -186,6 +186,39 @@ BOOST_AUTO_TEST_CASE(noise_goes_on_after_a_resume) {
   }
 }
 
+// A wheel at constant rate: dtheta = w T about the axle; the accelerometer at the rim reads
+// (-w^2 r, 0, g), integrated on the axes at the beginning of the period.
+BOOST_AUTO_TEST_CASE(increments_in_csv_and_json) {
+  const Scratch folder;
+  const std::string keys = "period = 0.25\nincrements = true\n[[sensor]]\n";
+  std::string text = wheel.substr(0, wheel.find("bias ="));
+  text += keys + "name = \"rim\"\nkind = \"accelerometer\"\nbody = \"wheel\"\nat = \"rim\"\n" +
+          keys + "name = \"tooth\"\nkind = \"joint\"\njoint = \"wheel\"\nperiod = 0.5\n" +
+          "[solve]\nt_end = 1.1\n";
+  const std::string file = folder.write("s.toml", text).string();
+  const auto csv = (folder.path() / "s.csv").string();
+  const Outcome outcome = test::run(simulate + " " + file + " --json --csv " + csv);
+  BOOST_TEST_REQUIRE(outcome.status == 0, outcome.err);
+  const Table all = table(folder.read("s.csv"));
+  BOOST_REQUIRE(all.rows.size() == 6U);  // 0, 0.25, 0.5, 0.75, 1, 1.1
+  BOOST_TEST(all.names.at(3) == "gyro.dtheta x");
+  BOOST_TEST(all.names.at(6) == "rim.dv x");
+  const std::vector<double> dv{-std::sin(0.5), -(1 - std::cos(0.5)), 9.75 * 0.25};
+  for (std::size_t i = 0; i < all.rows.size(); ++i) {
+    const bool ends = i > 0 && i < 5;
+    BOOST_TEST(std::abs(all.rows[i].at(5) - (ends ? 0.5 : 0)) <= 1e-14);
+    for (std::size_t k = 0; k < 3; ++k) {
+      BOOST_TEST(std::abs(all.rows[i].at(6 + k) - (ends ? dv[k] : 0)) <= 1e-14);
+    }
+    const double held = i == 5 ? 2 : 0.25 * 2 * static_cast<double>(i - i % 2);
+    BOOST_TEST(std::abs(all.rows[i].at(9) - held) <= 1e-14);
+  }
+  const json sensors = test::parsed(outcome.out).at("final").at("sensors");
+  check_near(sensors.at("gyro").at("dtheta"), {0, 0, 0.5}, 1e-14);
+  check_near(sensors.at("rim").at("dv"), dv, 1e-14);
+  check_near(sensors.at("tooth").at("value"), {2, 2}, 1e-10);
+}
+
 BOOST_AUTO_TEST_CASE(stand_in_the_text) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", wheel).string();

@@ -1,8 +1,10 @@
 // Points and sensors of scene files: what is read, what is refused, and the readings.
 
+#include <Eigen/Geometry>
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 #include <dynamics/file/readings.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/guide/normal_gravity.hpp>
+#include <motor/attitude.hpp>
 
 #include <support/scene_text.hpp>
 
@@ -99,7 +102,7 @@ BOOST_AUTO_TEST_CASE(are_told_at_their_keys) {
       {with(""), "sensor 's'.kind: is missing"},
       {with("kind = \"giro\"\nbody = \"a\"\nrubbish = 1"),
        "s.toml:9:8: sensor 's'.kind: 'giro' is none of 'gyro', 'accelerometer', 'point', "
-       "'attitude', 'joint' or 'reaction' (did you mean 'gyro'?)"},
+       "'attitude', 'joint', 'reaction' or 'azimuth' (did you mean 'gyro'?)"},
       {with("kind = \"gyro\""), "sensor 's'.body: is missing"},
       {with("kind = \"gyro\"\nbody = 3"),
        "s.toml:10:8: sensor 's'.body: must be a text, not a whole number"},
@@ -107,8 +110,19 @@ BOOST_AUTO_TEST_CASE(are_told_at_their_keys) {
        "s.toml:10:8: sensor 's'.body: 'b' is no body; there are 'a'"},
       {with("kind = \"gyro\"\nbody = \"a\"\naxes = [1, 1, 0, 0]"),
        "s.toml:11:8: sensor 's'.axes: is a quaternion [w, x, y, z] of norm 1.414214, not of 1"},
-      {with("kind = \"gyro\"\nbody = \"a\"\nperiod = 0.1"),
-       "s.toml:11:1: sensor 's'.period: is no key here"},
+      {with("kind = \"gyro\"\nbody = \"a\"\nperiod = 0"),
+       "s.toml:11:10: sensor 's'.period: 0 must be above 0"},
+      {with("kind = \"joint\"\njoint = \"a\"\nperiod = 1e-8"),
+       "s.toml:11:10: sensor 's'.period: asks for more than ten million samples"},
+      {with("kind = \"gyro\"\nbody = \"a\"\nincrements = true"),
+       "s.toml:11:14: sensor 's'.increments: needs 'period', over which the reading is integrated"},
+      {with("kind = \"gyro\"\nbody = \"a\"\nincrements = \"both\"\nperiod = 0.1"),
+       "s.toml:11:14: sensor 's'.increments: must be true, false or 'uncompensated', not 'both'"},
+      {with("kind = \"attitude\"\nbody = \"a\"\nincrements = true\nperiod = 0.1"),
+       "s.toml:11:1: sensor 's'.increments: is no key here"},
+      {with("kind = \"gyro\"\nbody = \"a\"\nincrements = true\nperiod = 0.1") +
+           "model = \"linear\"\n",
+       "sensor 's'.increments: needs the model 'exact', not 'linear'"},
       {with("kind = \"accelerometer\"\nbody = \"a\"\nat = [0, 1]"),
        "s.toml:11:6: sensor 's'.at: must be 3 numbers, not 2"},
       {with("kind = \"accelerometer\"\nbody = \"a\"\nat = \"tipp\""),
@@ -370,6 +384,33 @@ BOOST_AUTO_TEST_CASE(in_degrees_are_turned_into_radian) {
   BOOST_TEST(errors.seed == 12U);
 }
 
+BOOST_AUTO_TEST_CASE(samples_are_rows) {
+  const std::string joint = "kind = \"joint\"\njoint = \"a\"\nperiod = ";
+  const SceneFile both = scene(with(joint + "0.25"));
+  const std::vector<double> wanted{0,       0.1,     0.2,  0.25, 3 * 0.1, 0.4, 0.5,
+                                   6 * 0.1, 7 * 0.1, 0.75, 0.8,  0.9,     1};
+  BOOST_TEST(both.output_times == wanted, boost::test_tools::per_element());
+  // Multiples of both steps are one row each, though they differ by rounding.
+  BOOST_TEST(scene(with(joint + "0.02")).output_times.size() == 51U);
+  const SceneFile alone = scene(body("a", hinge) + sensor(joint + "0.3") + "[solve]\nt_end = 1\n");
+  const std::vector<double> own{0, 0.3, 0.6, 3 * 0.3, 1};
+  BOOST_TEST(alone.output_times == own, boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(samples_are_held_between_rows) {
+  const SceneFile file = scene(body("a", hinge + "initial = { rate = 2 }") +
+                               sensor("kind = \"joint\"\njoint = \"a\"\nperiod = 0.25") + run);
+  const auto model = make_model(file);
+  const auto motion = run_scene(file);
+  SensorReadings readings(file);
+  for (std::size_t i = 0; i < motion.times.size(); ++i) {
+    const std::vector<double> found = readings.row(*model, motion.times[i], motion.states[i]);
+    const double sample = 0.25 * std::floor(motion.times[i] / 0.25);
+    BOOST_TEST(std::abs(found.at(0) - 2 * sample) <= 1e-14);
+  }
+  BOOST_TEST(readings.last_row(*model, motion).at(0) == 2);
+}
+
 // The noise of a row depends on the row, not on the rows requested before.
 BOOST_AUTO_TEST_CASE(noise_of_rows_in_any_order) {
   const SceneFile file = scene(with("kind = \"gyro\"\nbody = \"a\"\nnoise = 1\ndrift = 1"));
@@ -383,6 +424,171 @@ BOOST_AUTO_TEST_CASE(noise_of_rows_in_any_order) {
   for (const std::size_t i : {5U, 9U, 2U, 2U}) {
     BOOST_TEST(other.row(*model, file.output_times[i], state) == rows[i]);
   }
+}
+
+// Foucault: the plane turns clockwise. The rest position is not below the pivot, because the bob
+// hangs 67 m below the point of the given gravity. Its distance over the amplitude is the bound.
+BOOST_AUTO_TEST_CASE(azimuth_of_foucault) {
+  const double latitude = 48.85, u = 7.292115e-5, length = 67, amplitude = 1e-3;
+  const SceneFile file = scene(
+      "[guide]\nkind = \"earth\"\nlatitude_deg = 48.85\nheight = 0\nazimuth_deg = 30\ngravity = "
+      "9.81\n"
+      "[[body]]\nname = \"bob\"\nmass = 28\ncentre = [67, 0, 0]\ninertia = [0.04, 0.04, 0.04]\n"
+      "joint = { kind = \"universal\", axis = [0, 0, 1], second_axis = [0, 1, 0] }\n"
+      "initial = { angle = [0, -0.001] }\n" +
+      sensor("kind = \"azimuth\"\nbody = \"bob\"\nat = [67, 0, 0]") +
+      "[solve]\nt_end = 3600\noutput_step = 100\n");
+  const auto model = make_model(file);
+  const auto motion = run_scene(file);
+  SensorReadings readings(file);
+  const double degree = std::numbers::pi / 180;
+  const double bound = u * u * std::sin(2 * latitude * degree) * length / (2 * 9.81 * amplitude);
+  for (std::size_t i = 0; i < motion.times.size(); ++i) {
+    const double found = readings.row(*model, motion.times[i], motion.states[i]).at(0);
+    const double wanted = 30 * degree + u * std::sin(latitude * degree) * motion.times[i];
+    BOOST_TEST(std::abs(found - wanted) <= bound);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(increments_of_a_scene)
+
+namespace {
+
+/// A strapdown unit on a ship in a seaway.
+const std::string at_sea =
+    "[guide]\nkind = \"motion\"\n"
+    "position = { rate = [5, 0, 0], terms = [{ amplitude = [0, 0, 1.5], frequency = 0.6 }] }\n"
+    "[guide.angles]\n"
+    "yaw = { terms = [{ amplitude = 0.1, frequency = 0.13 }] }\n"
+    "pitch = { terms = [{ amplitude = 0.05, frequency = 0.9, phase = 0.7 }] }\n"
+    "roll = { terms = [{ amplitude = 0.3, frequency = 0.7 }] }\n" +
+    body("unit", "joint = { kind = \"fixed\", position = [3, 1, 5] }");
+
+std::string unit(const std::string& name, const std::string& kind, const std::string& keys) {
+  return "[[sensor]]\nname = \"" + name + "\"\nkind = \"" + kind + "\"\nbody = \"unit\"\n" + keys +
+         "\n";
+}
+
+/// The rows of all sensors in a run.
+std::vector<std::vector<double>> rows_of(const SceneFile& file,
+                                         const Trajectory<JointState>& motion) {
+  const auto model = make_model(file);
+  SensorReadings readings(file);
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < motion.times.size(); ++i) {
+    rows.push_back(readings.row(*model, motion.times[i], motion.states[i]));
+  }
+  return rows;
+}
+
+Vector3<double> three(const std::vector<double>& numbers, std::size_t begin) {
+  return Vector3<double>(numbers.data() + begin);
+}
+
+}  // namespace
+
+// q <- q exp(dtheta/2), v <- v + R(q) dv: attitude and velocity after an hour at sea.
+BOOST_AUTO_TEST_CASE(navigate_a_ship_for_an_hour) {
+  const std::string keys = "period = 0.25\nincrements = true";
+  const SceneFile file =
+      scene(at_sea + unit("g", "gyro", keys) + unit("a", "accelerometer", keys) +
+            unit("q", "attitude", "against = \"inertial\"") +
+            unit("p", "point", "against = \"inertial\"") + "[solve]\nt_end = 3600\n");
+  const auto rows = rows_of(file, run_scene(file));
+  BOOST_TEST_REQUIRE(rows.size() == 14401U);
+  Eigen::Quaterniond q(rows[0][6], rows[0][7], rows[0][8], rows[0][9]);
+  Vector3<double> v = three(rows[0], 13);
+  for (const auto& row : rows) {
+    v += q * three(row, 3);
+    q = rotated(q, three(row, 0));
+  }
+  const Eigen::Quaterniond end(rows.back()[6], rows.back()[7], rows.back()[8], rows.back()[9]);
+  const double turn = 2 * (end.conjugate() * q).vec().norm();
+  const double speed = (v - three(rows.back(), 13)).norm();
+  BOOST_TEST_MESSAGE("after an hour off by " << turn << " rad and " << speed << " m/s");
+  BOOST_TEST(turn <= 1e-12);
+  BOOST_TEST(speed <= 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(uncompensated_are_plain_integrals) {
+  const auto increments = [](const std::string& key) {
+    const std::string keys = "period = 0.5\nincrements = " + key;
+    const SceneFile file = scene(at_sea + unit("g", "gyro", keys) +
+                                 unit("a", "accelerometer", keys) + "[solve]\nt_end = 1\n");
+    return rows_of(file, run_scene(file)).back();
+  };
+  const auto with_coning = increments("true");
+  const auto plain = increments("\"uncompensated\"");
+  // Simpson's rule on 2000 intervals of the sensors' values.
+  const SceneFile file = scene(at_sea + unit("g", "gyro", "") + unit("a", "accelerometer", "") +
+                               "[solve]\nt_end = 1\noutput_step = 0.00025\n");
+  const auto rows = rows_of(file, run_scene(file));
+  for (std::size_t k = 0; k < 6; ++k) {
+    double sum = 0;
+    for (std::size_t i = 2000; i + 2 < rows.size(); i += 2) {
+      sum += (rows[i][k] + 4 * rows[i + 1][k] + rows[i + 2][k]) * 0.00025 / 3;
+    }
+    BOOST_TEST(std::abs(plain[k] - sum) <= 1e-14);
+  }
+  BOOST_TEST((three(plain, 0) - three(with_coning, 0)).norm() > 1e-5);
+  BOOST_TEST((three(plain, 3) - three(with_coning, 3)).norm() > 1e-5);
+}
+
+BOOST_AUTO_TEST_CASE(are_0_between_the_ends_of_periods) {
+  const SceneFile file = scene(at_sea + unit("g", "gyro", "period = 0.4\nincrements = true") +
+                               "[solve]\nt_end = 1\noutput_step = 0.1\n");
+  const auto motion = run_scene(file);
+  const auto rows = rows_of(file, motion);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool ends = i == 4 || i == 8;
+    BOOST_TEST((three(rows[i], 0).norm() > 0) == ends);
+  }
+  const auto model = make_model(file);
+  BOOST_TEST(SensorReadings(file).last_row(*model, motion) == rows[8]);
+}
+
+// Rounding is carried to the next increment, so that no angle is lost.
+BOOST_AUTO_TEST_CASE(of_coarse_resolution_lose_nothing) {
+  const SceneFile file =
+      scene(at_sea +
+            unit("g", "gyro", "period = 0.01\nincrements = true\nresolution = 1e-3\nbias = 0.01") +
+            "[solve]\nt_end = 3\n");
+  const auto motion = run_scene(file);
+  const auto rows = rows_of(file, motion);
+  Vector3<double> read = Vector3<double>::Zero();
+  Vector3<double> truth = Vector3<double>::Zero();
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    read += three(rows[i], 0);
+    truth += three(rows[i], 3) + Vector3<double>::Constant(0.01 * 0.01);
+    BOOST_TEST((read - truth).lpNorm<Eigen::Infinity>() <= 0.5e-3 * (1 + 1e-9));
+  }
+  const auto model = make_model(file);
+  BOOST_TEST(SensorReadings(file).last_row(*model, motion) == rows.back());
+}
+
+// A torque that steps within a period: w = 2 (t - 0.37) after the step.
+BOOST_AUTO_TEST_CASE(meet_a_step_within_a_period) {
+  const SceneFile file = scene(
+      "[[body]]\nname = \"unit\"\nmass = 1\ninertia = [1, 1, 1]\n"
+      "joint = { kind = \"revolute\", axis = [0, 0, 1] }\n"
+      "force = { steps = [[0.37, 2.0]] }\n" +
+      unit("g", "gyro", "period = 0.5\nincrements = true") + "[solve]\nt_end = 1\n");
+  const auto rows = rows_of(file, run_scene(file));
+  BOOST_TEST(std::abs(rows.at(1).at(2) - 0.13 * 0.13) <= 1e-14);
+  BOOST_TEST(std::abs(rows.at(2).at(2) - (0.63 * 0.63 - 0.13 * 0.13)) <= 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(need_the_row_that_begins_a_period) {
+  const SceneFile file =
+      scene(at_sea + unit("g", "gyro", "period = 0.5\nincrements = true") + "[solve]\nt_end = 2\n");
+  const auto model = make_model(file);
+  SensorReadings readings(file);
+  BOOST_CHECK_EXCEPTION(
+      (void)readings.row(*model, 1, start_of(file)), InvalidInput, [](const InvalidInput& error) {
+        return std::string(error.what()).find("read all rows in order") != std::string::npos;
+      });
 }
 
 BOOST_AUTO_TEST_SUITE_END()

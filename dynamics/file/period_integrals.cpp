@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <variant>
+
+#include <dynamics/file/period_integrals.hpp>
+#include <dynamics/step/explicit.hpp>
+#include <dynamics/step/jacobian.hpp>
+#include <dynamics/step/radau.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using Equations = IncrementEquations;
+
+/// Explicit steps give up for a period as stiff as a hundred of them.
+constexpr Accuracy by_explicit_steps{
+    .relative = 1e-14, .absolute_scale = 1e-9, .max_evaluations = 2000};
+constexpr Accuracy by_implicit_steps{.relative = 1e-13, .absolute_scale = 1e-9};
+
+/// The reading of gyros and accelerometers on a sensor's axes. A gyro needs no specific force.
+class TrueReading {
+ public:
+  explicit TrueReading(const SystemKinematics& system) : system_(system) {}
+
+  InertialReading operator()(const Gyro& sensor) const { return {sensor(system_)}; }
+  InertialReading operator()(const Accelerometer& sensor) const {
+    return {Gyro{sensor.body, sensor.axes}(system_), sensor(system_)};
+  }
+  template <class Other>
+  InertialReading operator()(const Other& /*sensor*/) const {
+    return {};
+  }
+
+ private:
+  const SystemKinematics& system_;
+};
+
+}  // namespace
+
+PeriodIntegrals::PeriodIntegrals(const SceneFile& scene) : scene_(scene) {
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const SceneSensor& sensor = scene.sensors[i];
+    if (sensor.increments == SensorIncrements::none) continue;
+    const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
+      return scene.sensors[group.sensors.front()].period == sensor.period;
+    });
+    if (same == groups_.end()) {
+      groups_.push_back({{i}});
+    } else {
+      same->sensors.push_back(i);
+    }
+  }
+}
+
+Increments PeriodIntegrals::of(std::size_t sensor, const SceneSolver& model, double begin,
+                               const JointState& state, double end) {
+  for (Group& group : groups_) {
+    const auto found = std::find(group.sensors.begin(), group.sensors.end(), sensor);
+    if (found == group.sensors.end()) continue;
+    if (group.increments.empty() || group.end != end) integrate(group, model, begin, state, end);
+    return group.increments[static_cast<std::size_t>(found - group.sensors.begin())];
+  }
+  throw InvalidInput("sensor '" + scene_.sensors[sensor].name + "' reads no increments");
+}
+
+void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double begin,
+                                const JointState& state, double end) const {
+  const Index coordinates = state.coordinates.size();
+  const Index of_motion = coordinates + state.rates.size();
+  VectorXd start(of_motion + Equations::count * static_cast<Index>(group.sensors.size()));
+  start << state.coordinates, state.rates,
+      Equations::start().replicate(static_cast<Index>(group.sensors.size()), 1);
+  std::vector<int> blocks = model.tree().blocks();
+  for (std::size_t i = 0; i < group.sensors.size(); ++i) {
+    blocks.insert(blocks.end(), Equations::blocks.begin(), Equations::blocks.end());
+  }
+
+  VectorXd y(of_motion);
+  VectorXd rates(of_motion);
+  const auto field = [&](double t, const VectorXd& all, VectorXd& result) {
+    y = all.head(of_motion);
+    model.rates(t, y, rates);
+    result.head(of_motion) = rates;
+    const auto system = model.kinematics(t, {y.head(coordinates), y.tail(of_motion - coordinates)});
+    Index at = of_motion;
+    for (const std::size_t i : group.sensors) {
+      result.segment<Equations::count>(at) =
+          Equations::rates(all.segment<Equations::count>(at),
+                           std::visit(TrueReading(system), scene_.sensors[i].kind));
+      at += Equations::count;
+    }
+  };
+  const auto integrated = [&](auto&& steps) -> VectorXd {
+    steps.stop_at(scene_.discontinuities);
+    return steps.advance_to(end);
+  };
+  VectorXd numbers;
+  try {
+    numbers = integrated(ExplicitRungeKutta<VectorXd, decltype(field)>(field, begin, start,
+                                                                       by_explicit_steps, blocks));
+  } catch (const ComputationFailed&) {
+    const auto jacobian = difference_jacobian<Eigen::Dynamic>(field);
+    numbers = integrated(RadauSteps<VectorXd, decltype(field), decltype(jacobian)>(
+        field, jacobian, begin, start, by_implicit_steps, blocks));
+  }
+  group.end = end;
+  group.increments.clear();
+  for (std::size_t i = 0; i < group.sensors.size(); ++i) {
+    const Index at = of_motion + Equations::count * static_cast<Index>(i);
+    group.increments.push_back(Equations::increments(numbers.segment<Equations::count>(at)));
+  }
+}
+
+}  // namespace kreisel
