@@ -550,7 +550,7 @@ BOOST_AUTO_TEST_CASE(are_0_between_the_ends_of_periods) {
 }
 
 // Rounding is carried to the next increment, so that no angle is lost.
-BOOST_AUTO_TEST_CASE(of_coarse_resolution_lose_nothing) {
+BOOST_AUTO_TEST_CASE(coarse_resolution_loses_nothing) {
   const SceneFile file =
       scene(at_sea +
             unit("g", "gyro", "period = 0.01\nincrements = true\nresolution = 1e-3\nbias = 0.01") +

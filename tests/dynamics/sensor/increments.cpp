@@ -46,7 +46,7 @@ struct Coning {
 
 BOOST_AUTO_TEST_SUITE(increments_in_closed_form)
 
-BOOST_AUTO_TEST_CASE(of_coning) {
+BOOST_AUTO_TEST_CASE(coning) {
   for (const Coning& coning : {Coning{0.1, 3}, Coning{1e-3, 30}, Coning{1, 12}, Coning{2.5, 100}}) {
     for (const double period : {1e-3, 0.01, 0.2}) {
       const double begin = 0.3;
@@ -64,9 +64,9 @@ BOOST_AUTO_TEST_CASE(of_coning) {
   }
 }
 
-// The drift of coning is the mean rate -2 w sin^2 a/2 about z less that of the angles' components:
-// in whole turns of the cone the rotation is 0 while `angle` is not.
-BOOST_AUTO_TEST_CASE(of_a_whole_cone) {
+// After a whole turn of the cone the rotation is 0. The angular velocity's integral is not: its mean
+// about z is -2 w sin^2 a/2.
+BOOST_AUTO_TEST_CASE(whole_cone) {
   const Coning coning{0.02, 8 * std::numbers::pi};
   const Increments found = increments(coning, 0, 0.25);
   BOOST_TEST(found.rotation.norm() <= 1e-13 * 2 * std::numbers::pi * coning.a);
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(of_a_whole_cone) {
 }
 
 // theta = A sin wt about x, f = B sin wt along y:  in a whole turn B J1(A) 2 pi/w along z.
-BOOST_AUTO_TEST_CASE(of_sculling) {
+BOOST_AUTO_TEST_CASE(sculling) {
   const double w = 10;
   const double cycle = 2 * std::numbers::pi / w;
   for (const double A : {1e-4, 0.05, 0.8}) {
@@ -92,7 +92,7 @@ BOOST_AUTO_TEST_CASE(of_sculling) {
 }
 
 // A spin of many turns: the rotation vector is the angle, and f on fixed axes gives f t.
-BOOST_AUTO_TEST_CASE(of_a_spin_of_many_turns) {
+BOOST_AUTO_TEST_CASE(spin_of_many_turns) {
   const Vector axis = Vector(1, -2, 2) / 3;
   const double spin = 1000;
   const Vector f(1, 2, 3);
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(of_a_spin_of_many_turns) {
 }
 
 // Earth rate in a short period: 16 digits of a rotation of 1e-7 rad.
-BOOST_AUTO_TEST_CASE(of_slow_rates_keep_their_digits) {
+BOOST_AUTO_TEST_CASE(slow_rates_keep_their_digits) {
   const Vector rate(7.2921e-5, -3e-5, 1e-6);
   const auto reading = [&](double) { return InertialReading{rate, {0, 0, 9.8}}; };
   const Increments found = increments(reading, 5, 5.0078125);
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(of_slow_rates_keep_their_digits) {
   BOOST_TEST(off(found.angle, rate * 0.0078125) <= 1e-15 * rate.norm() * 0.0078125);
 }
 
-BOOST_AUTO_TEST_CASE(of_readings_that_jump) {
+BOOST_AUTO_TEST_CASE(readings_that_jump) {
   const double jump = 0.37;
   const auto reading = [&](double t) {
     return InertialReading{{0, 0, t < jump ? 0.5 : -2}, {t < jump ? 1.0 : 3.0, 0, 0}};
