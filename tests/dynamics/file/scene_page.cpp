@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -126,6 +127,26 @@ class AtStart {
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(page_on_scene_files)
+
+// The table of units. Their sizes are in tests/dynamics/file/unit.cpp.
+BOOST_AUTO_TEST_CASE(every_unit_of_the_page_is_read) {
+  std::ifstream file(KREISEL_PAGE);
+  std::string row;
+  while (std::getline(file, row) && row != "| quantity | units |") continue;
+  std::getline(file, row);
+  int count = 0;
+  while (std::getline(file, row) && !row.empty()) {
+    std::istringstream units(row.substr(row.find('|', 1) + 1));
+    for (std::string unit; units >> unit;) {
+      if (unit == "|" || unit.front() == '(') continue;
+      if (unit.back() == ',') unit.pop_back();
+      const std::string found = mistakes(one(hinge + "centre = [0, 0, \"1 " + unit + "\"]"));
+      BOOST_TEST(!contains(found, "unknown unit"), unit);
+      ++count;
+    }
+  }
+  BOOST_TEST(count == 41);
+}
 
 // "A key of an angle or of an angular rate may end in _deg instead".
 BOOST_AUTO_TEST_CASE(angles_and_their_rates_in_degrees) {
