@@ -881,9 +881,13 @@ BOOST_AUTO_TEST_CASE(refuses_unavailable_equations) {
       "[guide]\nkind = \"harmonic\"\nangular_velocity = { terms = [{ amplitude = [0, 0.1, 0], "
       "frequency = 1 }] }\n" +
       rods;
+  const std::string sailing =
+      "[guide]\nkind = \"course\"\nlatitude_deg = 50\nheading_deg = 0\nspeed = 10\n" +
+      rods.substr(rods.find("[[body]]"));
   const std::tuple<std::string, const char*, const char*> cases[] = {
       {approximated("precession", rods), "", "there is no rotor"},
       {approximated("linear", swinging), "", "the guide swings"},
+      {approximated("linear", sailing), "", "the guide moves over the earth"},
       {approximated("linear", rods), " --resume", "is computed as a whole"}};
   for (const auto& [text, option, reason] : cases) {
     const std::string file = folder.write("scene.toml", text).string();
