@@ -166,7 +166,7 @@ class GuideReader {
                                                             : "rate";
       guide.refuse(key, text.substr(text.find("= ") + 2));
     }
-    guide_.links.emplace_back(std::move(link));
+    guide_.links.emplace_back(link);
   }
 
   /// Reads gravity on the earth, as a number or by name. Returns the number.

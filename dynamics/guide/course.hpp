@@ -301,11 +301,11 @@ class Course {
 
   /// The time after which the last two terms of each series are 1e-17 of its size.
   [[nodiscard]] static double reach(const Piece& c) {
-    const auto size = [](const State& x, int part) {
+    const auto size = [](const State& x, Eigen::Index part) {
       return part < 2 ? x.segment<3>(3 * part).norm() : std::abs(x[4 + part]);
     };
     double result = std::numeric_limits<double>::infinity();
-    for (int part = 0; part < 5; ++part) {
+    for (Eigen::Index part = 0; part < 5; ++part) {
       const std::size_t last = part < 4 ? degree : degree - 1;
       for (std::size_t k = last - 1; k <= last; ++k) {
         const double term = size(c[k], part);
