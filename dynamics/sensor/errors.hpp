@@ -48,8 +48,8 @@ KREISEL_API [[nodiscard]] Vector3<double> misread(const SensorErrors& errors,
                                                   const Vector3<double>& noise);
 
 /// The reading of an instrument that integrates over `period` seconds, as inertial units do. Errors
-/// of the mean rate are as above. `resolution` is that of the increment, and what rounding leaves
-/// out is added to the next increment: the sum of all readings is off by half a step at most.
+/// of the mean rate are as above. The increment is rounded to `resolution`, and the remainder is
+/// added to the next increment. The sum of all readings is thus off by half a step at most.
 ///
 /// truth : the increment, y s
 /// rest  : remainder of the previous increment, initially 0; replaced by that of this one

@@ -19,9 +19,9 @@ struct InertialReading {
 
 /// The integrals of the readings w and f of an inertial unit over a period.
 ///
-/// `rotation` and `velocity` include coning and sculling: with the attitude q at the period's
-/// beginning, the attitude at its end is q exp(rotation/2), and the specific force has changed the
-/// velocity by R(q) velocity. `angle` and `force` are the integrals of the components alone.
+/// `rotation` and `velocity` include coning and sculling. From the attitude q at the period's
+/// beginning they lead to the attitude q exp(rotation/2). The specific force has changed the
+/// inertial velocity by R(q) velocity. `angle` and `force` are integrals of the components alone.
 ///
 ///   p' = p w/2,   velocity' = R(p) f,   angle' = w,   force' = f,   p = exp(rotation/2)
 ///

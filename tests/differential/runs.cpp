@@ -215,8 +215,8 @@ std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& mod
   return result;
 }
 
-/// The greatest difference between the increments of gyros over their first period and the
-/// attitudes of the same run; nothing without such gyros or if the run has failed.
+/// The greatest difference between gyros' increments over their first period and the attitudes of
+/// the same run. Nothing without such gyros, or if the run has failed.
 std::optional<double> increments_off(const kreisel::SceneSolver& model,
                                      const kreisel::SceneFile& file) {
   std::optional<double> result;
