@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include <dynamics/sensor/increments.hpp>
-#include <dynamics/step/explicit.hpp>
 #include <motor/attitude.hpp>
 
 namespace kreisel {
@@ -40,18 +39,6 @@ Increments IncrementEquations::increments(const Numbers& numbers) {
   const Vector angle = numbers.segment<3>(7);
   return {rotation_vector(Eigen::Quaterniond(numbers.head<4>()), angle), numbers.segment<3>(4),
           angle, numbers.tail<3>()};
-}
-
-Increments increments(const std::function<InertialReading(double t)>& readings, double begin,
-                      double end, const std::vector<double>& breaks) {
-  const auto field = [&readings](double t, const Numbers& numbers) {
-    return IncrementEquations::rates(numbers, readings(t));
-  };
-  ExplicitRungeKutta<Numbers, decltype(field)> steps(field, begin, IncrementEquations::start(),
-                                                     {.relative = 1e-15, .absolute_scale = 1e-9},
-                                                     IncrementEquations::blocks);
-  steps.stop_at(breaks);
-  return IncrementEquations::increments(steps.advance_to(end));
 }
 
 }  // namespace kreisel

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
-#include <vector>
 
 #include <motor/api.hpp>
 #include <motor/motor.hpp>
@@ -49,17 +47,5 @@ struct KREISEL_API IncrementEquations {
   [[nodiscard]] static Numbers rates(const Numbers& numbers, const InertialReading& reading);
   [[nodiscard]] static Increments increments(const Numbers& numbers);
 };
-
-/// The increments of an inertial unit from begin to end, by adaptive steps.
-///
-/// readings : function of time
-/// breaks   : times at which the readings jump
-/// Error    : <= 1e-14 of the integrals of |w| and |f|
-///            (tests/dynamics/sensor/increments: coning and sculling in closed form)
-/// Cost     : 16 readings for each step of verner98
-/// Throws   : ComputationFailed if the readings are not finite
-KREISEL_API [[nodiscard]] Increments increments(
-    const std::function<InertialReading(double t)>& readings, double begin, double end,
-    const std::vector<double>& breaks = {});
 
 }  // namespace kreisel

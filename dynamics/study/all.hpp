@@ -1,13 +1,14 @@
 #pragma once
 
-/// All studies of a scene: equilibria, linear equations, spectra, stability with periodic coefficients,
-/// precession equations, and pruning.
+/// All studies of a scene: equilibria, linear equations, spectra, stability with periodic
+/// coefficients, precession equations, increments of inertial units, and pruning.
 
 #include <dynamics/study/campbell.hpp>
 #include <dynamics/study/deviation.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
+#include <dynamics/study/increments.hpp>
 #include <dynamics/study/linear_error.hpp>
 #include <dynamics/study/linearize.hpp>
 #include <dynamics/study/precession.hpp>

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include <dynamics/sensor/increments.hpp>
+#include <dynamics/study/increments.hpp>
 
 using namespace kreisel;
 
