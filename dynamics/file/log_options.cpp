@@ -152,6 +152,25 @@ void read_writing(Section& section, LogOptions& options) {
   }
 }
 
+/// Suggests keys with which a log covers a run from t_begin on, as the end of a message.
+std::string time_hint(const LogOptions& options, const std::vector<double>& times, double t_begin) {
+  const double begin = times.front();
+  if (begin <= t_begin) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
+  if (options.window) {
+    return ": the run begins at t = " + shown_time(t_begin) + "; increase  time_zero  by " +
+           shown_time(begin - t_begin) + " s and move  window  back by as much";
+  }
+  constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
+  const double step = (times.back() - begin) / static_cast<double>(times.size() - 1);
+  const char* unit = nullptr;
+  if (begin > 1e3 * since_1970) unit = "ms";
+  if (begin > 1e6 * since_1970 || step > 1e3) unit = "us";
+  if (begin > 1e9 * since_1970 || step > 1e6) unit = "ns";
+  const bool hint = unit != nullptr && !options.time_unit;
+  return ": give  " + (hint ? "time_unit = \"" + std::string(unit) + "\"  and  " : "") +
+         "time_zero = \"first\"";
+}
+
 }  // namespace
 
 LogOptions read_log_options(Section& section, const std::vector<LogRequest>& requests,
@@ -164,6 +183,15 @@ LogOptions read_log_options(Section& section, const std::vector<LogRequest>& req
   read_writing(section, options);
   read_time(section, options);
   return options;
+}
+
+void check_covers_run(Section& section, const std::string& name, const LogOptions& options,
+                      const std::vector<double>& times, const std::array<double, 2>& run) {
+  if (times.front() <= run[0] && times.back() >= run[1]) return;
+  section.refuse("file", "'" + name + "' goes from t = " + shown_time(times.front()) + " s to " +
+                             shown_time(times.back()) + " s and does not cover the run, " +
+                             shown_time(run[0]) + " to " + shown_time(run[1]) + " s" +
+                             time_hint(options, times, run[0]));
 }
 
 }  // namespace kreisel::detail

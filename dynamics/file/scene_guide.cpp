@@ -329,7 +329,7 @@ class GuideReader {
     if (!place) return;
     try {
       MotionLog<double> log = read_motion_log(place->file, place->options).motion;
-      check_covers_run(guide, place->name, place->options, log.times);
+      check_covers_run(guide, place->name, place->options, log.times, {t_begin_, t_end_});
       const LogSpline spline = read_smoothing(guide, log, {dimension::number, dimension::length});
       guide_.links.emplace_back(scene_guide::Table{place->file, std::move(log), spline});
     } catch (const InvalidInput& error) {
@@ -358,7 +358,7 @@ class GuideReader {
     place->options.run.reset();  // the attitude belongs to the first time of the log
     try {
       RatesLog log = read_rates_log(place->file, place->options);
-      check_covers_run(guide, place->name, place->options, log.times);
+      check_covers_run(guide, place->name, place->options, log.times, {t_begin_, t_end_});
       if (gravity && log.accelerations.empty()) {
         guide.refuse("gravity",
                      "is what logged accelerations lack, and this log has none; leave it out");
@@ -373,37 +373,6 @@ class GuideReader {
     } catch (const InvalidInput& error) {
       guide.refuse("file", error.what());
     }
-  }
-
-  void check_covers_run(Section& section, const std::string& name, const LogOptions& options,
-                        const std::vector<double>& times) const {
-    const double begin = times.front();
-    const double end = times.back();
-    if (begin <= t_begin_ && end >= t_end_) return;
-    section.refuse("file", "'" + name + "' goes from t = " + shown_time(begin) + " s to " +
-                               shown_time(end) + " s and does not cover the run, " +
-                               shown_time(t_begin_) + " to " + shown_time(t_end_) + " s" +
-                               time_hint(options, times, t_begin_));
-  }
-
-  /// Suggests keys with which a log covers a run from t_begin on, as the end of a message.
-  static std::string time_hint(const LogOptions& options, const std::vector<double>& times,
-                               double t_begin) {
-    const double begin = times.front();
-    if (begin <= t_begin) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
-    if (options.window) {
-      return ": the run begins at t = " + shown_time(t_begin) + "; increase  time_zero  by " +
-             shown_time(begin - t_begin) + " s and move  window  back by as much";
-    }
-    constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
-    const double step = (times.back() - begin) / static_cast<double>(times.size() - 1);
-    const char* unit = nullptr;
-    if (begin > 1e3 * since_1970) unit = "ms";
-    if (begin > 1e6 * since_1970 || step > 1e3) unit = "us";
-    if (begin > 1e9 * since_1970 || step > 1e6) unit = "ns";
-    const bool hint = unit != nullptr && !options.time_unit;
-    return ": give  " + (hint ? "time_unit = \"" + std::string(unit) + "\"  and  " : "") +
-           "time_zero = \"first\"";
   }
 
   /// The smoothing spline of a log of two quantities, attitude and position or angular rate and

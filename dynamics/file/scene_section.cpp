@@ -115,6 +115,13 @@ const toml::node* Section::find(std::string_view key) {
   return table_->get(key);
 }
 
+std::string shown_time(double t) {
+  std::ostringstream text;
+  text.precision(15);
+  text << t;
+  return text.str();
+}
+
 bool Section::has(std::string_view key) { return find(key) != nullptr; }
 
 void Section::refuse(std::string_view key, std::string_view reason) {

@@ -47,6 +47,9 @@ class SignalLogs;
 /// Bounds of a number.
 enum class Range { any, not_negative, positive };
 
+/// A time in a message, in 15 digits.
+[[nodiscard]] std::string shown_time(double t);
+
 /// A table of the file while it is read. Each key that is requested counts as known; finish()
 /// reports all others as mistakes. After a mistake the reader gets a legal value and continues.
 class Section {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -103,17 +102,6 @@ template <class Value>
   return smoothing(log, sigma);
 }
 
-void check_covers_run(Section& table, const std::string& name, const ValueLog& log,
-                      const std::array<double, 2>& run) {
-  if (log.times.front() <= run[0] && log.times.back() >= run[1]) return;
-  std::ostringstream text;
-  text.precision(15);
-  text << "'" << name << "' goes from t = " << log.times.front() << " s to " << log.times.back()
-       << " s and does not cover the run, " << run[0] << " to " << run[1]
-       << " s: change  time_zero,  or the times in [solve]";
-  table.refuse("file", text.str());
-}
-
 /// The signal of a log: columns t and value, or t, x, y, z.
 template <class Value>
 [[nodiscard]] Signal<Value> read_log(Section& table, const KeyDimension& of) {
@@ -136,7 +124,7 @@ template <class Value>
       entry.file = logs.place(name);
       entry.log = samples(kreisel::read_log(entry.file, requests, options), names);
       entry.spline = read_smoothing<Value>(table, entry.log, of);
-      check_covers_run(table, name, entry.log, logs.run());
+      check_covers_run(table, name, options, entry.log.times, logs.run());
     }
     auto signal = logged_signal<Value>(entry.log, entry.spline);
     logs.add(std::move(entry));
@@ -148,13 +136,6 @@ template <class Value>
 }
 
 }  // namespace
-
-std::string shown_time(double t) {
-  std::ostringstream text;
-  text.precision(15);
-  text << t;
-  return text.str();
-}
 
 template <class Value>
 Signal<Value> read_signal_table(Section table, const KeyDimension& of) {

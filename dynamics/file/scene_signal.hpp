@@ -11,9 +11,6 @@
 
 namespace kreisel::detail {
 
-/// A time in a message, in 15 digits.
-[[nodiscard]] std::string shown_time(double t);
-
 /// The signal of a table: { constant, rate, terms }, { steps }, { points } or { file }. Its values
 /// have the dimension `of`. Notes mistakes in the table.
 template <class Value>
