@@ -17,6 +17,7 @@
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/csv.hpp>
 #include <dynamics/file/printable.hpp>
+#include <dynamics/file/readings.hpp>
 #include <dynamics/file/scene_numbers.hpp>
 #include <dynamics/file/text_file.hpp>
 #include <motor/error.hpp>
@@ -36,7 +37,7 @@ struct Member {
   RunStatus status = RunStatus::cancelled;
   std::string message;         ///< of a failed member
   std::vector<double> varied;  ///< in the order of the keys
-  std::vector<double> joints;  ///< at the end, in the order of simulate's rows
+  std::vector<double> end;     ///< joints and sensors, in the order of simulate's rows
   double error = 0;
   bool tolerance_kept = false;
 };
@@ -52,13 +53,15 @@ struct Scene {
 Scene read(const Request& request) {
   // Reports mistakes that all members would share.
   const std::string text = kreisel::read_text(request.scene, kreisel::largest_scene_file);
-  const kreisel::SceneFile file = kreisel::parse_scene(text, request.scene, request.solve);
+  kreisel::SceneFile file = kreisel::parse_scene(text, request.scene, request.solve);
   if (request.csv) outputs::refuse_input("--csv", *request.csv, files_read(request.scene, file));
   std::vector<std::string> keys;
   for (const Variation& variation : request.variations) {
     keys.insert(keys.end(), variation.keys.begin(), variation.keys.end());
   }
-  std::vector<std::string> names = columns(make_model(file)->tree(), false);
+  (void)make_model(file);  // refuses what the reader cannot
+  file.reactions = false;
+  std::vector<std::string> names = columns(file);
   names.erase(names.begin());  // the time
   return {request, keys, kreisel::SceneNumbers(text, keys), std::move(names)};
 }
@@ -79,8 +82,11 @@ Member compute(const Scene& scene, std::size_t index, const std::stop_token& sto
     }
   }
   try {
-    const kreisel::SceneFile file =
+    kreisel::SceneFile file =
         kreisel::parse_scene(scene.numbers.with(member.varied), request.scene, request.solve);
+    for (kreisel::SceneSensor& sensor : file.sensors) {
+      if (sensor.errors) sensor.errors->seed += index;  // each member has its own noise
+    }
     const auto model = make_model(file);
     kreisel::SolveOptions options = options_of(file);
     options.stop = stop;
@@ -88,12 +94,14 @@ Member compute(const Scene& scene, std::size_t index, const std::stop_token& sto
     member.status = run.report.status;
     member.message = run.report.message;
     if (run.report.status != RunStatus::complete) return member;
-    member.joints = row(*model, file.t_end, run.states.back(), false);
-    member.joints.erase(member.joints.begin());
+    member.end = row(*model, file.t_end, run.states.back(), false);
+    member.end.erase(member.end.begin());
+    const std::vector<double> readings = kreisel::SensorReadings(file).last_row(*model, run);
+    member.end.insert(member.end.end(), readings.begin(), readings.end());
     member.error = run.report.error_estimate;
     member.tolerance_kept = run.report.tolerance_kept;
     const auto finite = [](double x) { return std::isfinite(x); };
-    if (!finite(member.error) || !std::all_of(member.joints.begin(), member.joints.end(), finite)) {
+    if (!finite(member.error) || !std::all_of(member.end.begin(), member.end.end(), finite)) {
       member.status = RunStatus::failed;
       member.message = "the end of the motion or its error is not finite";
     }
@@ -131,7 +139,7 @@ void write_csv(kreisel::AtomicFile& file, const Scene& scene, const std::vector<
     out << i;
     for (const double x : member.varied) out << fmt::format(",{:.17g}", x);
     for (std::size_t k = 0; k < scene.columns.size(); ++k) {
-      out << (member.joints.empty() ? "," : fmt::format(",{:.17g}", member.joints[k]));
+      out << (member.end.empty() ? "," : fmt::format(",{:.17g}", member.end[k]));
     }
     if (member.status == RunStatus::complete) {
       out << fmt::format(",{:.17g},\n", member.error);
@@ -183,7 +191,7 @@ Summary summary(const Scene& scene, const std::vector<Member>& members) {
     result.error = std::max(result.error, member.error);
     auto column = result.columns.begin();
     for (const double x : member.varied) (column++)->add(x);
-    for (const double x : member.joints) (column++)->add(x);
+    for (const double x : member.end) (column++)->add(x);
   }
   return result;
 }

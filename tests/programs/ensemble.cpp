@@ -102,6 +102,34 @@ BOOST_AUTO_TEST_CASE(does_not_depend_on_threads) {
   BOOST_TEST((drawn("--threads 2 --seed 2") != one));
 }
 
+// Readings at the end, with the noise of each member. Its seed is the sensor's plus the member.
+BOOST_AUTO_TEST_CASE(has_the_readings_of_sensors) {
+  const test::Scratch folder;
+  const auto text = [](int seed) {
+    return "[guide]\nkind = \"rotating\"\nangular_velocity = [0, 0, 2]\n"
+           "[[body]]\nname = \"unit\"\nmass = 1\ninertia = [1, 1, 1]\njoint = { kind = \"fixed\" "
+           "}\n"
+           "[[sensor]]\nname = \"gyro\"\nkind = \"gyro\"\nbody = \"unit\"\nperiod = 0.25\n"
+           "increments = true\nnoise = 0.01\nseed = " +
+           std::to_string(seed) + "\n[solve]\nt_end = 1.1\n";
+  };
+  const std::string file = folder.write("s.toml", text(7)).string();
+  const std::string csv = (folder.path() / "out.csv").string();
+  const test::Outcome outcome =
+      run(file + " --vary 'guide.angular_velocity[2]*=linear(1,2)' --members 2 --csv " + csv);
+  BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+  const auto table = rows(folder.read("out.csv"));
+  BOOST_TEST_REQUIRE(table.size() == 3U);
+  BOOST_TEST(table[0].at(2) == "gyro.dtheta x");
+  BOOST_TEST(std::abs(std::stod(table[1].at(7)) - 0.5) <= 1e-14);  // true z
+  BOOST_TEST(std::abs(std::stod(table[2].at(7)) - 1.0) <= 1e-14);
+  const std::string second = folder.write("t.toml", text(8)).string();
+  const json alone = test::parsed(test::run(KREISEL_SIMULATE " " + second + " --json").out);
+  const json& dtheta = alone.at("final").at("sensors").at("gyro").at("dtheta");
+  BOOST_TEST(std::stod(table[2].at(2)) == dtheta.at(0).get<double>());
+  BOOST_TEST(std::stod(table[2].at(2)) != std::stod(table[1].at(2)));
+}
+
 // A member that cannot be made or computed has a row with the reason.
 BOOST_AUTO_TEST_CASE(lists_failed_members) {
   const test::Scratch folder;
