@@ -74,9 +74,11 @@ ordered_json joint(const kreisel::BodyTree& tree, int body, const kreisel::Joint
   const ordered_json coordinates = listed(type.coordinates, state.coordinates, place.q, scale);
   const ordered_json rates = listed(type.rates, state.rates, place.v, scale);
   if (coordinates.size() > 1) return {{"coordinate", coordinates}, {"rate", rates}};
+  const double torque = shown(drive_torque(tree, body, reactions), scale.torque);
   return {{"coordinate", coordinates[0]},
           {"rate", rates[0]},
-          {"drive_torque", shown(drive_torque(tree, body, reactions), scale.torque)}};
+          {"drive_torque", torque},
+          {"drive_power", torque * state.rates[place.v]}};
 }
 
 void print(const char* title, const ordered_json& table) {

@@ -672,7 +672,7 @@ BOOST_AUTO_TEST_CASE(models_and_methods_are_refused_with_a_reason) {
       "no steady motion");
 }
 
-// The torque of a drive is reported.
+// Torque and power of a drive are reported.
 BOOST_AUTO_TEST_CASE(drives_report_their_torque) {
   const test::Outcome outcome = simulate(
       one(hinge + "centre = [0, 0, -0.4]\ndrive = \"constant-rate\"\ninitial = { rate = 1 }\n",
@@ -680,9 +680,10 @@ BOOST_AUTO_TEST_CASE(drives_report_their_torque) {
       "--json");
   BOOST_TEST_REQUIRE(outcome.status == 0, outcome.err);
   // 2 kg at 0.4 m, lifted by sin(1): the torque that holds it against gravity.
-  const double torque =
-      test::parsed(outcome.out).at("final").at("joints").at("a").at("drive_torque").get<double>();
+  const auto joint = test::parsed(outcome.out).at("final").at("joints").at("a");
+  const double torque = joint.at("drive_torque").get<double>();
   BOOST_TEST(std::abs(torque - 2 * 9.81 * 0.4 * std::sin(1.0)) <= 1e-9);
+  BOOST_TEST(joint.at("drive_power").get<double>() == torque);  // at 1 rad/s
 }
 
 BOOST_AUTO_TEST_SUITE_END()
