@@ -137,7 +137,7 @@ std::string described(const Dimension& of) {
     std::array<char, 32> digits{};
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), exponent).ptr;
     text += std::string(" ") + name;
-    if (exponent != 1) text += "^" + std::string(digits.data(), end);
+    if (exponent != 1) text.append("^").append(digits.data(), end);
   }
   return text;
 }
@@ -167,8 +167,9 @@ class Parser {
     skip_blanks();
     const bool negative = next() == '-';
     if (negative || next() == '+') rest_.remove_prefix(1);
-    result.digits = (negative ? "-" : "") + digits();
-    if (take('.')) result.digits += "." + digits();
+    if (negative) result.digits.push_back('-');
+    result.digits += digits();
+    if (take('.')) result.digits.append(".").append(digits());
     if (result.digits.find_first_of("0123456789") == std::string::npos) refuse("is no number");
     result.exponent = exponent_of_ten();
     return result;
@@ -285,7 +286,7 @@ class Parser {
     std::string text = take('-') ? "-" : "";
     text += digits();
     const bool has_fraction = next() == '.' && rest_.substr(1).find_first_of("0123456789") == 0;
-    if (has_fraction && take('.')) text += "." + digits();
+    if (has_fraction && take('.')) text.append(".").append(digits());
     double n = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), n);
     constexpr double most = 9;

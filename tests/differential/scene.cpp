@@ -543,7 +543,7 @@ std::string samples(const Signal& signal, double t_end) {
     const double t = static_cast<double>(i) * step;
     const Vector v = reference::course_of(signal, t, t).value.cast<double>();
     result += text(t);
-    for (const double x : {v.x(), v.x(), v.y(), v.z()}) result += "," + text(x);
+    for (const double x : {v.x(), v.x(), v.y(), v.z()}) result.append(",").append(text(x));
     result += "\n";
   }
   return result;

@@ -46,7 +46,7 @@ struct Coning {
 
 BOOST_AUTO_TEST_SUITE(increments_in_closed_form)
 
-BOOST_AUTO_TEST_CASE(coning) {
+BOOST_AUTO_TEST_CASE(attitude_and_angle_in_coning) {
   for (const Coning& coning : {Coning{0.1, 3}, Coning{1e-3, 30}, Coning{1, 12}, Coning{2.5, 100}}) {
     for (const double period : {1e-3, 0.01, 0.2}) {
       const double begin = 0.3;
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(whole_cone) {
 }
 
 // theta = A sin wt about x, f = B sin wt along y:  in a whole turn B J1(A) 2 pi/w along z.
-BOOST_AUTO_TEST_CASE(sculling) {
+BOOST_AUTO_TEST_CASE(velocity_in_sculling) {
   const double w = 10;
   const double cycle = 2 * std::numbers::pi / w;
   for (const double A : {1e-4, 0.05, 0.8}) {
