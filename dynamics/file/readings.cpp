@@ -112,7 +112,7 @@ std::vector<double> SensorReadings::row(const SceneSolver& model, double t,
     std::vector<double>& own = instruments_[i].reading;
     if (const auto sample = sample_of(i, t)) {
       own = reading(i, now, *sample);
-      note(i, now, *sample);
+      if (integrates(scene_.sensors[i])) note(i, now, *sample);
     } else if (integrates(scene_.sensors[i])) {
       numbers.insert(numbers.end(), own.size(), 0);
       continue;
