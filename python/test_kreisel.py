@@ -120,6 +120,16 @@ class OfKeywords(unittest.TestCase):
         again = kreisel.Scene.from_text(self.scene().text)
         np.testing.assert_array_equal(run.rows, again.solve().rows)
 
+    def test_increments_are_sampled(self):
+        gyro = {"name": "gyro", "kind": "gyro", "body": "unit", "period": 0.25, "increments": True}
+        unit = {"name": "unit", "mass": "2 kg", "inertia": [1, 1, 1], "joint": {"kind": "fixed"}}
+        scene = kreisel.Scene(guide={"kind": "rotating", "angular_velocity": [0, 0, 2]},
+                              body=[unit], sensor=[gyro], solve={"t_end": 1, "output_step": 0.5})
+        for run in scene.solve(), scene.solve(times=[0, 0.5, 1]):
+            self.assertEqual(run.times.tolist(), [0, 0.25, 0.5, 0.75, 1])
+            angles = run.sensors["gyro"]["dtheta"][:, 2]
+            np.testing.assert_allclose(angles, [0, 0.5, 0.5, 0.5, 0.5], atol=1e-15)
+
     def test_numbers_keep_their_digits(self):
         angle = np.nextafter(0.1, 1)
         run = self.scene(body=[self.BODY | {"initial": {"angle": angle}}]).solve()
