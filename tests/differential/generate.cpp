@@ -820,6 +820,8 @@ void add_solve(Random& r, Scene& scene) {
     return link.kind == LinkKind::harmonic;
   });
   if (harmonic) scene.t_end = std::min(scene.t_end, 1e3);
+  const bool is_course = !scene.guide.empty() && scene.guide.front().kind == LinkKind::course;
+  if (is_course) scene.t_end = std::min(scene.t_end, 100.0);  // its turn rate may grow
   if (scene.has_log()) scene.t_end = std::min(scene.t_end, 10.0);
   scene.outputs = r.pick({1, 2, 20, 20, 20, 100});
   scene.reports = r.chance(0.3);

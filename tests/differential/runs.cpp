@@ -231,6 +231,7 @@ std::optional<double> increments_off(const kreisel::SceneSolver& model,
     kreisel::SolveOptions options = options_of(file);
     options.output_times = {file.t_begin, file.t_begin + sensor.period};
     options.tolerance = 1e-10;
+    options.method = kreisel::Method::automatic;
     const auto run = model.solve(options, start_of(file));
     if (!run.report.tolerance_kept || run.states.size() < 2) return result;
     const kreisel::AttitudeSensor attitude{gyro->body, kreisel::SensorFrame::inertial()};
