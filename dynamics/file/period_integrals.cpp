@@ -17,8 +17,22 @@ using Equations = IncrementEquations;
 
 /// Explicit steps give up for a period as stiff as a hundred of them.
 constexpr Accuracy by_explicit_steps{
-    .relative = 1e-14, .absolute_scale = 1e-9, .max_evaluations = 2000};
-constexpr Accuracy by_implicit_steps{.relative = 1e-13, .absolute_scale = 1e-9};
+    .relative = 1e-13, .absolute_scale = 1e-9, .max_evaluations = 2000};
+constexpr Accuracy by_implicit_steps{.relative = 1e-13, .absolute_scale = 1e-3};
+
+/// The sizes relative to which steps err. Increments begin at 0; their sizes are those that the
+/// first rates lead to in a period, or 1e-3 rad/s and 1 m/s^2. With smaller ones steps would follow
+/// rounding.
+std::vector<double> sizes_of(const VectorXd& rates, std::size_t blocks_of_motion, double period) {
+  std::vector<double> sizes(blocks_of_motion, 1e-3);
+  for (Index at = 0; at < rates.size(); at += Equations::count) {
+    const auto size = [&](Index part, double least) {
+      return std::max(rates.segment<3>(at + part).norm(), least) * period;
+    };
+    sizes.insert(sizes.end(), {size(0, 1e-3), 1, size(4, 1), size(7, 1e-3), size(10, 1)});
+  }
+  return sizes;
+}
 
 /// The reading of gyros and accelerometers on a sensor's axes. A gyro needs no specific force.
 class TrueReading {
@@ -93,14 +107,20 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
       at += Equations::count;
     }
   };
+  VectorXd first(start.size());
+  field(begin, start, first);
+  const std::vector<double> sizes =
+      sizes_of(first.tail(start.size() - of_motion), model.tree().blocks().size(), end - begin);
   const auto integrated = [&](auto&& steps) -> VectorXd {
     steps.stop_at(scene_.discontinuities);
     return steps.advance_to(end);
   };
   VectorXd numbers;
   try {
-    numbers = integrated(ExplicitRungeKutta<VectorXd, decltype(field)>(field, begin, start,
-                                                                       by_explicit_steps, blocks));
+    ExplicitRungeKutta<VectorXd, decltype(field)> steps(field, begin, start, by_explicit_steps,
+                                                        blocks);
+    steps.set_sizes(sizes);
+    numbers = integrated(steps);
   } catch (const ComputationFailed&) {
     const auto jacobian = difference_jacobian<Eigen::Dynamic>(field);
     numbers = integrated(RadauSteps<VectorXd, decltype(field), decltype(jacobian)>(
