@@ -152,9 +152,6 @@ class Approximation final : public SceneSolver {
       double t, const JointState& state) const override {
     return exact_->conserved(t, state);
   }
-  void rates(double t, const Eigen::VectorXd& y, Eigen::VectorXd& result) const override {
-    exact_->rates(t, y, result);
-  }
   [[nodiscard]] SystemKinematics kinematics(double t, const JointState& state) const override {
     return exact_->kinematics(t, state);
   }

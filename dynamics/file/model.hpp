@@ -38,10 +38,8 @@ class SceneSolver {
   [[nodiscard]] virtual Terms equation_terms() const = 0;
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const = 0;
-  /// The field  y' = result  of the exact equations. y has the coordinates of all joints, then the
-  /// rates.
-  virtual void rates(double t, const Eigen::VectorXd& y, Eigen::VectorXd& result) const = 0;
-  /// The motion of all bodies and the reactions of their joints.
+  /// The motion of all bodies, the reactions of their joints, and the rates of the state by the
+  /// exact equations.
   [[nodiscard]] virtual SystemKinematics kinematics(double t, const JointState& state) const = 0;
   /// The pose of a body relative to the guide.
   [[nodiscard]] virtual Pose<double> pose(double t, const JointState& state, int body) const = 0;

@@ -59,10 +59,6 @@ class ModelOnGuide final : public SceneSolver {
     return result;
   }
 
-  void rates(double t, const Eigen::VectorXd& y, Eigen::VectorXd& result) const override {
-    system_.rates(t, y, result, workspace_);
-  }
-
   [[nodiscard]] SystemKinematics kinematics(double t, const JointState& state) const override {
     return kreisel::kinematics(system_, t, vector(state), workspace_,
                                gravitation_ ? &*gravitation_ : nullptr);

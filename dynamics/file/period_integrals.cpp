@@ -92,13 +92,10 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
     blocks.insert(blocks.end(), Equations::blocks.begin(), Equations::blocks.end());
   }
 
-  VectorXd y(of_motion);
-  VectorXd rates(of_motion);
   const auto field = [&](double t, const VectorXd& all, VectorXd& result) {
-    y = all.head(of_motion);
-    model.rates(t, y, rates);
-    result.head(of_motion) = rates;
-    const auto system = model.kinematics(t, {y.head(coordinates), y.tail(of_motion - coordinates)});
+    const auto system = model.kinematics(
+        t, {all.head(coordinates), all.segment(coordinates, of_motion - coordinates)});
+    result.head(of_motion) = system.rates;
     Index at = of_motion;
     for (const std::size_t i : group.sensors) {
       result.segment<Equations::count>(at) =

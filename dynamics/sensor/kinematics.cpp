@@ -11,6 +11,9 @@ SystemKinematics kinematics(const BodyTree& tree, const Surroundings& now, const
   reactions(tree, now, y, result.reactions, w);
   const double* const v = y.data() + tree.coordinates();
   const double* const dv = w.acceleration.data();
+  result.rates.resize(y.size());
+  set_coordinate_rates(tree, y.data(), v, result.rates.data());
+  result.rates.tail(tree.rates()) = w.acceleration;
   set_motions(tree, LinkMotion<>{}, v, dv, w);
   set_places(tree, v, w);
   set_rotor_places(tree, y.data(), v, w);

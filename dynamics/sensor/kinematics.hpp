@@ -34,7 +34,7 @@ struct GravityField {
 };
 
 /// The motion of all bodies of a system and the reactions of its joints at one moment: the input of
-/// sensors.
+/// sensors, and of what integrates their readings beside the motion.
 ///
 /// `guide` and `gravity` belong together: the guide's motion may be relative to a frame in free
 /// fall, and gravity is then the difference from that fall. `inertial_guide` is the motion of the
@@ -46,6 +46,7 @@ struct SystemKinematics {
   GravityField gravity = {};
   std::vector<BodyKinematics> bodies = {};
   JointReactions reactions = {};
+  Eigen::VectorXd rates = {};  ///< y' of the state: of all coordinates, then of the rates
 
   [[nodiscard]] const BodyKinematics& body(int i) const {
     return bodies[static_cast<std::size_t>(i)];

@@ -801,7 +801,11 @@ Sensor sensor(Random& r, const Scene& scene) {
   const bool integrates =
       result.kind == SensorKind::gyro || result.kind == SensorKind::accelerometer;
   const bool suits = integrates && scene.model.empty() && scene.t_end <= 5;
-  if (suits && r.chance(0.3)) result.period = scene.t_end / 8;
+  if (suits && r.chance(0.3)) {
+    result.increments = r.pick<std::string>({"true", "true", "\"uncompensated\""});
+  }
+  const bool is_sampled = !result.increments.empty() || (scene.model.empty() && r.chance(0.1));
+  if (is_sampled) result.period = scene.t_end / 8;
   return result;
 }
 

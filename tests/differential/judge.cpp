@@ -149,7 +149,7 @@ class Judge {
         const Part part{sensor.kind, begin, sensor.kind == SensorKind::attitude ? 4U : 3U,
                         is_point && k < 2, is_force};
         begin += part.count;
-        if (!(sensor.period > 0)) parts.push_back(part);  // increments are 0 at the start
+        if (sensor.increments.empty()) parts.push_back(part);  // increments are 0 at the start
       }
     }
     return parts;
@@ -190,10 +190,10 @@ class Judge {
     }
   }
 
-  /// Increments of gyros re-integrate to the attitude.
   void judge_increments() {
-    if (!answers_.increments_off || *answers_.increments_off <= 1e-8) return;
-    add("increments of a gyro are wrong", fmt::format("by {:.3g} rad", *answers_.increments_off));
+    if (!answers_.wrong_increments) return;
+    const auto& [sensor, off, size] = *answers_.wrong_increments;
+    add("increments are wrong", fmt::format("of {} by {:.3g} of {:.3g}", sensor, off, size));
   }
 
   void judge_invariants(const Answer& answer) {

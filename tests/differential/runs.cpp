@@ -1,7 +1,5 @@
 #include "runs.hpp"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -215,39 +213,6 @@ std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& mod
   return result;
 }
 
-/// The greatest difference between gyros' increments over their first period and the attitudes of
-/// the same run. Nothing without such gyros, or if the run has failed.
-std::optional<double> increments_off(const kreisel::SceneSolver& model,
-                                     const kreisel::SceneFile& file) {
-  std::optional<double> result;
-  kreisel::SensorReadings readings(file);
-  std::vector<double> row = readings.row(model, file.t_begin, start_of(file));
-  std::size_t begin = 0;
-  for (const kreisel::SceneSensor& sensor : file.sensors) {
-    const std::size_t at = begin;
-    for (const auto& part : parts(sensor, file.bodies)) begin += part.components.size();
-    const auto* const gyro = std::get_if<kreisel::Gyro>(&sensor.kind);
-    if (gyro == nullptr || !(sensor.period > 0)) continue;
-    kreisel::SolveOptions options = options_of(file);
-    options.output_times = {file.t_begin, file.t_begin + sensor.period};
-    options.tolerance = 1e-10;
-    options.method = kreisel::Method::automatic;
-    const auto run = model.solve(options, start_of(file));
-    if (!run.report.tolerance_kept || run.states.size() < 2) return result;
-    const kreisel::AttitudeSensor attitude{gyro->body, kreisel::SensorFrame::inertial()};
-    const auto turn = [&](std::size_t i) {
-      const Eigen::Quaterniond q(attitude(model.kinematics(run.times[i], run.states[i])));
-      return q * gyro->axes;
-    };
-    row = readings.row(model, file.t_begin, run.states[0]);
-    row = readings.row(model, run.times[1], run.states[1]);
-    const Eigen::Vector3d rotation(row.data() + at);
-    const Eigen::Quaterniond by(Eigen::AngleAxisd(rotation.norm(), rotation.stableNormalized()));
-    result = std::max(result.value_or(0), (turn(0) * by).angularDistance(turn(1)));
-  }
-  return result;
-}
-
 bool misread(const Scene& scene, const kreisel::SceneFile& file) {
   const bool other_method =
       !scene.method.empty() && file.method != kreisel::method_named(scene.method);
@@ -304,7 +269,7 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
     if (!scene.sensors.empty()) {
       begin("sensors");
       answers.readings = readings(scene, *model, file);
-      answers.increments_off = increments_off(*model, exact_file);
+      answers.wrong_increments = wrong_increments(*model, exact_file);
     }
     begin("sizes");
     answers.way = run_by(*model, scene, with_many_outputs(roughly(exact_file)), "auto", limits);

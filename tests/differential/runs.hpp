@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "increments.hpp"
 #include "reference.hpp"
 
 namespace differential {
@@ -62,9 +63,9 @@ struct Answers {
   std::vector<std::string> contradictions = {};  ///< in the list of the equation's terms
   std::vector<double> reactions = {};            ///< at the start, as in start_reactions()
   std::vector<double> readings = {};             ///< at the start, as in start_readings()
-  std::optional<double> increments_off = {};     ///< from the attitudes of the same run, rad
-  bool misread = false;                          ///< requests of the file besides the motion, read
-                                                 ///< wrongly
+  std::optional<WrongIncrements> wrong_increments = {};
+  bool misread = false;  ///< requests of the file besides the motion, read
+                         ///< wrongly
 };
 
 /// Runs the scene's text by the library, by each method in turn. `folder` contains its logs.

@@ -419,8 +419,8 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
   if (is_point && sensor.on != sensor.against) keys.emplace_back("axes", frame_name(sensor.on));
   if (sensor.period > 0) {
     keys.emplace_back("period", fmt::format("{}", sensor.period));
-    keys.emplace_back("increments", "true");
   }
+  if (!sensor.increments.empty()) keys.emplace_back("increments", sensor.increments);
   std::string result = "[[sensor]]\n";
   for (const auto& [key, value] : keys) result += key + " = " + value + "\n";
   return result;

@@ -189,8 +189,9 @@ struct Sensor {
   bool at_by_name = false;                   ///< as one of the body's points
   std::optional<Eigen::Vector4d> axes = {};  ///< w, x, y, z
   int against = guide_frame;
-  int on = guide_frame;  ///< axes of a point
-  double period = 0;     ///< of increments; 0: values
+  int on = guide_frame;         ///< axes of a point
+  double period = 0;            ///< 0: not given
+  std::string increments = {};  ///< "true" or "\"uncompensated\""; empty: values
 };
 
 struct Scene {
