@@ -58,7 +58,7 @@ class Period {
   }
   [[nodiscard]] const Trajectory<JointState>& run() const { return run_; }
 
-  /// What the increments of a sensor should be.
+  /// The right increments of a sensor.
   [[nodiscard]] Vector3<double> increment(const Gyro& gyro, SensorIncrements kind) const {
     if (kind == SensorIncrements::uncompensated) return integral(gyro);
     const Eigen::AngleAxisd turn(attitude(gyro, 0).conjugate() * attitude(gyro, now_.size() - 1));
