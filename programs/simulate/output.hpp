@@ -38,8 +38,8 @@ void require_finite(const Result& result);
 void print_summary(const Result& result);
 void print_json(const Result& result);
 
-/// Draws coordinates, rates, energy, error, reactions and the path of the last body's axis, each as
-/// SVG and PNG, and view.html, which shows the bodies moving.
+/// Draws coordinates, rates, sensors, energy, error, reactions and the path of the last body's axis,
+/// each as SVG and PNG, and view.html, which shows the bodies moving.
 ///
 /// Throws : kreisel::ComputationFailed if gnuplot is not installed or fails
 void draw(const Result& result, const std::filesystem::path& folder);

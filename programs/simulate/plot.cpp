@@ -88,6 +88,26 @@ Panels panels(const Result& result, const std::vector<std::vector<double>>& rows
   return all;
 }
 
+/// The readings of sensors: a panel for each part, or for each unit in it.
+std::vector<Panel> sensor_panels(const Result& result, const Samples& samples) {
+  std::vector<Panel> panels;
+  const auto rows = samples.readings();
+  std::size_t at = 0;
+  for (const kreisel::SceneSensor& sensor : result.scene.sensors) {
+    for (const kreisel::SensorPart& part : parts(sensor, result.scene.bodies)) {
+      const std::string what = part.name == "value" ? "" : ", " + part.name;
+      for (std::size_t begin = 0, end = 0; begin < part.components.size(); begin = end) {
+        while (end < part.components.size() && part.units[end] == part.units[begin]) ++end;
+        const std::vector<std::string> names(part.components.begin() + static_cast<long>(begin),
+                                             part.components.begin() + static_cast<long>(end));
+        panels.push_back({sensor.name + what, part.units[begin], curves(rows, at, names)});
+        at += names.size();
+      }
+    }
+  }
+  return panels;
+}
+
 std::vector<Panel> drifts(const Result& result, const Samples& samples) {
   std::vector<Panel> panels;
   const auto values = samples.all([&result](double t, const kreisel::JointState& state) {
@@ -333,6 +353,7 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   over("coordinates", "coordinates", all.coordinates);
   over("rates", "rates", all.rates);
   over("reactions", "reactions", all.reactions);
+  if (!result.scene.sensors.empty()) over("sensors", "sensors", sensor_panels(result, samples));
   over("invariants", "what should not change", drifts(result, samples));
   const Series errors = samples.of(result.run.errors);
   if (std::any_of(errors.begin(), errors.end(), [](double error) { return error > 0; })) {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
+
+#include <dynamics/file/readings.hpp>
 
 #include "output.hpp"
 
@@ -22,6 +25,19 @@ class Samples {
     std::vector<decltype(value(0.0, kreisel::JointState{}))> list;
     for (const std::size_t i : chosen_) {
       list.push_back(value(result_.run.times[i], result_.run.states[i]));
+    }
+    return list;
+  }
+
+  /// The readings of all sensors at each time. Those of a period need all rows.
+  [[nodiscard]] std::vector<std::vector<double>> readings() const {
+    kreisel::SensorReadings sensors(result_.scene);
+    std::vector<std::vector<double>> list;
+    for (std::size_t i = 0; i < result_.run.times.size(); ++i) {
+      const bool is_chosen = chosen_[list.size()] == i;
+      if (!is_chosen && !sensors.need_all_rows()) continue;
+      auto row = sensors.row(result_.model, result_.run.times[i], result_.run.states[i]);
+      if (is_chosen) list.push_back(std::move(row));
     }
     return list;
   }

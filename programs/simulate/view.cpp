@@ -135,6 +135,22 @@ std::vector<double> terms_row(const Result& result, double t, const kreisel::Joi
   return values;
 }
 
+/// Name, columns and units of each sensor.
+ordered_json sensors(const kreisel::SceneFile& scene) {
+  ordered_json list = ordered_json::array();
+  for (const kreisel::SceneSensor& sensor : scene.sensors) {
+    ordered_json shown = ordered_json::array();
+    for (const kreisel::SensorPart& part : parts(sensor, scene.bodies)) {
+      const std::string before = part.name == "value" ? "" : part.name + " ";
+      for (std::size_t k = 0; k < part.components.size(); ++k) {
+        shown.push_back({before + part.components[k], part.units[k]});
+      }
+    }
+    list.push_back({{"name", sensor.name}, {"shown", shown}});
+  }
+  return list;
+}
+
 /// JSON for a script element, which "</script" or "<!--" in a name would end.
 std::string text(const ordered_json& values) {
   std::string result;
@@ -157,6 +173,13 @@ void write_view(const Result& result, const std::filesystem::path& place) {
                       return rounded(shown_row(tree, row(result.model, t, state, false), scale),
                                      row_digits);
                     })}};
+  if (!result.scene.sensors.empty()) {
+    run["sensors"] = sensors(result.scene);
+    ordered_json& readings = run["readings"] = ordered_json::array();
+    for (const auto& reading : samples.readings()) {
+      readings.push_back(rounded(reading, row_digits));
+    }
+  }
   if (result.terms) {
     run["terms"] = samples.all([&](double t, const kreisel::JointState& state) {
       return rounded(terms_row(result, t, state, scale), arrow_digits);

@@ -219,6 +219,37 @@ BOOST_AUTO_TEST_CASE(increments_in_csv_and_json) {
   check_near(sensors.at("tooth").at("value"), {2, 2}, 1e-10);
 }
 
+// The page has the readings of the CSV file, to nine digits.
+BOOST_AUTO_TEST_CASE(in_pictures_and_on_the_page) {
+  const Scratch folder;
+  const std::string file = folder.write("s.toml", wheel).string();
+  const auto csv = (folder.path() / "s.csv").string();
+  const Outcome outcome =
+      test::run(simulate + " " + file + " --csv " + csv + " --plot " + folder.path().string());
+  BOOST_TEST_REQUIRE(outcome.status == 0, outcome.err);
+  const std::string picture = folder.read("sensors.svg");
+  for (const char* const title : {"gyro", "gyro, true", "point, position", "bearing, torque"}) {
+    BOOST_TEST(picture.find(std::string(">") + title + "<") != std::string::npos, title);
+  }
+  const std::string page = folder.read("view.html");
+  const std::string opening = R"(<script type="application/json" id="run">)";
+  const std::size_t begin = page.find(opening) + opening.size();
+  const json shown = test::parsed(page.substr(begin, page.find("</script>", begin) - begin));
+  BOOST_TEST(shown.at("sensors").at(0).at("name") == "gyro");
+  BOOST_TEST(shown.at("sensors").at(0).at("shown").at(3) == json({"true x", "rad/s"}));
+  const Table all = table(folder.read("s.csv"));
+  BOOST_TEST_REQUIRE(shown.at("readings").size() == all.rows.size());
+  for (std::size_t i = 0; i < all.rows.size(); ++i) {
+    const auto& row = all.rows[i];
+    const auto& found = shown.at("readings").at(i);
+    BOOST_TEST_REQUIRE(found.size() == row.size() - 3);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const double wanted = row[k + 3];
+      BOOST_TEST(std::abs(found.at(k).get<double>() - wanted) <= 5e-9 * std::abs(wanted));
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(stand_in_the_text) {
   const Scratch folder;
   const std::string file = folder.write("s.toml", wheel).string();

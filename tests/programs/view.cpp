@@ -67,6 +67,10 @@ joint = { kind = "free", position = [0.5, 0, 0], orientation = [0.3, -0.9, 0.1, 
 mass = 1
 inertia = [0.01, 0.02, 0.025]
 initial = { position = [0, 0.3, 1], velocity = [0.4, 0, 3], angular_velocity = [1, 4, -2] }
+[[sensor]]
+name = "probe"
+kind = "gyro"
+body = "wheel"
 [solve]
 t_end = 1
 output_step = 0.02
@@ -81,6 +85,7 @@ element("probe").textContent = JSON.stringify({
   poses: [poses(row_at(0)), poses(row_at(0.51))],
   painted: dots.filter((x, i) => i % 4 === 3 && x > 0).length / (dots.length / 4),
   words: element("bodies").textContent,
+  sensors: element("sensors").textContent,
   fetched: performance.getEntriesByType("resource").length,
 });
 </script>)";
@@ -125,6 +130,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   BOOST_TEST(found.at("painted").get<double>() > 0.01);
   BOOST_TEST(found.at("fetched") == 0);
   BOOST_TEST(found.at("words").get<std::string>().find("rad/s") != std::string::npos);
+  BOOST_TEST(found.at("sensors").get<std::string>().starts_with("probex"));
 
   const SceneFile scene = parse_scene(all_joints, file);
   auto [bodies, gravity, gravitation] = bodies_in_gravity(scene);
