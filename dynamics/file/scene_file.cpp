@@ -417,10 +417,7 @@ class SceneReader {
       set(start.coordinates.front(), motion(scene_.t_begin), type.coordinates[0].key);
     set(start.rates.front(), motion.derivative(scene_.t_begin, drive.is_rate ? 0 : 1),
         type.rates[0].key);
-    const int order = drive.is_rate ? 1 : 2;
-    if (!motion.is_constant()) {
-      body.acceleration = [motion, order](double t) { return motion.derivative(t, order); };
-    }
+    if (!motion.is_constant()) body.acceleration = TimeFunction(motion, drive.is_rate ? 1 : 2);
   }
 
   static void check_name(Section& section, std::size_t i, const std::vector<std::string>& names) {
@@ -714,7 +711,7 @@ class SceneReader {
   void set_speed(const Signal<double>& speed, BodyDescription& body) {
     note(speed);
     if (speed.is_constant() || !body.rotor) return;
-    body.rotor->acceleration = [speed](double t) { return speed.derivative(t, 1); };
+    body.rotor->acceleration = TimeFunction(speed, 1);
   }
 
   /// True if a rotor's mass is distributed symmetrically about its axis.

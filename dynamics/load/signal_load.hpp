@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include <dynamics/load/load.hpp>
+#include <dynamics/load/timed_load.hpp>
 #include <dynamics/signal/signal.hpp>
 
 namespace kreisel {
@@ -24,6 +25,10 @@ struct SignalLoad {
   [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> f = s.template on_body_axes<A>(force(s.t));
     return {{f, s.template on_body_axes<A>(torque(s.t)) + point.template cast<N>().cross(f)}};
+  }
+
+  [[nodiscard]] TimedLoad in_time() const requires(!std::is_same_v<A, Inertial>) {
+    return {std::is_same_v<A, Body>, force, torque, point};
   }
 };
 

@@ -33,8 +33,8 @@ struct GravityField {
   const BodyLoad* load = nullptr;                     ///< per kg, for a point mass; null: none
 };
 
-/// The motion of all bodies of a system and the reactions of its joints at one moment: the input of
-/// sensors, and of what integrates their readings beside the motion.
+/// The motion of all bodies of a system and the reactions of its joints at one moment. Sensors read
+/// it, and their readings are integrated from it.
 ///
 /// `guide` and `gravity` belong together: the guide's motion may be relative to a frame in free
 /// fall, and gravity is then the difference from that fall. `inertial_guide` is the motion of the

@@ -137,13 +137,13 @@ class BodySystem {
       const auto& asked = tree_.body(rotor.link.body).rotor->acceleration;
       if (!asked || t.derivatives().isZero(0)) continue;
       result[tree_.coordinates() + rotor.link.v].derivatives() =
-          detail::slope_in_time(asked, now) * t.derivatives();
+          asked.slope(now) * t.derivatives();
     }
 
     for (const BodyTree::Drive& drive : tree_.drives()) {
       if (t.derivatives().isZero(0)) continue;
       result[tree_.coordinates() + drive.rate].derivatives() =
-          detail::slope_in_time(drive.acceleration, now) * t.derivatives();
+          drive.acceleration.slope(now) * t.derivatives();
     }
 
     detail::MotionSpace<Dual> d(tree_);
@@ -179,8 +179,8 @@ class BodySystem {
     return rates(Dual(t), y);
   }
 
-  /// True if series() is available. The system then has an analytic guide, no loads, no prescribed
-  /// rotor accelerations and no free joint between two bodies.
+  /// True if series() is available. The guide is then analytic, as are all loads and prescribed
+  /// accelerations as functions of time, and no free joint is between two bodies.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
     return detail::has_series(guide_) && detail::knows_series(tree_);
   }

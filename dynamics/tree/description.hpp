@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/signal/signal.hpp>
 #include <dynamics/tree/joint/joint.hpp>
+#include <dynamics/tree/time_function.hpp>
 
 namespace kreisel {
 
@@ -67,7 +69,7 @@ struct Rotor {
   double torque = 0;
 
   /// Mode regulated: the prescribed phi''. The rate begins at the state's; null: 0.
-  std::function<double(double t)> acceleration = nullptr;
+  TimeFunction acceleration = {};
 };
 
 namespace detail {
@@ -123,6 +125,9 @@ class BodyLoad {
     if constexpr (requires { load.keeps_energy(); }) keeps_energy_ = load.keeps_energy();
     if constexpr (Load<L, detail::AlongOne>) along_ = load;
     if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
+    if constexpr (requires { load.in_time(); }) {
+      in_time_ = std::make_shared<const TimedLoad>(load.in_time());
+    }
   }
 
   [[nodiscard]] Force<Body> operator()(const LoadContext<>& s) const { return force_(s); }
@@ -153,12 +158,16 @@ class BodyLoad {
   }
   [[nodiscard]] bool ignores_spin() const { return ignores_spin_; }
 
+  /// The load as a function of time; null if it depends on more.
+  [[nodiscard]] const TimedLoad* in_time() const { return in_time_.get(); }
+
  private:
   std::function<Force<Body>(const LoadContext<>&)> force_;
   std::function<double(const LoadContext<>&)> potential_;
   std::function<Force<Body, detail::AlongOne>(const LoadContext<detail::AlongOne>&)> along_;
   bool keeps_energy_ = false;
   bool ignores_spin_ = false;
+  std::shared_ptr<const TimedLoad> in_time_ = nullptr;
 };
 
 /// One body of a system and the joint that holds it to its parent.
@@ -170,7 +179,7 @@ struct BodyDescription {
   std::vector<JointForce> forces = {};  ///< one for each rate of the joint, or none
   JointRule rule = JointRule::forces;
   /// Second derivative of the coordinate under JointRule::driven; empty: 0, a constant rate.
-  std::function<double(double t)> acceleration = {};
+  TimeFunction acceleration = {};
   std::vector<BodyLoad> loads = {};
   std::optional<Rotor> rotor = std::nullopt;
 };

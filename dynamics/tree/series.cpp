@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <dynamics/tree/check.hpp>
@@ -8,17 +9,27 @@
 
 namespace kreisel::detail {
 
-bool knows_series(const BodyTree& tree) {
-  if (!tree.loaded().empty() || !tree.drives().empty()) return false;
-  for (const BodyTree::TimedForce& force : tree.timed_forces()) {
-    if (!force.signal.is_analytic()) return false;
-  }
-  for (const RotorLink& rotor : tree.rotors()) {
-    if (tree.body(rotor.link.body).rotor->acceleration) return false;
-  }
-  return std::all_of(tree.links().begin(), tree.links().end(), [](const Link& link) {
-    return link.kind != LinkKind::free || link.parent == 0;
+/// True if a load on this body has a series. Rotors carry loads that depend on their position.
+[[nodiscard]] inline bool is_analytic(const BodyDescription& body) {
+  return !body.rotor && std::all_of(body.loads.begin(), body.loads.end(), [](const BodyLoad& load) {
+    return load.in_time() != nullptr && load.in_time()->is_analytic();
   });
+}
+
+bool knows_series(const BodyTree& tree) {
+  const auto all = [](const auto& list, const auto& is_so) {
+    return std::all_of(list.begin(), list.end(), is_so);
+  };
+  return all(tree.loaded(), [&](int body) { return is_analytic(tree.body(body)); }) &&
+         all(tree.drives(), [](const auto& drive) { return drive.acceleration.is_analytic(); }) &&
+         all(tree.timed_forces(), [](const auto& force) { return force.signal.is_analytic(); }) &&
+         all(tree.rotors(),
+             [&](const RotorLink& rotor) {
+               const TimeFunction& asked = tree.body(rotor.link.body).rotor->acceleration;
+               return !asked || asked.is_analytic();
+             }) &&
+         all(tree.links(),
+             [](const Link& link) { return link.kind != LinkKind::free || link.parent == 0; });
 }
 
 /// Axes whose z is the given axis.
@@ -85,7 +96,7 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
       felt_(std::move(felt)),
       workspace_(tree),
       left_(Eigen::VectorXd::Zero(tree.rates())),
-      still_(Eigen::VectorXd::Zero(tree.rates())),
+      given_(Eigen::VectorXd::Zero(tree.rates())),
       timed_(tree.timed_forces().size()),
       branches_(tree.links().size()),
       balls_(static_cast<std::size_t>(tree.balls())),
@@ -144,9 +155,21 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
     spin.q = rotor.link.q;
     spin.v = rotor.link.v;
     spin.regulated = rotor.regulated();
+    const TimeFunction& asked = tree.body(rotor.link.body).rotor->acceleration;
+    spin.is_steady = spin.regulated && !asked;
+    if (asked) prescribed_.push_back({rotor.link.v, asked, {}});
     spin.about = rotor.about;
     const Matrix3<double>& axes = branches_[spin.carrier].own_axes;
     spin.axis = vec4d(components(Vector3<double>(axes * rotor.link.axis)));
+  }
+  for (const BodyTree::Drive& drive : tree.drives()) {
+    prescribed_.push_back({drive.rate, drive.acceleration, {}});
+  }
+  for (const int body : tree.loaded()) {
+    const std::size_t link = tree.link(body);
+    for (const BodyLoad& load : tree.body(body).loads) {
+      loads_.emplace_back(*load.in_time(), link, branches_[link].own_axes);
+    }
   }
 }
 
@@ -156,9 +179,7 @@ void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::Mat
   c.col(1) = h * rate_;
   if (order == 1) return;
   const GuideSeries felt = felt_(t, h, order);
-  for (std::size_t j = 0; j < timed_.size(); ++j) {
-    tree_.timed_forces()[j].signal.coefficients(t, h, timed_[j]);
-  }
+  begin_functions_of_time(t, h, order);
   begin(c);
   prepare_response();
   const double* dv = rate_.data() + tree_.coordinates();
@@ -167,15 +188,31 @@ void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::Mat
     const auto at = static_cast<std::size_t>(k);
     prepare(k, h, felt, c);
     if (k > 0) {
-      go_outwards(at, weight, still_.data());
+      prescribe(at, given_.data());
+      go_outwards(at, weight, given_.data());
       go_inwards(at);
       set_left(k, c);
-      dv = response();
+      double* const found = response();
+      prescribe(at, found);
+      dv = found;
       for (int i = 0; i < tree_.rates(); ++i) c(tree_.coordinates() + i, k + 1) = weight * dv[i];
     }
     if (k + 1 == order) return;
     go_outwards(at, weight, dv);
     go_inwards(at);
+  }
+}
+
+void TreeSeries::begin_functions_of_time(double t, double h, int order) {
+  for (std::size_t j = 0; j < timed_.size(); ++j) {
+    tree_.timed_forces()[j].signal.coefficients(t, h, timed_[j]);
+  }
+  for (Prescribed& p : prescribed_) {
+    p.acceleration.coefficients(t, h, std::span(p.coefficients).first(std::size_t(order)));
+  }
+  for (TimedLoadSeries& load : loads_) {
+    const Matrix3<double>& own_axes = branches_[load.link()].own_axes;
+    load.begin(t, h, order, own_axes * workspace_.pose[load.link()].R.transpose());
   }
 }
 
@@ -233,6 +270,7 @@ void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
     b.gyroscopic_moment = b.gyroscopic.torque(b.next.next(), b.squares);
   }
   prepare_spins(k, weight, c);
+  prepare_loads(at, weight, felt);
 }
 
 void TreeSeries::prepare_guide(std::size_t k, double per_time, const GuideSeries& felt) {
@@ -357,6 +395,12 @@ void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
   }
 }
 
+void TreeSeries::prepare_loads(std::size_t k, double weight, const GuideSeries& felt) {
+  using Turning = std::span<const Components<double>>;
+  const Turning u = guide_rests_ ? Turning() : Turning(felt.u);
+  for (TimedLoadSeries& load : loads_) load.prepare(k, weight, branches_[load.link()].w, u);
+}
+
 void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     Branch& b = branches_[i];
@@ -396,9 +440,15 @@ void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
   for (const Spin& spin : spins_) {
     Branch& carrier = branches_[spin.carrier];
     carrier.moment += spin.gyroscopic_moment;
-    if (spin.regulated) continue;
-    const double acceleration = dv[spin.v] + along(spin.axis, carrier.dw.as_is);
+    if (spin.is_steady) continue;
+    double acceleration = dv[spin.v];
+    if (!spin.regulated) acceleration += along(spin.axis, carrier.dw.as_is);
     carrier.moment += spin.about * acceleration * spin.axis;
+  }
+  for (const TimedLoadSeries& load : loads_) {
+    Branch& b = branches_[load.link()];
+    b.force = b.force - load.force();
+    b.moment = b.moment - load.moment();
   }
 }
 
@@ -478,7 +528,7 @@ void TreeSeries::prepare_response() {
   }
 }
 
-const double* TreeSeries::response() {
+double* TreeSeries::response() {
   if (fours_ == 0) {
     respond(tree_, left_, workspace_);
     return workspace_.acceleration.data();

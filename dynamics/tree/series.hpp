@@ -9,14 +9,15 @@
 
 #include <dynamics/guide/series.hpp>
 #include <dynamics/rigid/packed_tensor.hpp>
+#include <dynamics/tree/timed_load_series.hpp>
 #include <dynamics/tree/workspace.hpp>
 #include <motor/api.hpp>
 #include <motor/simd.hpp>
 
 namespace kreisel::detail {
 
-/// True if the motion of a tree has a computable Taylor series. The tree then has no loads, no
-/// prescribed rotor accelerations and no free joint between two bodies.
+/// True if the motion of a tree has a computable Taylor series. Its loads and prescribed
+/// accelerations are then analytic functions of time, and no free joint is between two bodies.
 KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree);
 
 /// The Taylor series of the motion of a tree, for TaylorSteps.
@@ -158,6 +159,7 @@ class KREISEL_API TreeSeries {
     int q = 0;
     int v = 0;
     bool regulated = false;
+    bool is_steady = false;  ///< regulated at a constant speed
     double about = 0;
     Vec4d axis;
     Vec4d gyroscopic_moment;  ///< of order k
@@ -165,7 +167,16 @@ class KREISEL_API TreeSeries {
     Of<Vec4d> aside;          ///< w x e
   };
 
+  /// A rate whose derivative is prescribed.
+  struct Prescribed {
+    int rate;
+    const TimeFunction& acceleration;
+    Of<double> coefficients;
+  };
+
   using Columns = Eigen::Ref<Eigen::MatrixXd>;
+
+  void begin_functions_of_time(double t, double h, int order);
 
   void begin(const Columns& c);
 
@@ -177,6 +188,12 @@ class KREISEL_API TreeSeries {
   void prepare_ball(Branch& b, int k, double weight, Columns& c);
   void prepare_floating(Branch& b, int k, double weight, Columns& c);
   void prepare_spins(int k, double weight, Columns& c);
+  void prepare_loads(std::size_t k, double weight, const GuideSeries& felt);
+
+  /// Sets the prescribed ones of the accelerations dv to their coefficients of order k.
+  void prescribe(std::size_t k, double* dv) const {
+    for (const Prescribed& p : prescribed_) dv[p.rate] = p.coefficients[k];
+  }
 
   /// Compute the motion of order k with the accelerations dv, and its inertia forces.
   void go_outwards(std::size_t k, double weight, const double* dv);
@@ -187,19 +204,22 @@ class KREISEL_API TreeSeries {
 
   /// Solve  M dv = left_; prepare_response() inverts M for small trees.
   void prepare_response();
-  const double* response();
+  double* response();
 
   const BodyTree& tree_;
   bool guide_rests_;
   Field field_;
   Felt felt_;
   BodyWorkspace workspace_;
-  Eigen::VectorXd y_, rate_, left_, still_;
+  Eigen::VectorXd y_, rate_, left_;
+  Eigen::VectorXd given_;          ///< accelerations: the prescribed ones, else 0
   std::vector<Of<double>> timed_;  ///< joint forces that change with time
   std::vector<Branch> branches_;
   std::vector<Slider> sliders_;
   std::vector<Ball> balls_;
   std::vector<Spin> spins_;
+  std::vector<Prescribed> prescribed_;
+  std::vector<TimedLoadSeries> loads_;
   Of<Mat3dByDiagonals> guide_gamma_;
 
   /// The most rates for which the mass matrix is inverted; for more, linear time is faster.

@@ -47,7 +47,7 @@ class KREISEL_API BodyTree {
   /// A rate whose derivative is prescribed.
   struct Drive {
     int rate;
-    std::function<double(double t)> acceleration;
+    TimeFunction acceleration;
   };
   [[nodiscard]] const std::vector<Drive>& drives() const { return drives_; }
   /// The coordinate of each joint force's spring.

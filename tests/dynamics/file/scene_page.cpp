@@ -625,7 +625,14 @@ BOOST_AUTO_TEST_CASE(series_are_used_if_they_are_known) {
   BOOST_TEST(method(one(swung, weight)) == "taylor");
   BOOST_TEST(method(one(swung, weight + turning)) == "taylor");
   BOOST_TEST(method(one(swung, second + hinge + weight)) == "taylor");
-  BOOST_TEST(method(one(swung + "load = { torque = [0, 1, 0] }\n", weight)) != "taylor");
+  for (const std::string load :
+       {"torque = [0, 1, 0]", "force = { terms = [{ amplitude = [1, 0, 0], frequency = 3 }] }"}) {
+    BOOST_TEST(method(one(swung + "load = { " + load + " }\n", weight)) == "taylor");
+  }
+  for (const std::string load :
+       {"torque = [0, 1, 0], axes = \"inertial\"", "kind = \"drag\", linear = [1, 1, 1]"}) {
+    BOOST_TEST(method(one(swung + "load = { " + load + " }\n", weight)) != "taylor", load);
+  }
   BOOST_TEST(method(one(swung, second + floating + weight)) != "taylor");
   const std::string wheel = second + "joint = { kind = \"revolute\", axis = [0, 1, 0] }\n";
   for (const std::string mode : {"\"free\", speed = 9", "\"torque\", torque = 0.1"}) {

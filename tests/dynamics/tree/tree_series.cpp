@@ -3,11 +3,13 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/load/signal_load.hpp>
 #include <dynamics/pendulum/pendulum_series.hpp>
 #include <dynamics/tree/body_system.hpp>
 
@@ -50,6 +52,49 @@ BOOST_DATA_TEST_CASE(agrees_for_trees_on_all_guides, data::xrange(120), seed) {
   hold_tree("on a turntable, gravity at rest", BodySystem(turntable, bodies, resting), number);
   const HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}};
   hold_tree("on a harmonic guide", BodySystem(HarmonicFrame<>(u, {}, 0, 2), bodies, resting),
+            number);
+}
+
+/// A random function of time.
+template <class Value>
+Signal<Value> random_signal(const std::function<Value()>& value, Sample& sample) {
+  return {value(), value(), {{value(), sample.uniform(0.5, 2), sample.uniform(-1, 1)}}};
+}
+
+/// A random tree with loads, drives and rotors that follow functions of time.
+std::vector<BodyDescription> tree_in_time(std::uint64_t seed) {
+  Sample sample(seed + 2000);
+  const std::function number = [&sample] { return sample.uniform(-1, 1); };
+  const std::function vector = [&sample]() -> Vector3<double> { return 2 * sample.direction(); };
+  auto bodies = test::random_tree(seed);
+  for (BodyDescription& body : bodies) {
+    if (body.rotor && body.rotor->mode == RotorMode::regulated) {
+      body.rotor->acceleration = TimeFunction(random_signal<double>(number, sample), 1);
+    }
+    if (body.rotor) continue;
+    const bool is_single = joint_type(body.joint.kind).rate_count() == 1;
+    if (is_single && body.rule == JointRule::driven) {
+      body.acceleration = TimeFunction(random_signal<double>(number, sample), 2);
+    }
+    const auto force = random_signal(vector, sample);
+    const auto torque = random_signal(vector, sample);
+    if (sample.once_in(2)) body.loads.emplace_back(SignalLoad<Guide>{force, torque, vector()});
+    if (sample.once_in(3)) body.loads.emplace_back(SignalLoad<Body>{torque, force, vector()});
+    if (sample.once_in(3))
+      body.loads.emplace_back(ConstantLoad<Guide>{vector(), vector(), vector()});
+  }
+  return bodies;
+}
+
+BOOST_DATA_TEST_CASE(agrees_for_functions_of_time, data::xrange(120), seed) {
+  const auto number = static_cast<std::uint64_t>(seed);
+  const auto bodies = tree_in_time(number);
+  const UniformGravity<Guide> gravity{{1, 2, -9}};
+  hold_tree("at rest", BodySystem(RestingFrame<>{}, bodies, gravity), number);
+  hold_tree("on a turntable",
+            BodySystem(RotatingFrame<>{{0.3, -0.8, 0.5}, {1, 2, 3}}, bodies, gravity), number);
+  const HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}};
+  hold_tree("on a harmonic guide", BodySystem(HarmonicFrame<>(u, {}, 0, 2), bodies, gravity),
             number);
 }
 
@@ -115,6 +160,13 @@ BOOST_AUTO_TEST_CASE(is_unavailable_for_other_loads) {
   BodyDescription loaded = carrier;
   loaded.loads = {[](const LoadContext<>&) { return Force<Body>{}; }};
   BOOST_TEST(!knows({loaded}));
+  loaded.loads = {SignalLoad<Inertial>{}};
+  BOOST_TEST(!knows({loaded}));
+  loaded.loads = {SignalLoad<Guide>{}};
+  BOOST_TEST(knows({loaded}));
+  Polynomials<Vector3<double>> spline{{0, 1}, 2, 1, {{0, 0, 0}, {0, 0, 0}}};
+  loaded.loads = {SignalLoad<Guide>{Signal<Vector3<double>>::polynomials(spline)}};
+  BOOST_TEST(!knows({loaded}));
 
   BodyDescription beside = carrier;
   beside.name = "beside";
@@ -129,6 +181,8 @@ BOOST_AUTO_TEST_CASE(is_unavailable_for_other_loads) {
   BOOST_TEST(knows({carrier, wheel}));
   wheel.rotor->acceleration = [](double t) { return t; };
   BOOST_TEST(!knows({carrier, wheel}));
+  wheel.rotor->acceleration = Signal<double>(0, 1, {});
+  BOOST_TEST(knows({carrier, wheel}));
 }
 
 BOOST_AUTO_TEST_SUITE_END()
