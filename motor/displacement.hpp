@@ -301,7 +301,8 @@ template <class S>
     return S(1) / S(3) - p / S(5) * (S(1) - p * (S(5) / S(7)));
   } else {
     const S tangent = sqrt(p);
-    return (S(1) - atan2(tangent, S(1)) / tangent) / p;
+    const S arc = atan2(tangent, S(1));  // Eigen's dual numbers return another type
+    return (S(1) - arc / tangent) / p;
   }
 }
 

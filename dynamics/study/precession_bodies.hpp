@@ -87,7 +87,7 @@ class PrecessionBodies final : public PrecessionModel {
     const RotorMatrices m = matrices(t, position, zero);
     GyroForces f{m.A_eff, m.G_R, Eigen::MatrixXd::Zero(n, n), m.Q - m.c};
     const BodyTree& tree = system_.tree();
-    if (tree.loaded().empty()) {
+    if (tree.loaded().empty() && tree.elements().empty()) {
       for (Eigen::Index k = 0; k < n; ++k) {
         const int rate = rates_[static_cast<std::size_t>(k)];
         f.D(k, k) = tree.forces()[static_cast<std::size_t>(rate)].damping;

@@ -12,6 +12,7 @@
 #include <dynamics/model/scene.hpp>
 #include <dynamics/processor.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
+#include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/passes.hpp>
 #include <dynamics/tree/series.hpp>
@@ -19,7 +20,7 @@
 namespace kreisel {
 
 /// A tree of rigid bodies on a moving guide. Any number of bodies are joined to the guide or to
-/// each other, with springs, dampers, drives, locks and loads.
+/// each other, with springs, dampers, drives, locks, loads and elements.
 ///
 /// The guide's motion enters once, by velocity and acceleration at the root of the tree. Its cost
 /// does not depend on the number of bodies; a guide at rest costs nothing.
@@ -48,8 +49,9 @@ class BodySystem {
     Vector rates;
   };
 
-  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {})
-      : guide_(std::move(guide)), tree_(std::move(bodies)), gravity_(gravity) {
+  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {},
+             std::vector<Element> elements = {})
+      : guide_(std::move(guide)), tree_(std::move(bodies), std::move(elements)), gravity_(gravity) {
     detail::KREISEL_SAME_MARCH();
     detail::check_gravity(gravity_);
   }
@@ -136,8 +138,7 @@ class BodySystem {
     for (const detail::RotorLink& rotor : tree_.rotors()) {
       const auto& asked = tree_.body(rotor.link.body).rotor->acceleration;
       if (!asked || t.derivatives().isZero(0)) continue;
-      result[tree_.coordinates() + rotor.link.v].derivatives() =
-          asked.slope(now) * t.derivatives();
+      result[tree_.coordinates() + rotor.link.v].derivatives() = asked.slope(now) * t.derivatives();
     }
 
     for (const BodyTree::Drive& drive : tree_.drives()) {
@@ -151,6 +152,7 @@ class BodySystem {
     detail::set_poses_and_motions(tree_, detail::root(guide, gravity_, detail::is_resting<M>),
                                   y.data(), v, dv, d);
     detail::take_off_loads(tree_, t, guide, v, d);
+    detail::take_off_elements(tree_, v, d);
     detail::add_rotor_forces_at(tree_, v, dv, d);
     detail::sum_inwards(tree_, d);
     Duals taken(tree_.rates());
@@ -158,6 +160,7 @@ class BodySystem {
     detail::project_rotors(tree_, dv, d, taken.data());
     detail::set_joint_forces(tree_, y.data(), v, d);
     detail::add_timed_forces(tree_, t, d);
+    detail::add_couplings(tree_, y.data(), v, d.joint_force);
 
     Vector left(tree_.rates());
     for (Eigen::Index k = 0; k < Dual().derivatives().size(); ++k) {
@@ -180,7 +183,8 @@ class BodySystem {
   }
 
   /// True if series() is available. The guide is then analytic, as are all loads and prescribed
-  /// accelerations as functions of time, and no free joint is between two bodies.
+  /// accelerations as functions of time; no elements except couplings, and no free joint between
+  /// two bodies.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
     return detail::has_series(guide_) && detail::knows_series(tree_);
   }
@@ -194,8 +198,9 @@ class BodySystem {
     return {tree_, detail::is_resting<M>, field, felt_at_origin()};
   }
 
-  /// True if a spring or damper may be so stiff that it limits the step.
+  /// True if a spring, a damper or an element may be so stiff that it limits the step.
   [[nodiscard]] bool may_be_stiff() const {
+    if (!tree_.elements().empty()) return true;
     const auto& forces = tree_.forces();
     return std::any_of(forces.begin(), forces.end(),
                        [](const JointForce& f) { return f.stiffness != 0 || f.damping != 0; });
@@ -233,6 +238,17 @@ class BodySystem {
     detail::reaction_parts(tree_, at(t), y, result, w);
   }
 
+  /// The forces of all elements in their order: force and torque on the SECOND body about its end,
+  /// on the first body's axes. The force of a coupling is that on the second joint's body, about
+  /// its origin. No element depends on time itself.
+  ///
+  /// Units  : N, N m
+  void element_forces([[maybe_unused]] double t, const Vector& y, std::vector<Motor<>>& result,
+                      BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    detail::element_forces(tree_, y, result, w);
+  }
+
   /// The situation of a body, pose and motion: the argument of a Load.
   [[nodiscard]] LoadContext<> situation(double t, const Vector& y, int body,
                                         BodyWorkspace& w) const {
@@ -261,10 +277,11 @@ class BodySystem {
 
   /// Invariants of a motion, by name, as far as they follow from the description:
   ///
-  ///   energy            guide at rest, all loads conserve it (see Load), no damper; without the
-  ///                     energy of the spin if rotors are regulated
+  ///   energy            guide at rest, all loads and elements conserve it (see Load), no damper;
+  ///                     without the energy of the spin if rotors are regulated
   ///   linear and angular momentum   guide at rest, along the rates of root joints without forces:
-  ///                     about the joint of a spherical root, along gravity if there is one
+  ///                     about the joint of a spherical root, along gravity if there is one; of
+  ///                     free bodies with elements between them together
   ///   cyclic momentum   C (phi' + e.w) of every free rotor, on any guide
   ///
   /// Source : paper 000 (4), and (9): T2 + V = const for L = const

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/tree/balance.hpp>
+#include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/joint/list.hpp>
 #include <dynamics/tree/loads.hpp>
 
@@ -80,7 +81,7 @@ inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const doubl
                                          const Gravity& gravity, const double* q, const double* v,
                                          const BodyWorkspace& w) {
   BodyBalance sum;
-  sum.potential_energy = joint_energy(tree, q);
+  sum.potential_energy = joint_energy(tree, q) + element_energy(tree, q, w);
   for (std::size_t link = 0; link < tree.links().size(); ++link) {
     const Inertia<>& T = link == 0 ? tree.links()[0].inertia : w.inertia[link];
     const auto& [x, V_rel] = w.place[link];
@@ -110,6 +111,11 @@ enum class EnergyLaw {
 /// True if no force of a tree changes the energy on a guide at rest. Motors of regulated rotors are
 /// not counted.
 [[nodiscard]] inline bool keeps_energy(const BodyTree& tree) {
+  const auto& elements = tree.elements();
+  const bool loses = !std::all_of(elements.begin(), elements.end(), [](const Element& element) {
+    return kreisel::keeps_energy(element);
+  });
+  if (loses) return false;
   return std::none_of(tree.bodies().begin(), tree.bodies().end(), [](const BodyDescription& b) {
     if (b.rotor && b.rotor->mode == RotorMode::regulated) return false;
     const bool has_attitude = joint_type(b.joint.kind).has_attitude();
@@ -140,9 +146,10 @@ enum class EnergyLaw {
 }
 
 /// A part of a tree that moves as one system: a link whose joint is at rest in the guide, and all
-/// links outward of it. Its external forces are loads, gravity and that joint's force.
+/// links outward of it. Its external forces are loads, gravity, elements and that joint's force.
+/// Parts with an element between them are one part with several roots.
 struct RootedPart {
-  std::size_t root = 0;
+  std::vector<std::size_t> roots = {};
   Motor<> momentum = {};  ///< on guide axes about the guide's origin
   bool is_loaded = false;
   bool has_weight = false;
@@ -157,16 +164,48 @@ struct RootedPart {
     part[i] = part[static_cast<std::size_t>(link.parent)];
     if (part[i] >= 0 || !link.moves()) continue;
     part[i] = static_cast<int>(parts.size());
-    parts.push_back({.root = i});
+    parts.push_back({.roots = {i}});
   }
   return part;
+}
+
+/// Joins the parts that have elements between them, and marks those with elements to the guide. A
+/// joined part has no roots.
+inline void join_parts(const BodyTree& tree, std::vector<int>& part,
+                       std::vector<RootedPart>& parts) {
+  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
+    const ElementPlace& place = tree.element_places()[k];
+    if (std::holds_alternative<CouplingElement>(tree.elements()[k])) {
+      for (const std::size_t slot : place.slot) {
+        const Link& link = tree.links()[slot];
+        if (part[slot] >= 0 && part[static_cast<std::size_t>(link.parent)] < 0) {
+          parts[static_cast<std::size_t>(part[slot])].is_loaded = true;
+        }
+      }
+      continue;
+    }
+    const int first = part[place.slot[0]];
+    const int second = part[place.slot[1]];
+    if (first == second) continue;
+    if (first < 0 || second < 0) {
+      parts[static_cast<std::size_t>(std::max(first, second))].is_loaded = true;
+      continue;
+    }
+    RootedPart& whole = parts[static_cast<std::size_t>(first)];
+    RootedPart& joined = parts[static_cast<std::size_t>(second)];
+    whole.roots.insert(whole.roots.end(), joined.roots.begin(), joined.roots.end());
+    whole.is_loaded = whole.is_loaded || joined.is_loaded;
+    joined = {};
+    std::replace(part.begin(), part.end(), second, first);
+  }
 }
 
 /// The parts of a tree on a guide at rest, with their momenta. Needs poses and positions in w.
 [[nodiscard]] inline std::vector<RootedPart> rooted_parts(const BodyTree& tree, const double* v,
                                                           const BodyWorkspace& w) {
   std::vector<RootedPart> parts;
-  const std::vector<int> part = part_of_links(tree, parts);
+  std::vector<int> part = part_of_links(tree, parts);
+  join_parts(tree, part, parts);
   const auto with = [&](std::size_t link) {
     return part[link] < 0 ? nullptr : &parts[static_cast<std::size_t>(part[link])];
   };
@@ -190,6 +229,7 @@ struct RootedPart {
     RootedPart* const own = with(is_rotor(tree, slot) ? carrier(rotor(tree, slot)) : slot);
     if (own != nullptr) own->is_loaded = true;
   }
+  std::erase_if(parts, [](const RootedPart& own) { return own.roots.empty(); });
   return parts;
 }
 
@@ -200,6 +240,25 @@ struct RootedPart {
   return std::all_of(first, first + rate_count(link.kind), [](const JointForce& f) {
     return f.stiffness == 0 && f.damping == 0 && f.constant == 0 && !f.in_time;
   });
+}
+
+/// True if the roots of a part move freely; several of them must be free joints.
+[[nodiscard]] inline bool moves_freely(const BodyTree& tree, const RootedPart& part) {
+  return std::all_of(part.roots.begin(), part.roots.end(), [&](std::size_t root) {
+    const Link& link = tree.links()[root];
+    return moves_freely(tree, link) && (part.roots.size() == 1 || link.kind == LinkKind::free);
+  });
+}
+
+/// The bodies at the roots of a part:  'a' and 'b'
+[[nodiscard]] inline std::string names(const BodyTree& tree, const RootedPart& part) {
+  std::string result;
+  for (const std::size_t root : part.roots) {
+    result += result.empty() ? "'" : " and '";
+    result += tree.body(tree.links()[root].body).name;
+    result += "'";
+  }
+  return result;
 }
 
 using Invariants = std::vector<std::pair<std::string, double>>;
@@ -213,7 +272,8 @@ using Invariants = std::vector<std::pair<std::string, double>>;
 ///   prismatic  linear momentum along the axis
 ///   screw      angular momentum about the axis and pitch times the linear momentum along it
 ///
-/// With gravity only the linear momentum normal to it and the angular momentum along it.
+/// With gravity only the linear momentum normal to it and the angular momentum along it. Several
+/// roots have conserved momenta only if all are free.
 ///
 /// gravity : on guide axes
 /// only    : no other part moves, so names need not include the body
@@ -221,15 +281,15 @@ inline void add_kept_momenta(const BodyTree& tree, const RootedPart& part,
                              const Vector3<double>& gravity, bool only, const BodyWorkspace& w,
                              Invariants& result) {
   constexpr double rounding = 1e-15;  // of axes given in decimals
-  const Link& link = tree.links()[part.root];
-  if (part.is_loaded || !moves_freely(tree, link)) return;
+  const Link& link = tree.links()[part.roots.front()];
+  if (part.is_loaded || !moves_freely(tree, part)) return;
   const Vector3<double> g = part.has_weight ? gravity : Vector3<double>(Vector3<double>::Zero());
   const double size = std::sqrt(dot(g, g));
-  const std::string body = "'" + tree.body(link.body).name + "'";
+  const std::string body = names(tree, part);
   const std::string whose = only ? "" : " of " + body;
   const Vector3<double>& p = part.momentum.resultant;
   Vector3<double> L = part.momentum.moment;
-  if (link.kind != LinkKind::free) L -= cross(w.place[part.root].x, p);
+  if (link.kind != LinkKind::free) L -= cross(w.place[part.roots.front()].x, p);
   static constexpr const char* axes[] = {" x", " y", " z"};
   if (link.has_one_rate()) {
     const Vector3<double> axis =

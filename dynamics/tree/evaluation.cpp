@@ -9,6 +9,7 @@
 #include <dynamics/tree/accelerations.hpp>
 #include <dynamics/tree/check.hpp>
 #include <dynamics/tree/conservation.hpp>
+#include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/mass_matrix.hpp>
 #include <dynamics/tree/passes.hpp>
@@ -115,6 +116,7 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
   if (tree.is_acted_on()) {
     take_off_loads(tree, now.t, now.guide, v, w);
     add_timed_forces(tree, now.t, w);
+    apply_elements(tree, y.data(), v, w);
   }
   if (extra.size()) w.joint_force += extra;
   ask_spin_up(tree, now.t, w);
@@ -144,6 +146,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   result.resize(tree.rates());
   set_poses_and_motions(tree, root(now), y.data(), v, dv.size() ? dv.data() : nullptr, w);
   take_off_loads(tree, now.t, now.guide, v, w);
+  take_off_elements(tree, v, w);
   const double* given = dv.size() ? dv.data() : w.still.data();
   add_rotor_forces_at(tree, v, given, w);
   sum_inwards(tree, w);
@@ -151,6 +154,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   project_rotors(tree, given, w, result.data());
   set_joint_forces(tree, y.data(), v, w);
   add_timed_forces(tree, now.t, w);
+  add_couplings(tree, y.data(), v, w.joint_force);
   result -= w.joint_force;
 }
 
@@ -182,11 +186,13 @@ void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::Vecto
 /// Computes the reactions to one group of causes. Needs the joints eliminated and w.joint_force
 /// set.
 inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double* v,
-                   const double* driven, const Surroundings* loads_at, const Eigen::VectorXd& y,
+                   const double* driven, const Surroundings* forces_at, const Eigen::VectorXd& y,
                    BodyWorkspace& w) {
   const auto set_forces = [&](const double* dv) {
     set_motions(tree, root, v, dv, w);
-    if (loads_at) take_off_loads(tree, loads_at->t, loads_at->guide, rates_of(tree, y), w);
+    if (!forces_at) return;
+    take_off_loads(tree, forces_at->t, forces_at->guide, rates_of(tree, y), w);
+    take_off_elements(tree, rates_of(tree, y), w);
   };
   set_forces(driven);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
@@ -229,8 +235,17 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   note(&ReactionParts::gravity);
   set_joint_forces(tree, y.data(), v, w);
   add_timed_forces(tree, now.t, w);
+  add_couplings(tree, y.data(), v, w.joint_force);
   answer(tree, {}, still, nullptr, &now, y, w);
   note(&ReactionParts::forces);
+}
+
+void element_forces(const BodyTree& tree, const Eigen::VectorXd& y, std::vector<Motor<>>& result,
+                    BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  set_poses(tree, y.data(), w);
+  set_places(tree, v, w);
+  element_forces(tree, y.data(), v, w, result);
 }
 
 LoadContext<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,

@@ -77,6 +77,9 @@ KREISEL_API void reaction_parts(const BodyTree& tree, const Surroundings& now,
                                 const Eigen::VectorXd& y, std::vector<ReactionParts>& result,
                                 BodyWorkspace& w);
 
+KREISEL_API void element_forces(const BodyTree& tree, const Eigen::VectorXd& y,
+                                std::vector<Motor<>>& result, BodyWorkspace& w);
+
 KREISEL_API [[nodiscard]] LoadContext<> situation(const BodyTree& tree, const Surroundings& now,
                                                   const Eigen::VectorXd& y, int body,
                                                   BodyWorkspace& w);

@@ -18,7 +18,7 @@ struct ReactionParts {
   Force<Body> spin;     ///< V' alone: the reaction on a guide at rest, without any force
   Force<Body> guide;    ///< F, oF and their Coriolis terms with V'
   Force<Body> gravity;  ///< weight in a uniform field
-  Force<Body> forces;   ///< springs, dampers and constant forces of joints, loads on bodies
+  Force<Body> forces;   ///< springs, dampers, constant forces of joints; loads; elements
 
   [[nodiscard]] Force<Body> total() const { return spin + guide + gravity + forces; }
 };

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <dynamics/tree/check.hpp>
+#include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/series.hpp>
 
@@ -20,7 +21,11 @@ bool knows_series(const BodyTree& tree) {
   const auto all = [](const auto& list, const auto& is_so) {
     return std::all_of(list.begin(), list.end(), is_so);
   };
-  return all(tree.loaded(), [&](int body) { return is_analytic(tree.body(body)); }) &&
+  return all(tree.elements(),
+             [](const Element& element) {
+               return std::holds_alternative<CouplingElement>(element);
+             }) &&
+         all(tree.loaded(), [&](int body) { return is_analytic(tree.body(body)); }) &&
          all(tree.drives(), [](const auto& drive) { return drive.acceleration.is_analytic(); }) &&
          all(tree.timed_forces(), [](const auto& force) { return force.signal.is_analytic(); }) &&
          all(tree.rotors(),
@@ -491,9 +496,7 @@ void TreeSeries::set_left(int k, const Columns& c) {
     left_[i] = -f.stiffness * c(tree_.coordinate_of()[number], k) -
                f.damping * c(tree_.coordinates() + i, k);
   }
-  for (std::size_t j = 0; j < timed_.size(); ++j) {
-    left_[tree_.timed_forces()[j].rate] += timed_[j][static_cast<std::size_t>(k)];
-  }
+  if (tree_.is_acted_on()) add_further_forces(k, c);
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     const Branch& b = branches_[i];
     double* left = left_.data() + b.rates;
@@ -511,6 +514,14 @@ void TreeSeries::set_left(int k, const Columns& c) {
   for (const Spin& spin : spins_) {
     left_[spin.v] -= spin.about * along(spin.axis, branches_[spin.carrier].dw.as_is);
   }
+}
+
+void TreeSeries::add_further_forces(int k, const Columns& c) {
+  for (std::size_t j = 0; j < timed_.size(); ++j) {
+    left_[tree_.timed_forces()[j].rate] += timed_[j][static_cast<std::size_t>(k)];
+  }
+  const double* const now = c.col(k).data();
+  add_couplings(tree_, now, now + tree_.coordinates(), left_);
 }
 
 void TreeSeries::prepare_response() {

@@ -17,7 +17,8 @@
 namespace kreisel::detail {
 
 /// True if the motion of a tree has a computable Taylor series. Its loads and prescribed
-/// accelerations are then analytic functions of time, and no free joint is between two bodies.
+/// accelerations are then analytic functions of time. It has no elements except couplings, and no
+/// free joint between two bodies.
 KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree);
 
 /// The Taylor series of the motion of a tree, for TaylorSteps.
@@ -201,6 +202,8 @@ class KREISEL_API TreeSeries {
 
   /// Sets left_ to the joint forces of order k less the inertia forces.
   void set_left(int k, const Columns& c);
+  /// Adds the joint forces that change with time, and the couplings.
+  void add_further_forces(int k, const Columns& c);
 
   /// Solve  M dv = left_; prepare_response() inverts M for small trees.
   void prepare_response();

@@ -26,6 +26,7 @@ namespace kreisel::detail {
   const std::string of_guide = guide_rests ? "the guide rests" : "";
   const bool has_rotors = !tree.rotors().empty();
   const bool has_loads = !tree.loaded().empty();
+  const bool has_elements = !tree.elements().empty();
   const bool falls = !std::holds_alternative<std::monostate>(gravity);
   const char* const field = std::holds_alternative<UniformGravity<Inertial>>(gravity)
                                 ? UniformGravity<Inertial>::kind
@@ -50,6 +51,7 @@ namespace kreisel::detail {
   in_joints("constant forces in joints", &JointForce::constant);
   if (!tree.timed_forces().empty()) list.add("load", "forces in joints that change with time");
   list.add("load", "loads on bodies", has_loads, has_loads ? "" : "none is given");
+  list.add("load", "elements between bodies", has_elements, has_elements ? "" : "none is given");
   list.add("load", "R_ij of the joints", false, "eliminated; reactions() has them");
   return list;
 }

@@ -46,7 +46,8 @@ BodyTree& BodyTree::operator=(const BodyTree&) = default;
 BodyTree& BodyTree::operator=(BodyTree&&) noexcept = default;
 BodyTree::~BodyTree() = default;
 
-BodyTree::BodyTree(std::vector<BodyDescription> bodies) : bodies_(std::move(bodies)) {
+BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements)
+    : bodies_(std::move(bodies)), elements_(std::move(elements)) {
   links_.emplace_back();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const std::string& name = bodies_[i].name;
@@ -66,6 +67,7 @@ BodyTree::BodyTree(std::vector<BodyDescription> bodies) : bodies_(std::move(bodi
   for (std::size_t k = 0; k < rotors_.size(); ++k) {
     last_link_[static_cast<std::size_t>(rotors_[k].link.body)] = rotor_slot(k);
   }
+  for (const Element& element : elements_) connect(element);
 }
 
 int BodyTree::index(const std::string& name) const {

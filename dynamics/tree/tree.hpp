@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include <dynamics/tree/element/element.hpp>
 #include <dynamics/tree/link.hpp>
 #include <motor/api.hpp>
 
@@ -18,15 +20,26 @@ struct JointPlace {
   int v_count;
 };
 
+/// The positions of an element's two bodies or joints in a tree.
+struct ElementPlace {
+  std::array<int, 2> body = {-1, -1};        ///< -1: the guide
+  std::array<std::size_t, 2> slot = {0, 0};  ///< of the bodies' last links
+  std::array<int, 2> q = {0, 0};             ///< of joints: their coordinates
+  std::array<int, 2> v = {0, 0};             ///< and rates
+  std::array<bool, 2> moves = {true, true};  ///< false: locked, its rate counts as 0
+};
+
 /// The structure of a system of bodies: checked descriptions and the links made from them.
 ///
 /// Throws : InvalidInput, naming body and reason: no, reserved or repeated name; parent unknown,
 ///          later in the list or closing a loop; physically impossible inertia; axis 0; parallel
 ///          axes of a joint; forces that do not fit the joint; a number that is not finite; an
-///          invalid rotor
+///          invalid rotor. Naming element and reason: no or repeated name; unknown body; both ends
+///          on one body; an end on a rotor; a joint without or with several coordinates; numbers
+///          that are no element
 class KREISEL_API BodyTree {
  public:
-  explicit BodyTree(std::vector<BodyDescription> bodies);
+  explicit BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements = {});
   // Compiled once, in libkreisel: programs would instantiate the vectors' own.
   BodyTree(const BodyTree& other);
   BodyTree(BodyTree&& other) noexcept;
@@ -50,6 +63,9 @@ class KREISEL_API BodyTree {
     TimeFunction acceleration;
   };
   [[nodiscard]] const std::vector<Drive>& drives() const { return drives_; }
+  /// The forces between bodies and between joints, and their positions, in the same order.
+  [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
+  [[nodiscard]] const std::vector<ElementPlace>& element_places() const { return element_places_; }
   /// The coordinate of each joint force's spring.
   [[nodiscard]] const std::vector<int>& coordinate_of() const { return coordinate_of_; }
   [[nodiscard]] int coordinates() const { return coordinates_; }
@@ -68,7 +84,7 @@ class KREISEL_API BodyTree {
   /// The bodies that have loads.
   [[nodiscard]] const std::vector<int>& loaded() const { return loaded_; }
 
-  /// True if there are loads, or joint forces that change with time.
+  /// True if there are loads, elements, or joint forces that change with time.
   [[nodiscard]] bool is_acted_on() const { return is_acted_on_; }
 
   /// The number of links and rotors: the slots of a workspace, links first.
@@ -87,6 +103,9 @@ class KREISEL_API BodyTree {
 
  private:
   void check_parent(int body) const;
+  void connect(const Element& element);
+  [[nodiscard]] int body_of_element(const std::string& element, const std::string& body) const;
+  void set_joint(const CouplingElement& coupling, std::size_t end, ElementPlace& place) const;
   void append(int body);
 
   /// Adds a rotor, and its inertia to its carrier's. The moment about its axis is added only if the
@@ -98,6 +117,8 @@ class KREISEL_API BodyTree {
   void number(detail::Link& link);
 
   std::vector<BodyDescription> bodies_;
+  std::vector<Element> elements_;
+  std::vector<ElementPlace> element_places_;
   std::unordered_map<std::string, int> index_;
   std::vector<detail::Link> links_;
   std::vector<detail::RotorLink> rotors_;

@@ -20,7 +20,7 @@ using namespace kreisel::test::heap;
 
 namespace {
 
-/// Every joint kind in turn, with springs, dampers, loads and rotors.
+/// Every joint kind in turn, with springs, dampers, loads, rotors and elements.
 BodySystem<RotatingFrame<>> chain(int n) {
   std::vector<BodyDescription> bodies;
   for (int i = 0; i < n; ++i) {
@@ -47,7 +47,15 @@ BodySystem<RotatingFrame<>> chain(int n) {
     rotor.rotor = Rotor{.mode = static_cast<RotorMode>(i / 6 % 3)};
     bodies.push_back(rotor);
   }
-  return {{.angular_velocity = {0, 0, 1}}, bodies, UniformGravity<Guide>{{0, 0, -9}}};
+  MountElement mount{.name = "mount", .ends = {{{"guide"}, {"body 5"}}}};
+  mount.stiffness.rm.diagonal() = Vector3<double>(20, 30, 40);
+  const SpringElement spring{
+      .name = "spring", .ends = {{{"body 0"}, {"body 3", {0, 0, 1}}}}, .stiffness = 10};
+  const CouplingElement coupling{"coupling", {"body 1", "body 2"}, 0.5, 10, 1};
+  return {{.angular_velocity = {0, 0, 1}},
+          bodies,
+          UniformGravity<Guide>{{0, 0, -9}},
+          {mount, spring, coupling}};
 }
 
 }  // namespace
@@ -63,6 +71,7 @@ BOOST_AUTO_TEST_CASE(computes_without_allocations) {
   Eigen::MatrixXd mass;
   JointReactions reactions;
   std::vector<ReactionParts> parts;
+  std::vector<Motor<>> forces;
   const auto everything = [&] {
     system.rates(0.1, y, rates, w);
     system.accelerations(0.1, y, {}, dv, w);
@@ -70,6 +79,7 @@ BOOST_AUTO_TEST_CASE(computes_without_allocations) {
     system.mass_matrix(y, mass, w);
     system.reactions(0.1, y, reactions, w);
     system.reaction_parts(0.1, y, parts, w);
+    system.element_forces(0.1, y, forces, w);
     (void)system.situation(0.1, y, 3, w);
     (void)system.terms(0.1, y, 5, w);
     (void)system.balance(0.1, y, w);
