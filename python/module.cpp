@@ -45,6 +45,7 @@ struct Run {
   py::dict coordinates;
   py::dict rates;
   py::dict reactions;
+  py::dict elements;
   py::dict sensors;
   py::array_t<double> errors;
   std::vector<kreisel::Term> terms;
@@ -132,12 +133,12 @@ std::string toml_of(const std::string& key, const py::handle& value) {
                        py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
 }
 
-/// The scene from keyword arguments, with a line for each keyword and for each body and sensor.
+/// The scene from keyword arguments, with a line for each keyword and for each body, element and sensor.
 Scene scene_of_keywords(const py::kwargs& keywords) {
   std::string text;
   for (const auto& [name, value] : keywords) {
     const auto key = name.cast<std::string>();
-    const bool list = (key == "body" || key == "sensor") &&
+    const bool list = (key == "body" || key == "sensor" || key == "element") &&
                       (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
     text += key_of(key) + " = " + (list ? toml_list(key, value, "\n") : toml_of(key, value)) + "\n";
   }
@@ -221,9 +222,10 @@ void warn_if_missed(const kreisel::RunReport& report) {
 
 Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
                 const std::optional<std::string>& method,
-                const std::optional<std::vector<double>>& times, bool reactions) {
+                const std::optional<std::vector<double>>& times, bool reactions, bool elements) {
   kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
   file.reactions = reactions;
+  file.element_forces = elements;
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
   kreisel::SolveOptions options = options_of(file);
   options.output_times = file.output_times;
@@ -234,7 +236,7 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
     options.stop = stop;
     run = model->solve(options, start_of(file));
     for (std::size_t i = 0; i < run.states.size() && !stop.stop_requested(); ++i) {
-      numbers.push_back(row(*model, run.times[i], run.states[i], reactions));
+      numbers.push_back(row(*model, run.times[i], run.states[i], {reactions, elements}));
       const std::vector<double> own = readings.row(*model, run.times[i], run.states[i]);
       numbers.back().insert(numbers.back().end(), own.begin(), own.end());
     }
@@ -276,6 +278,12 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
         py::dict("force"_a = part(result.rows, at, 3), "torque"_a = part(result.rows, at + 3, 3),
                  "drive_torque"_a = part(result.rows, at + 6, 1));
     at += 7;
+  }
+  for (const kreisel::Element& element : file.elements) {
+    if (!elements) break;
+    result.elements[py::str(kreisel::name(element))] =
+        py::dict("force"_a = part(result.rows, at, 3), "torque"_a = part(result.rows, at + 3, 3));
+    at += 6;
   }
   for (const kreisel::SceneSensor& sensor : file.sensors) {
     py::dict reading;
@@ -356,6 +364,9 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("reactions", &Run::reactions,
                     "by body, on request: 'force' in N and 'torque' in N m of the parent at the "
                     "joint, on body axes, and 'drive_torque' in N m")
+      .def_readonly("elements", &Run::elements,
+                    "by element, on request: 'force' in N and 'torque' in N m on its second body, "
+                    "about its end there, on the first body's axes")
       .def_readonly("sensors", &Run::sensors,
                     "by sensor a dict of its parts: 'value', with errors also 'true'; of a point "
                     "'position', 'velocity', 'acceleration'; of a reaction 'force', 'torque'")
@@ -384,10 +395,12 @@ PYBIND11_MODULE(kreisel, m) {
           "are searched beside path.")
       .def("solve", &solve_scene, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),
            "method"_a = py::none(), "times"_a = py::none(), "reactions"_a = false,
+           "elements"_a = false,
            "Computes the motion from t = 0.\n\n"
            "t_end      s; times in s, increasing, instead of the scene's output times\n"
            "tolerance  bound of the global error, see Report.error_estimate\n"
            "method     auto, closed form, verner98, gauss16, radau13, splitting, taylor\n"
-           "reactions  True: return the load of every joint\n\n"
+           "reactions  True: return the load of every joint\n"
+           "elements   True: return the force of every element\n\n"
            "Omitted arguments are those of the scene. Python's lock is released during the run.");
 }

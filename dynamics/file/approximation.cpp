@@ -144,6 +144,10 @@ class Approximation final : public SceneSolver {
   [[nodiscard]] JointReactions reactions(double t, const JointState& state) const override {
     return exact_->reactions(t, state);
   }
+  [[nodiscard]] std::vector<Motor<>> element_forces(double t,
+                                                    const JointState& state) const override {
+    return exact_->element_forces(t, state);
+  }
   [[nodiscard]] ForceParts<Body> terms(double t, const JointState& state, int body) const override {
     return exact_->terms(t, state, body);
   }

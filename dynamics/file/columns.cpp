@@ -38,8 +38,20 @@ std::vector<std::string> columns(const std::vector<BodyDescription>& bodies, boo
   return names;
 }
 
+std::vector<std::string> columns(const std::vector<Element>& elements) {
+  std::vector<std::string> names;
+  for (const Element& element : elements) {
+    for (const char* const part : element_quantities) names.push_back(name(element) + "." + part);
+  }
+  return names;
+}
+
 std::vector<std::string> columns(const SceneFile& scene) {
   std::vector<std::string> names = columns(scene.bodies, scene.reactions);
+  if (scene.element_forces) {
+    const std::vector<std::string> own = columns(scene.elements);
+    names.insert(names.end(), own.begin(), own.end());
+  }
   for (const SceneSensor& sensor : scene.sensors) {
     const std::vector<std::string> own = columns(sensor, scene.bodies);
     names.insert(names.end(), own.begin(), own.end());
@@ -81,20 +93,27 @@ void append_joint(const BodyTree& tree, int body, const JointState& state,
 }
 
 std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
-                        bool reactions) {
+                        const RowForces& forces) {
   const BodyTree& tree = model.tree();
   std::vector<double> values{t};
   const auto append = [&values](const auto& vector) {
     values.insert(values.end(), vector.data(), vector.data() + vector.size());
   };
   for (int i = 0; i < count(tree); ++i) append_joint(tree, i, state, values);
-  if (!reactions) return values;
-  const JointReactions carried = model.reactions(t, state);
-  for (int i = 0; i < count(tree); ++i) {
-    const auto& [force, torque] = carried.on_body[static_cast<std::size_t>(i)].value;
-    append(force);
-    append(torque);
-    values.push_back(drive_torque(tree, i, carried));
+  if (forces.reactions) {
+    const JointReactions carried = model.reactions(t, state);
+    for (int i = 0; i < count(tree); ++i) {
+      const auto& [force, torque] = carried.on_body[static_cast<std::size_t>(i)].value;
+      append(force);
+      append(torque);
+      values.push_back(drive_torque(tree, i, carried));
+    }
+  }
+  if (forces.elements) {
+    for (const auto& [force, torque] : model.element_forces(t, state)) {
+      append(force);
+      append(torque);
+    }
   }
   return values;
 }

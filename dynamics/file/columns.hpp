@@ -19,6 +19,10 @@ std::vector<JointQuantity> joint_quantities(JointKind kind);
 inline constexpr std::array reaction_quantities{"force x",  "force y",  "force z",     "torque x",
                                                 "torque y", "torque z", "drive torque"};
 
+/// Names of the components of an element's force.
+inline constexpr std::array element_quantities{"force x",  "force y",  "force z",
+                                               "torque x", "torque y", "torque z"};
+
 /// The columns of a trajectory: t, coordinates and rates of every joint, and on request its
 /// reaction and the torque of its drive. Attitudes (w, x, y, z) and positions are relative to the
 /// parent.
@@ -27,7 +31,16 @@ inline std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
   return columns(tree.bodies(), reactions);
 }
 
-/// The columns of a scene's run: joints, reactions if they are requested, and sensors.
+/// The columns of forces and torques of elements.
+std::vector<std::string> columns(const std::vector<Element>& elements);
+
+/// The forces that the rows of a run contain besides the joints' coordinates and rates.
+struct RowForces {
+  bool reactions = false;
+  bool elements = false;
+};
+
+/// The columns of a scene's run: joints, reactions and elements if they are requested, and sensors.
 [[nodiscard]] std::vector<std::string> columns(const SceneFile& scene);
 
 /// True if a word is a column's name or its group: the part of the name before a dot or a blank.
@@ -40,7 +53,7 @@ inline std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
 
 /// The numbers of a row, in the order of the columns.
 std::vector<double> row(const SceneSolver& model, double t, const JointState& state,
-                        bool reactions);
+                        const RowForces& forces);
 
 /// Appends coordinates and rates of a body's joint, in the order of the columns.
 void append_joint(const BodyTree& tree, int body, const JointState& state,

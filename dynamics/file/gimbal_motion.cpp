@@ -38,6 +38,7 @@ class Refusal {
 void check_joints(const SceneFile& scene, const Refusal& refuse) {
   if (!scene.rests()) refuse("this guide moves");
   if (scene.bodies.size() != 3) refuse("here are not three bodies");
+  if (!scene.elements.empty()) refuse("here are elements between bodies");
   for (std::size_t i = 0; i < 3; ++i) {
     const BodyDescription& body = scene.bodies[i];
     const bool rotor = i == 2;

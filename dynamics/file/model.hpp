@@ -32,6 +32,9 @@ class SceneSolver {
 
   [[nodiscard]] virtual const BodyTree& tree() const = 0;
   [[nodiscard]] virtual JointReactions reactions(double t, const JointState& state) const = 0;
+  /// Force and torque of each element on its second body about its end, on the first body's axes.
+  [[nodiscard]] virtual std::vector<Motor<>> element_forces(double t,
+                                                            const JointState& state) const = 0;
   [[nodiscard]] virtual ForceParts<Body> terms(double t, const JointState& state,
                                                int body) const = 0;
   /// The terms of the equation that is computed; they do not depend on the state.

@@ -17,7 +17,8 @@ class ModelOnGuide final : public SceneSolver {
 
  public:
   ModelOnGuide(M guide, SceneBodies scene)
-      : system_(std::move(guide), std::move(scene.bodies), scene.gravity),
+      : system_(std::move(guide), std::move(scene.bodies), scene.gravity,
+                std::move(scene.elements)),
         gravitation_(std::move(scene.gravitation)),
         workspace_(system_.workspace()) {}
 
@@ -41,6 +42,13 @@ class ModelOnGuide final : public SceneSolver {
   [[nodiscard]] JointReactions reactions(double t, const JointState& state) const override {
     JointReactions result;
     system_.reactions(t, vector(state), result, workspace_);
+    return result;
+  }
+
+  [[nodiscard]] std::vector<Motor<>> element_forces(double t,
+                                                    const JointState& state) const override {
+    std::vector<Motor<>> result;
+    system_.element_forces(t, vector(state), result, workspace_);
     return result;
   }
 

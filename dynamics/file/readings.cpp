@@ -51,13 +51,14 @@ class TrueNumbers {
     append_joint(tree_, joint.body, state_, numbers_);
   }
   void operator()(const AzimuthSensor& sensor) const { numbers_.push_back(sensor(system_)); }
-  void operator()(const ReactionSensor& sensor) const {
-    const auto [force, torque] = sensor(system_);
-    append(force);
-    append(torque);
-  }
+  void operator()(const ReactionSensor& sensor) const { append(sensor(system_)); }
+  void operator()(const ElementSensor& sensor) const { append(sensor(system_)); }
 
  private:
+  void append(const Motor<>& force) const {
+    append(force.resultant);
+    append(force.moment);
+  }
   template <class Numbers>
   void append(const Numbers& numbers) const {
     for (const double x : numbers.eval()) numbers_.push_back(x);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/element_keys.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/scene_guide.hpp>
 #include <dynamics/file/scene_section.hpp>
@@ -26,6 +27,7 @@ namespace kreisel {
 namespace {
 
 using detail::Dimension;
+using detail::joint_force;
 using detail::KeyDimension;
 using detail::Mistakes;
 using detail::Range;
@@ -42,11 +44,6 @@ std::vector<Dimension> dimensions(const std::vector<JointQuantity>& quantities) 
                   detail::dimension_of(quantity.unit));
   }
   return result;
-}
-
-/// The dimension of the joint force that moves a quantity of this dimension.
-Dimension joint_force(const Dimension& moved) {
-  return moved.angle == 0 ? dimension::force : dimension::torque;
 }
 
 /// The dimensions of stiffness or damping: joint forces per unit of the quantities.
@@ -84,6 +81,7 @@ class SceneReader {
     detail::give_gravity_to_rates(guide, scene_.gravity);
     scene_.guide = std::move(guide.links);
     read_bodies();
+    scene_.elements = detail::read_elements(root_, scene_, mistakes_.none());
     scene_.sensors = detail::read_sensors(root_, scene_, mistakes_.none());
     read_report();
     put_discontinuities_in_order();
@@ -826,6 +824,7 @@ class SceneReader {
     auto report = root_.section("report");
     if (!report) return;
     scene_.reactions = report->flag("reactions");
+    scene_.element_forces = report->flag("elements");
     scene_.terms = report->flag("terms");
     report->finish();
   }

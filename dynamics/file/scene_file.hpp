@@ -20,6 +20,7 @@
 #include <dynamics/load/oblate_gravitation.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/tree/description.hpp>
+#include <dynamics/tree/element/element.hpp>
 #include <motor/error.hpp>
 
 /// The contents of a scene file, checked and typed: one mechanical system on one guide frame.
@@ -156,6 +157,7 @@ struct SceneFile {
   std::vector<BodyDescription> bodies;
   std::vector<JointStart> start;    ///< one for each body
   std::vector<NamedPoints> points;  ///< one for each body
+  std::vector<Element> elements = {};
   std::vector<SceneSensor> sensors;
   double t_begin = 0;
   double t_end = 0;  ///< after t_begin
@@ -168,6 +170,7 @@ struct SceneFile {
   bool forces_change = false;  ///< loads, joint forces or rotor speeds change with time
   std::vector<std::string> columns;  ///< chosen columns or groups of columns; empty: all
   bool reactions = false;
+  bool element_forces = false;  ///< reported, as the reactions
   bool terms = false;
   std::vector<SceneSignalLog> signal_logs = {};
   /// The same scene with other logs of functions of time.

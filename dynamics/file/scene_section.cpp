@@ -344,6 +344,41 @@ std::optional<Vector3<double>> Section::vector(std::string_view key, const Dimen
   return Vector3<double>((*values)[0], (*values)[1], (*values)[2]);
 }
 
+std::optional<Vector3<double>> Section::vector_at(std::string_view key, std::size_t index,
+                                                  const toml::node& node, const Dimension& of) {
+  const std::string name = path_to(key) + "[" + std::to_string(index) + "]";
+  const auto values = numbers_in(node, name, {of});
+  if (!values) return std::nullopt;
+  if (values->size() == 3) return Vector3<double>(values->data());
+  mistakes_->add(node.source(), name, "must be 3 numbers, not " + std::to_string(values->size()));
+  return std::nullopt;
+}
+
+std::optional<std::vector<std::pair<double, double>>> Section::pairs(std::string_view key,
+                                                                     const Dimension& first,
+                                                                     const Dimension& second) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* const list = node->as_array();
+  if (list == nullptr) {
+    refuse(key, "must be a list of pairs of numbers, not " + kind_of(*node));
+    return std::nullopt;
+  }
+  std::vector<std::pair<double, double>> result;
+  bool good = true;
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string name = path_to(key) + "[" + std::to_string(i) + "]";
+    const auto pair = numbers_in(*list->get(i), name, {first, second});
+    if (pair && pair->size() == 2) {
+      result.emplace_back((*pair)[0], (*pair)[1]);
+      continue;
+    }
+    if (pair) mistakes_->add(list->get(i)->source(), name, "must be two numbers");
+    good = false;
+  }
+  return good ? std::optional(result) : std::nullopt;
+}
+
 Vector3<double> Section::required_vector(std::string_view key, const Dimension& of) {
   if (!has(key)) refuse_missing(key);
   return vector(key, of).value_or(Vector3<double>::UnitX());

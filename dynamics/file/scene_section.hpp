@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <toml++/toml.h>
+#include <utility>
 #include <vector>
 
 #include <dynamics/file/unit.hpp>
@@ -124,6 +125,14 @@ class Section {
   /// The number at an index of a list.
   [[nodiscard]] std::optional<double> number_at(std::string_view key, std::size_t index,
                                                 const toml::node& node, const KeyDimension& of);
+
+  /// The vector at an index of a list.
+  [[nodiscard]] std::optional<Vector3<double>> vector_at(std::string_view key, std::size_t index,
+                                                         const toml::node& node,
+                                                         const Dimension& of);
+  /// A list of pairs of numbers.
+  [[nodiscard]] std::optional<std::vector<std::pair<double, double>>> pairs(
+      std::string_view key, const Dimension& first, const Dimension& second);
 
   [[nodiscard]] std::optional<std::string> text(std::string_view key);
   /// A list of texts; empty if the key is missing.

@@ -78,6 +78,7 @@ std::vector<double> with_samples(const std::vector<double>& output_times,
 std::vector<SensorPart> parts(const SceneSensor& sensor,
                               const std::vector<BodyDescription>& bodies) {
   using Parts = std::vector<SensorPart>;
+  const Parts reaction{vector("force", "N"), vector("torque", "N m")};
   const bool integrates = sensor.increments != SensorIncrements::none;
   const auto instrument = [&](SensorPart value) {
     Parts result{std::move(value)};
@@ -104,9 +105,8 @@ std::vector<SensorPart> parts(const SceneSensor& sensor,
                  [&](const scene_sensor::Joint& joint) {
                    return Parts{joint_part(bodies[static_cast<std::size_t>(joint.body)])};
                  },
-                 [](const ReactionSensor&) {
-                   return Parts{vector("force", "N"), vector("torque", "N m")};
-                 },
+                 [&](const ReactionSensor&) { return reaction; },
+                 [&](const ElementSensor&) { return reaction; },
                  [](const AzimuthSensor&) {
                    return Parts{{"value", {"azimuth"}, {"rad"}}};
                  }},

@@ -30,8 +30,8 @@ struct Joint {
   int body = 0;
 };
 
-using Kind =
-    std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor, AzimuthSensor>;
+using Kind = std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor,
+                          ElementSensor, AzimuthSensor>;
 
 }  // namespace scene_sensor
 

@@ -53,6 +53,7 @@ class SceneGuide : public AnyGuide {
 struct SceneBodies {
   std::vector<BodyDescription> bodies;
   Gravity gravity;
+  std::vector<Element> elements = {};
   std::optional<BodyLoad> gravitation = {};  ///< the load on all bodies that represents gravity
 };
 

@@ -7,18 +7,13 @@
 #include <variant>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/name_keys.hpp>
 #include <dynamics/file/quoted.hpp>
 #include <dynamics/file/sensor_keys.hpp>
 
 namespace kreisel::detail {
 
 namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string result;
-  for (const std::string& name : names) result += (result.empty() ? "" : ", ") + in_quotes(name);
-  return result.empty() ? "there are none" : "there are " + result;
-}
 
 constexpr double most_samples = 1e7;
 
@@ -42,7 +37,11 @@ class SensorReader {
     if (kind == "point") sensor.kind = point(section);
     if (kind == "attitude") sensor.kind = attitude(section);
     if (kind == "joint") sensor.kind = joint(section);
-    if (kind == "reaction") sensor.kind = reaction(section);
+    if (kind == "reaction" && section.has("element")) {
+      sensor.kind = element(section);
+    } else if (kind == "reaction") {
+      sensor.kind = reaction(section);
+    }
     if (kind == "azimuth") sensor.kind = azimuth(section);
     const bool is_instrument = kind == "gyro" || kind == "accelerometer";
     sensor.period = period(section);
@@ -93,17 +92,7 @@ class SensorReader {
   int body(Section& section, const char* key) {
     if (!section.has(key)) section.refuse_missing(key);
     const auto name = section.text(key);
-    return name ? index(section, key, *name, names_, "body") : 0;
-  }
-
-  /// The index of a word among the allowed words.
-  static int index(Section& section, const char* key, const std::string& word,
-                   const std::vector<std::string>& words, const char* what) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    if (found != words.end()) return static_cast<int>(found - words.begin());
-    section.refuse(
-        key, in_quotes(word) + " is no " + what + did_you_mean(word, words) + "; " + listed(words));
-    return 0;
+    return name ? index_of_name(section, key, *name, names_, "body") : 0;
   }
 
   SensorFrame frame(Section& section, const char* key) {
@@ -111,7 +100,7 @@ class SensorReader {
     if (!name) return SensorFrame::guide();
     std::vector<std::string> words{"guide", "inertial"};
     words.insert(words.end(), names_.begin(), names_.end());
-    const int found = index(section, key, *name, words, "frame");
+    const int found = index_of_name(section, key, *name, words, "frame");
     if (found == 0) return SensorFrame::guide();
     return found == 1 ? SensorFrame::inertial() : SensorFrame::of_body(found - 2);
   }
@@ -122,15 +111,8 @@ class SensorReader {
     if (node == nullptr) return Vector3<double>::Zero();
     if (!node->is_string())
       return section.vector("at", dimension::length).value_or(Vector3<double>::Zero());
-    const std::string name = section.peek("at");
-    const NamedPoints& known = points_[static_cast<std::size_t>(body)];
-    if (const auto found = known.find(name); found != known.end()) return found->second;
-    std::vector<std::string> words;
-    for (const auto& [word, place] : known) words.push_back(word);
-    section.refuse("at", in_quotes(name) + " is no point of body " +
-                             in_quotes(names_[static_cast<std::size_t>(body)]) +
-                             did_you_mean(name, words) + "; " + listed(words));
-    return Vector3<double>::Zero();
+    const auto own = static_cast<std::size_t>(body);
+    return named_point(section, "at", section.peek("at"), points_[own], names_[own]);
   }
 
   static Eigen::Quaterniond axes(Section& section) {
@@ -179,13 +161,39 @@ class SensorReader {
   ReactionSensor reaction(Section& section) {
     ReactionSensor sensor{body(section, "joint")};
     sensor.at = at(section, sensor.body);
+    set_axes(section, sensor);
+    return sensor;
+  }
+
+  ElementSensor element(Section& section) {
+    ElementSensor sensor;
+    if (section.has("joint")) section.refuse("joint", "and 'element' exclude each other");
+    std::vector<std::string> words;
+    for (const Element& element : scene_.elements) words.push_back(name(element));
+    const auto word = section.text("element");
+    if (word && sound_) sensor.element = index_of_name(section, "element", *word, words, "element");
+    if (section.has("at")) sensor.at = at(section, second_body(sensor.element));
+    set_axes(section, sensor);
+    return sensor;
+  }
+
+  /// The second body of an element; the first of all bodies if there is none.
+  [[nodiscard]] int second_body(int element) const {
+    if (static_cast<std::size_t>(element) >= scene_.elements.size()) return 0;
+    const std::string& second = second_of(scene_.elements[static_cast<std::size_t>(element)]);
+    const auto found = std::find(names_.begin(), names_.end(), second);
+    return found == names_.end() ? 0 : static_cast<int>(found - names_.begin());
+  }
+
+  /// Reads `axes`: the name of a frame, or a quaternion.
+  template <class Sensor>
+  void set_axes(Section& section, Sensor& sensor) {
     const toml::node* const node = section.find("axes");
     if (node != nullptr && node->is_string()) {
       sensor.frame = frame(section, "axes");
     } else {
       sensor.axes = axes(section);
     }
-    return sensor;
   }
 
   /// The pivot of a pendulum is the joint of its first body on the guide.
@@ -316,7 +324,9 @@ std::vector<SceneSensor> read_sensors(Section& root, const SceneFile& scene, boo
   SensorReader reader(scene, sound);
   std::set<std::string> names;
   const std::vector<std::string> of_bodies = columns(bodies, true);
+  const std::vector<std::string> of_elements = columns(scene.elements);
   std::set<std::string> taken(of_bodies.begin(), of_bodies.end());
+  taken.insert(of_elements.begin(), of_elements.end());
   for (Section& section : root.sections("sensor")) {
     const std::string name = section.required_text("name");
     if (section.has("name") && section.find("name")->is_string() && name.empty()) {

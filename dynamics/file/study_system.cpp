@@ -39,8 +39,9 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 
 StudySystem::StudySystem(const SceneFile& scene) : begin_(scene.t_begin) {
   SceneBodies in_gravity = bodies_in_gravity(scene);
-  bodies_ = std::make_unique<const Bodies>(make_guide_of_equations(scene),
-                                           std::move(in_gravity.bodies), in_gravity.gravity);
+  bodies_ =
+      std::make_unique<const Bodies>(make_guide_of_equations(scene), std::move(in_gravity.bodies),
+                                     in_gravity.gravity, std::move(in_gravity.elements));
 }
 
 StudySystem::~StudySystem() = default;

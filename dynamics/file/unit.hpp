@@ -57,6 +57,11 @@ inline constexpr Dimension magnetic_moment = current * length * length;
 
 }  // namespace dimension
 
+/// The dimension of the joint force that moves a coordinate of this dimension.
+[[nodiscard]] constexpr Dimension joint_force(const Dimension& moved) {
+  return moved.angle == 0 ? dimension::force : dimension::torque;
+}
+
 /// The dimension of the numbers at a key. It is nothing for a key in degrees, whose numbers take no
 /// unit.
 using KeyDimension = std::optional<Dimension>;

@@ -33,8 +33,19 @@ struct GravityField {
   const BodyLoad* load = nullptr;                     ///< per kg, for a point mass; null: none
 };
 
-/// The motion of all bodies of a system and the reactions of its joints at one moment. Sensors read
-/// it, and their readings are integrated from it.
+/// The force of an element at one moment.
+///
+/// Frame  : on the FIRST body's axes; on the second body, about its point `at`
+/// Units  : metre (at: second body's axes), N, N m
+struct ElementLoad {
+  int first = -1;  ///< bodies; -1: the guide
+  int second = -1;
+  Vector3<double> at = Vector3<double>::Zero();
+  Motor<> force = {};
+};
+
+/// The motion of all bodies of a system and the forces of its joints and elements at one moment.
+/// Sensors read it, and their readings are integrated from it.
 ///
 /// `guide` and `gravity` belong together: the guide's motion may be relative to a frame in free
 /// fall, and gravity is then the difference from that fall. `inertial_guide` is the motion of the
@@ -46,6 +57,7 @@ struct SystemKinematics {
   GravityField gravity = {};
   std::vector<BodyKinematics> bodies = {};
   JointReactions reactions = {};
+  std::vector<ElementLoad> elements = {};
   Eigen::VectorXd rates = {};  ///< y' of the state: of all coordinates, then of the rates
 
   [[nodiscard]] const BodyKinematics& body(int i) const {

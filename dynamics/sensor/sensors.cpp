@@ -105,6 +105,21 @@ double AzimuthSensor::operator()(const SystemKinematics& system) const {
   return reference + std::atan2(2 * S(0, 1), S(0, 0) - S(1, 1)) / 2;
 }
 
+Motor<> ElementSensor::operator()(const SystemKinematics& system) const {
+  const ElementLoad& load = system.elements[static_cast<std::size_t>(element)];
+  const auto to_guide = [&system](int body) -> Matrix3<double> {
+    return body < 0 ? Matrix3<double>::Identity() : system.body(body).R;
+  };
+  const Matrix3<double> first = to_guide(load.first);
+  const Vector shift = to_guide(load.second) * (at.value_or(load.at) - load.at);
+  const Motor<> moved = load.force.reduced_at(first.transpose() * shift);
+  const auto turned = [&](const Vector& v) -> Vector {
+    if (!frame) return axes.conjugate() * v;
+    return axes.conjugate() * (from_guide(*frame, system) * (first * v));
+  };
+  return {turned(moved.resultant), turned(moved.moment)};
+}
+
 Motor<> ReactionSensor::operator()(const SystemKinematics& system) const {
   const Motor<> on_body =
       system.reactions.on_body[static_cast<std::size_t>(body)].value.reduced_at(at);

@@ -136,6 +136,19 @@ void apply_elements(const BodyTree& tree, const S* q, const S* v, MotionSpace<S>
   return {zero, force * along};
 }
 
+/// The point of an element's second body about which its torque is reported.
+[[nodiscard]] inline Vector3<double> second_point(const Element& element) {
+  return std::visit(
+      [](const auto& kind) -> Vector3<double> {
+        if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
+          return Vector3<double>::Zero();
+        } else {
+          return kind.ends[1].at;
+        }
+      },
+      element);
+}
+
 /// The forces of all elements on their second bodies. Needs poses and positions in w.
 inline void element_forces(const BodyTree& tree, const double* q, const double* v,
                            const MotionSpace<>& w, std::vector<Motor<>>& result) {

@@ -112,7 +112,7 @@ bool is_steady(const kreisel::SceneFile& scene) {
 
 /// True if the forces on bodies at rest cannot deliver unlimited energy. These forces are gravity
 /// on guide axes or that of the earth below the guide, springs, constant joint forces, loads with a
-/// potential, and dampers.
+/// potential, symmetric mounts, and dampers.
 bool has_potential(const kreisel::SceneFile& scene) {
   const auto* const planet = std::get_if<kreisel::OblateGravitation<>>(&scene.gravity);
   const bool on_earth =
@@ -123,6 +123,10 @@ bool has_potential(const kreisel::SceneFile& scene) {
       std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity) ||
       (planet != nullptr && !turns_along);
   if (!is_steady(scene) || (stands_still && !scene.rests())) return false;
+  const bool pushes =
+      !std::all_of(scene.elements.begin(), scene.elements.end(),
+                   [](const kreisel::Element& element) { return kreisel::has_potential(element); });
+  if (pushes) return false;
   return std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const auto& body) {
     const bool is_pushed = kreisel::joint_type(body.joint.kind).has_attitude() &&
                            std::any_of(body.forces.begin(), body.forces.end(),

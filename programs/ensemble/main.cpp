@@ -61,6 +61,7 @@ Scene read(const Request& request) {
   }
   (void)make_model(file);  // refuses what the reader cannot
   file.reactions = false;
+  file.element_forces = false;
   std::vector<std::string> names = columns(file);
   names.erase(names.begin());  // the time
   return {request, keys, kreisel::SceneNumbers(text, keys), std::move(names)};
@@ -94,7 +95,7 @@ Member compute(const Scene& scene, std::size_t index, const std::stop_token& sto
     member.status = run.report.status;
     member.message = run.report.message;
     if (run.report.status != RunStatus::complete) return member;
-    member.end = row(*model, file.t_end, run.states.back(), false);
+    member.end = row(*model, file.t_end, run.states.back(), {});
     member.end.erase(member.end.begin());
     const std::vector<double> readings = kreisel::SensorReadings(file).last_row(*model, run);
     member.end.insert(member.end.end(), readings.begin(), readings.end());

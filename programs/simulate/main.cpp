@@ -63,7 +63,7 @@ struct Record {
          const kreisel::SceneSolver& solver)
       : model(solver),
         t_begin(scene.t_begin),
-        reactions(scene.reactions),
+        forces{scene.reactions, scene.element_forces},
         sensors(scene),
         chosen(scene.columns.empty() ? std::vector<std::size_t>{}
                                      : chosen_columns(columns(scene), scene.columns)),
@@ -72,7 +72,7 @@ struct Record {
 
   const kreisel::SceneSolver& model;
   double t_begin;
-  bool reactions;
+  kreisel::RowForces forces;
   kreisel::SensorReadings sensors;
   std::vector<std::size_t> chosen;  ///< columns; empty: all
   RowFile rows;
@@ -82,7 +82,7 @@ struct Record {
 
   /// The numbers of a row, in the order of the columns.
   [[nodiscard]] std::vector<double> numbers_at(double t, const kreisel::JointState& state) {
-    std::vector<double> numbers = row(model, t, state, reactions);
+    std::vector<double> numbers = row(model, t, state, forces);
     const std::vector<double> own = sensors.row(model, t, state);
     numbers.insert(numbers.end(), own.begin(), own.end());
     return of_chosen(std::move(numbers));

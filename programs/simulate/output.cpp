@@ -121,6 +121,17 @@ ordered_json final_sensors(const Result& result, const kreisel::SceneScale& scal
   return table;
 }
 
+/// The forces of the elements on their second bodies.
+ordered_json element_forces(const Result& result, const kreisel::SceneScale& scale) {
+  const auto forces =
+      result.model.element_forces(result.run.times.back(), result.run.states.back());
+  ordered_json table = ordered_json::object();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    table[name(result.scene.elements[i])] = json(forces[i], scale);
+  }
+  return table;
+}
+
 ordered_json final_state(const Result& result, const kreisel::SceneScale& scale = {}) {
   const double t = result.run.times.back();
   const kreisel::JointState& state = result.run.states.back();
@@ -140,6 +151,7 @@ ordered_json final_state(const Result& result, const kreisel::SceneScale& scale 
   }
   ordered_json final{{"t", t}, {"joints", joints}};
   if (result.reactions) final["reactions"] = carried;
+  if (result.scene.element_forces) final["elements"] = element_forces(result, scale);
   if (result.terms) final["terms"] = parts;
   if (!result.scene.sensors.empty()) final["sensors"] = final_sensors(result, scale);
   if (!result.log_error.joints.empty()) final["error_of_log"] = log_errors(result);
@@ -293,6 +305,9 @@ void print_summary(const Result& result) {
                       final["joints"]);
   if (final.contains("sensors")) joint_tables::print("sensors, SI", final["sensors"]);
   if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);
+  if (final.contains("elements")) {
+    joint_tables::print("elements on their second bodies, N and N m", final["elements"]);
+  }
   if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
   if (logged) {
     joint_tables::print("error of the log at the end, SI", final["error_of_log"]);

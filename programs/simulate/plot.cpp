@@ -341,7 +341,7 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   const Series times = samples.all([](double t, const kreisel::JointState&) { return t; });
   const kreisel::SceneScale scale = scale_of(result);
   const auto rows = samples.all([&](double t, const kreisel::JointState& state) {
-    return shown_row(result.model.tree(), row(result.model, t, state, result.reactions), scale);
+    return shown_row(result.model.tree(), row(result.model, t, state, {result.reactions}), scale);
   });
   const std::string& title = result.scene.title;
   const auto over = [&](const char* name, const char* what, const std::vector<Panel>& panels) {

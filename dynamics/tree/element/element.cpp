@@ -7,7 +7,7 @@
 
 namespace kreisel {
 
-bool MountElement::keeps_energy() const {
+bool MountElement::has_potential() const {
   // Rotating a tensor to other axes leaves it symmetric up to 12u of its norm, which is at most
   // three times the greatest entry.
   constexpr double rounding = 18 * std::numeric_limits<double>::epsilon();
@@ -16,9 +16,7 @@ bool MountElement::keeps_energy() const {
     return (a - b.transpose()).cwiseAbs().maxCoeff() <= rounding * greatest;
   };
   const MotorTensor<>& K = stiffness;
-  const MotorTensor<>& D = damping;
-  const bool is_damped = !(D.rr.isZero(0) && D.rm.isZero(0) && D.mr.isZero(0) && D.mm.isZero(0));
-  return !is_damped && fits(K.rm, K.rm) && fits(K.mr, K.mr) && fits(K.rr, K.mm);
+  return fits(K.rm, K.rm) && fits(K.mr, K.mr) && fits(K.rr, K.mm);
 }
 
 namespace detail {
@@ -31,6 +29,18 @@ bool is_finite(const MotorTensor<>& T) {
 
 bool is_zero(const MotorTensor<>& T) {
   return T.rr.isZero(0) && T.rm.isZero(0) && T.mr.isZero(0) && T.mm.isZero(0);
+}
+
+const std::string& body_of(const Element& element, std::size_t end) {
+  return std::visit(
+      [end](const auto& kind) -> const std::string& {
+        if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
+          return kind.joints[end];
+        } else {
+          return kind.ends[end].body;
+        }
+      },
+      element);
 }
 
 void check_numbers(const std::string& name, double stiffness, double damping, bool has_table) {
@@ -124,5 +134,11 @@ void check_element(const Element& element) {
 }
 
 }  // namespace detail
+
+bool MountElement::keeps_energy() const { return has_potential() && detail::is_zero(damping); }
+
+const std::string& first_of(const Element& element) { return detail::body_of(element, 0); }
+
+const std::string& second_of(const Element& element) { return detail::body_of(element, 1); }
 
 }  // namespace kreisel

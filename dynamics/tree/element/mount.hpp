@@ -63,7 +63,10 @@ struct MountElement {
     return reciprocal(stiffness * z, z) / 2 - reciprocal(preload, z);
   }
 
-  /// True if the stiffness is symmetric up to rounding and nothing is damped.
+  /// True if the stiffness is symmetric up to rounding.
+  [[nodiscard]] KREISEL_API bool has_potential() const;
+
+  /// True if there is a potential and nothing is damped.
   [[nodiscard]] KREISEL_API bool keeps_energy() const;
 
   /// True if the force depends on the rotation theta.

@@ -536,6 +536,7 @@ BOOST_AUTO_TEST_CASE(defaults_agree_with_the_page) {
   BOOST_TEST((file.method == Method::automatic));
   BOOST_TEST((file.model == SceneModel::exact));
   BOOST_TEST(!file.reactions);
+  BOOST_TEST(!file.element_forces);
   BOOST_TEST(!file.terms);
   BOOST_TEST(file.bodies.at(0).parent == "guide");
   BOOST_TEST(file.start.at(0).coordinates.at(0) == 0);
@@ -543,7 +544,7 @@ BOOST_AUTO_TEST_CASE(defaults_agree_with_the_page) {
   for (const auto& entry : std::filesystem::directory_iterator(KREISEL_SCENES)) {
     scenes += entry.path().extension() == ".toml" ? 1 : 0;
   }
-  BOOST_TEST(scenes == 24);
+  BOOST_TEST(scenes == 25);
 }
 
 // A scene that is only a pendulum or a top uses its closed form with method auto.
@@ -634,6 +635,13 @@ BOOST_AUTO_TEST_CASE(series_are_used_if_they_are_known) {
     BOOST_TEST(method(one(swung + "load = { " + load + " }\n", weight)) != "taylor", load);
   }
   BOOST_TEST(method(one(swung, second + floating + weight)) != "taylor");
+  const auto with_element = [&](const std::string& keys) {
+    const std::string element = "[[element]]\nname = \"e\"\nstiffness = 3\n" + keys + "\n";
+    return method(one(swung, second + hinge + element + weight));
+  };
+  BOOST_TEST(with_element("kind = \"spring\"\nbetween = [\"guide\", \"b\"]\nat = [[0, 0, 1], [0, "
+                          "0, 0]]") != "taylor");
+  BOOST_TEST(with_element("kind = \"gear\"\njoints = [\"a\", \"b\"]") == "taylor");
   const std::string wheel = second + "joint = { kind = \"revolute\", axis = [0, 1, 0] }\n";
   for (const std::string mode : {"\"free\", speed = 9", "\"torque\", torque = 0.1"}) {
     BOOST_TEST(method(one(swung, wheel + "rotor = { mode = " + mode + " }\n" + weight)) ==
