@@ -372,11 +372,16 @@ class Judge {
   /// A spring without a damper oscillates for ever and must be resolved. If radau13 does not
   /// resolve a small oscillation, that is no advantage.
   [[nodiscard]] bool oscillates() const {
-    return std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& body) {
-      return !body.stiffness.empty() &&
-             (body.damping.empty() ||
-              *std::min_element(body.damping.begin(), body.damping.end()) <= 0);
-    });
+    const bool by_element =
+        std::any_of(scene_.elements.begin(), scene_.elements.end(), [](const Element& e) {
+          return e.damping == 0 && e.linear_damping.isZero(0) && e.turning_damping.isZero(0);
+        });
+    return by_element ||
+           std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [](const Body& body) {
+             return !body.stiffness.empty() &&
+                    (body.damping.empty() ||
+                     *std::min_element(body.damping.begin(), body.damping.end()) <= 0);
+           });
   }
 
   void judge_cost() {

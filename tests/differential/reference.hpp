@@ -41,6 +41,9 @@ struct ReferenceMotion {
 /// Readings of sensors at the start, in the order of Tree::readings().
 [[nodiscard]] std::vector<double> start_readings(const Scene& scene);
 
+/// True if the last element of a scene has a force at the start, with room to move.
+[[nodiscard]] bool last_element_works(const Scene& scene);
+
 /// `work` is the approximate limit of floating point operations.
 [[nodiscard]] ReferenceMotion integrate(const Scene& scene, const std::vector<double>& times,
                                         double work);

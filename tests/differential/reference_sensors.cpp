@@ -64,6 +64,12 @@ std::vector<double> Tree::readings(Real t, const State& y) {
       }
       case SensorKind::attitude: put(Quat(Mat(seen.R.transpose() * own.R)).coeffs()); break;
       case SensorKind::reaction: {
+        if (sensor.element >= 0) {
+          const auto [force, torque] = element_reading(sensor, y);
+          put(Vec(axes * force));
+          put(Vec(axes * torque));
+          break;
+        }
         const double* const six = carried.data() + 6 * sensor.body;
         const Vec force(six[0], six[1], six[2]);
         const Vec torque(six[3], six[4], six[5]);

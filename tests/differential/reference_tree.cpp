@@ -535,6 +535,8 @@ void Tree::add_forces(Real t, const State& y, const Motion& guide) {
     }
     if (!part.held) add_joint_force(t, i, y);
   }
+  add_elements();
+  add_gears(y);
 }
 
 // Eigen's blocks are slow in long double, and most factors are 0 here.
@@ -664,6 +666,7 @@ Sizes Tree::sizes(Real t, const State& y) {
       sum.energy += std::abs(Real(body.stiffness[k])) * whole * whole;
     }
   }
+  for (const Element& element : scene_.elements) sum.energy += element_energy(element, y);
   return sum;
 }
 
@@ -687,6 +690,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
       add_load(t, load, static_cast<int>(i), guide);
     }
   }
+  add_elements();
   std::vector<double> result(static_cast<std::size_t>(6 * n));
   for (Eigen::Index i = n; i-- > 0;) {
     const Relative r = relative(static_cast<int>(i));

@@ -38,6 +38,9 @@ class Tree {
   /// Readings of the scene's sensors: three numbers for each vector, for an attitude the quaternion
   /// x, y, z, w.
   [[nodiscard]] std::vector<double> readings(Real t, const State& y);
+  /// True if an element has a force at the start with room to move: the ends of its spring are
+  /// apart, and its mount is rotated by less than 2 rad.
+  [[nodiscard]] bool element_works(const Element& element);
   /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
 
@@ -114,6 +117,24 @@ class Tree {
   void add_gravity(int body, Real t, const Motion& guide);
   void add_torque(int body, const Vec& torque);
   void add_force(int body, const Relative& r, const Vec& force);
+  /// The guide or a body, relative to whose centre of mass points are given.
+  [[nodiscard]] Pose pose_of(int body) const;
+  [[nodiscard]] Vec centre_of(int body) const;
+  /// Force and torque of an element on its second body about its point, on inertial axes.
+  [[nodiscard]] std::pair<Vec, Vec> element_force(const Element& element) const;
+  [[nodiscard]] std::pair<Vec, Vec> mount_force(const Element& element) const;
+  [[nodiscard]] Vec spring_force(const Element& element) const;
+  void add_on_body(int body, const Vec& point, const Vec& force, const Vec& torque);
+  /// Adds the springs and mounts.
+  void add_elements();
+  void add_gears(const State& y);
+  /// The joint force Q_a of a gear.
+  [[nodiscard]] Real gear_force(const Element& element, const State& y) const;
+  [[nodiscard]] std::pair<Real, Real> coordinate_of(int body, const State& y) const;
+  void add_along_joint(int body, Real force);
+  [[nodiscard]] Real element_energy(const Element& element, const State& y) const;
+  /// The six numbers of a sensor on an element.
+  [[nodiscard]] std::pair<Vec, Vec> element_reading(const Sensor& sensor, const State& y) const;
   void add_drag(const Load& load, int body, const Motion& guide);
   void add_load(Real t, const Load& load, int body, const Motion& guide);
   void solve();

@@ -217,6 +217,7 @@ bool misread(const Scene& scene, const kreisel::SceneFile& file) {
   const bool other_method =
       !scene.method.empty() && file.method != kreisel::method_named(scene.method);
   return other_method || file.title != scene.title || file.reactions != scene.reports ||
+         file.element_forces != scene.reports || file.elements.size() != scene.elements.size() ||
          file.terms != scene.reports;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dynamics/tree/joint/list.hpp>
@@ -176,6 +177,29 @@ struct Body {
   bool has_units = false;  ///< mass, centre, inertia and angles as texts with a unit
 };
 
+enum class ElementKind { spring, mount, gear };
+
+/// A force between two bodies or two joints.
+struct Element {
+  ElementKind kind = ElementKind::spring;
+  std::array<int, 2> bodies = {-1, 0};  ///< -1: the guide; for a gear the joints' bodies
+  std::array<Vector, 2> at = {Vector::Zero(), Vector::Zero()};
+  double stiffness = 0;  ///< of a spring or a gear
+  double damping = 0;
+  double length = 0;
+  std::vector<std::pair<double, double>> table = {};  ///< instead of stiffness and length
+  double ratio = 1;
+  // Of a mount.
+  std::optional<Eigen::Vector4d> axes = {};
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d coupling = Eigen::Matrix3d::Zero();
+  Vector linear_damping = Vector::Zero();
+  Vector turning_damping = Vector::Zero();
+  Vector force = Vector::Zero();  ///< preload
+  Vector torque = Vector::Zero();
+};
+
 enum class SensorKind { gyro, accelerometer, point, attitude, reaction };
 
 /// A frame that a sensor names: the index of a body, or one of these.
@@ -185,6 +209,7 @@ inline constexpr int inertial_frame = -2;
 struct Sensor {
   SensorKind kind = SensorKind::gyro;
   int body = 0;
+  int element = -1;  ///< of a reaction, instead of the body's joint
   Vector at = Vector::Zero();
   bool at_by_name = false;                   ///< as one of the body's points
   std::optional<Eigen::Vector4d> axes = {};  ///< w, x, y, z
@@ -203,6 +228,7 @@ struct Scene {
   Vector pole = Vector::UnitZ();
   std::optional<bool> gradient = {};  ///< as in the file
   std::vector<Body> bodies = {};
+  std::vector<Element> elements = {};
   std::vector<Sensor> sensors = {};
   double t_begin = 0;
   double t_end = 1;

@@ -47,6 +47,19 @@ void for_each(Body& body, const std::function<void(double&)>& f) {
   }
 }
 
+void for_each(Element& element, const std::function<void(double&)>& f) {
+  for (Vector* const v : {&element.at[0], &element.at[1], &element.linear_damping,
+                          &element.turning_damping, &element.force, &element.torque}) {
+    for_each(*v, f);
+  }
+  for (auto* const m : {&element.linear, &element.turning, &element.coupling}) {
+    for (double& x : m->reshaped()) f(x);
+  }
+  for (double* const x : {&element.stiffness, &element.damping, &element.length, &element.ratio}) {
+    f(*x);
+  }
+}
+
 /// Calls f with every number of the scene.
 void for_each_number(Scene& scene, const std::function<void(double&)>& f) {
   for (Link& link : scene.guide) {
@@ -62,6 +75,7 @@ void for_each_number(Scene& scene, const std::function<void(double&)>& f) {
   }
   for_each(scene.gravity_vector, f);
   for (Body& body : scene.bodies) for_each(body, f);
+  for (Element& element : scene.elements) for_each(element, f);
   for (Sensor& sensor : scene.sensors) for_each(sensor.at, f);
   f(scene.t_end);
 }
@@ -72,14 +86,27 @@ double rounded(double x, int digits) {
   return unit < 1 ? std::round(x / unit) / std::round(1 / unit) : std::round(x / unit) * unit;
 }
 
+/// Removes an element and the sensors that read it.
+void drop_element(Scene& scene, std::size_t index) {
+  const int dropped = static_cast<int>(index);
+  scene.elements.erase(scene.elements.begin() + dropped);
+  std::erase_if(scene.sensors,
+                [dropped](const Sensor& sensor) { return sensor.element == dropped; });
+  for (Sensor& sensor : scene.sensors) sensor.element -= sensor.element > dropped ? 1 : 0;
+}
+
 /// Removes a body that carries no other.
 void drop_body(Scene& scene, std::size_t index) {
   for (const Body& body : scene.bodies) {
     if (body.parent == static_cast<int>(index)) return;
   }
   if (scene.bodies.size() == 1) return;
-  scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(index));
   const int dropped = static_cast<int>(index);
+  for (std::size_t i = scene.elements.size(); i-- > 0;) {
+    const auto& ends = scene.elements[i].bodies;
+    if (ends[0] == dropped || ends[1] == dropped) drop_element(scene, i);
+  }
+  scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(index));
   const auto move_up = [dropped](int& body) { body -= body > dropped ? 1 : 0; };
   for (Body& body : scene.bodies) move_up(body.parent);
   std::erase_if(scene.sensors, [dropped](const Sensor& sensor) {
@@ -87,6 +114,9 @@ void drop_body(Scene& scene, std::size_t index) {
   });
   for (Sensor& sensor : scene.sensors) {
     for (int* const body : {&sensor.body, &sensor.against, &sensor.on}) move_up(*body);
+  }
+  for (Element& element : scene.elements) {
+    for (int& body : element.bodies) move_up(body);
   }
 }
 
@@ -192,6 +222,11 @@ std::vector<Change> changes_of(const Scene& scene) {
   std::vector<Change> changes;
   add_guide_changes(scene, changes);
   for (std::size_t i = scene.bodies.size(); i-- > 0;) add_body_changes(i, changes);
+  for (std::size_t i = 0; i < scene.elements.size(); ++i) {
+    changes.emplace_back([i](Scene& s) { drop_element(s, i); });
+    changes.emplace_back(
+        [i](Scene& s) { s.elements[i].axes.reset(), s.elements[i].table.clear(); });
+  }
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     changes.emplace_back(
         [i](Scene& s) { s.sensors.erase(s.sensors.begin() + static_cast<std::ptrdiff_t>(i)); });
