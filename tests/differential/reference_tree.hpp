@@ -38,8 +38,8 @@ class Tree {
   /// Readings of the scene's sensors: three numbers for each vector, for an attitude the quaternion
   /// x, y, z, w.
   [[nodiscard]] std::vector<double> readings(Real t, const State& y);
-  /// True if an element has a force at the start with room to move: the ends of its spring are
-  /// apart, and its mount is rotated by less than 2 rad.
+  /// True if an element has a force at the start, with room to move. A spring's ends are apart, and
+  /// a mount is rotated by less than 2 rad.
   [[nodiscard]] bool element_works(const Element& element);
   /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
