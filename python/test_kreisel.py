@@ -91,6 +91,19 @@ class AsSimulate(unittest.TestCase):
         self.assertEqual(run.times.tolist(), [0.25, 1.25])
         self.assertEqual((run.report.tolerance, run.report.method), (1e-6, "radau13"))
 
+    def test_elements_by_name(self):
+        path = SCENES / "engine_on_mounts.toml"
+        summary, names, rows = simulate(path, "--t-end", "0.1")
+        run = kreisel.Scene(path).solve(t_end=0.1, elements=True)
+        self.assertEqual(run.columns, names)
+        np.testing.assert_array_equal(run.rows, rows)
+        for name, force in run.elements.items():
+            wanted = summary["final"]["elements"][name]
+            self.assertEqual(force["force"][-1].tolist(), wanted["force"])
+            self.assertEqual(force["torque"][-1].tolist(), wanted["torque"])
+        self.assertEqual(len(run.elements), 4)
+        self.assertEqual(kreisel.Scene(path).solve(t_end=0.1).elements, {})
+
     def test_sensors_by_name(self):
         run = kreisel.Scene(SCENES / "imu_on_ship.toml").solve(t_end=0.2)
         for name, part, column in [("gyro", "value", "gyro.x"),
@@ -119,6 +132,12 @@ class OfKeywords(unittest.TestCase):
         np.testing.assert_array_equal(run.rows, kreisel.Scene.from_text(ROD).solve().rows)
         again = kreisel.Scene.from_text(self.scene().text)
         np.testing.assert_array_equal(run.rows, again.solve().rows)
+
+    def test_elements(self):
+        mount = {"name": "m", "kind": "mount", "between": ["guide", self.BODY["name"]],
+                 "turning_stiffness": np.diag([1, 2, 3]), "preload": [0, 0, 0, 0, 1, 0]}
+        run = self.scene(element=[mount]).solve(elements=True)
+        np.testing.assert_allclose(run.elements["m"]["torque"][0], [0, 0, 0], atol=1e-15)
 
     def test_increments_are_sampled(self):
         gyro = {"name": "gyro", "kind": "gyro", "body": "unit", "period": 0.25, "increments": True}

@@ -200,6 +200,21 @@ BOOST_AUTO_TEST_CASE(examples) {
   check_near("Foucault", turned, 15.041067 * std::sin(48.846222 * pi / 180), 0.06);
 }
 
+BOOST_AUTO_TEST_CASE(elements_are_reported) {
+  const std::string engine = scene("engine_on_mounts") + " --t-end 0.1";
+  const json elements = answer(engine).at("final").at("elements");
+  BOOST_TEST(elements.size() == 4U);
+  double weight = 0;
+  for (const auto& [name, load] : elements.items()) {
+    BOOST_TEST(load.at("torque").size() == 3U);
+    weight += load.at("force").at(2).get<double>();
+  }
+  BOOST_TEST(std::abs(weight - 160 * 9.81) < 100);  // the block moves
+  const Outcome text = run(engine);
+  BOOST_TEST(text.out.find("elements on their second bodies, N and N m") != std::string::npos);
+  BOOST_TEST(text.out.find("load: elements between bodies") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(every_example_runs) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(KREISEL_SCENES)) {
