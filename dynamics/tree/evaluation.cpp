@@ -11,6 +11,7 @@
 #include <dynamics/tree/conservation.hpp>
 #include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
+#include <dynamics/tree/kept_momenta.hpp>
 #include <dynamics/tree/mass_matrix.hpp>
 #include <dynamics/tree/passes.hpp>
 #include <dynamics/tree/terms.hpp>

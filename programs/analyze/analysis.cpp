@@ -110,9 +110,9 @@ bool is_steady(const kreisel::SceneFile& scene) {
          !has_link<Motion>(scene) && is_circle && !travels;
 }
 
-/// True if the forces on bodies at rest cannot deliver unlimited energy. These forces are gravity
-/// on guide axes or that of the earth below the guide, springs, constant joint forces, loads with a
-/// potential, symmetric mounts, and dampers.
+/// True if the forces on bodies at rest cannot deliver unlimited energy. They are gravity on guide
+/// axes or that of the earth below the guide, springs, dampers and constant joint forces. Loads and
+/// mounts need a potential.
 bool has_potential(const kreisel::SceneFile& scene) {
   const auto* const planet = std::get_if<kreisel::OblateGravitation<>>(&scene.gravity);
   const bool on_earth =

@@ -189,7 +189,7 @@ struct Element {
   double length = 0;
   std::vector<std::pair<double, double>> table = {};  ///< instead of stiffness and length
   double ratio = 1;
-  // Of a mount.
+  // Numbers of a mount.
   std::optional<Eigen::Vector4d> axes = {};
   Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
