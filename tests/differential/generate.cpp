@@ -834,9 +834,11 @@ Eigen::Matrix3d diagonal(Random& r) {
   return Vector(stiffness(r), stiffness(r), stiffness(r)).asDiagonal();
 }
 
+/// A spring whose ends are off all axes, so that no motion about an axis lets them meet.
 Element spring(Random& r) {
   Element result;
   result.at = {vector(r, 0.1, 2), vector(r, 0.1, 2)};
+  for (double& x : result.at[1]) x += sign(r) * rounded(r.between(0.05, 0.1), 3);
   if (r.chance(0.2)) {
     result.table = {{0, -10}, {1, 0}, {2, 30}};
   } else {
