@@ -183,8 +183,8 @@ class BodySystem {
   }
 
   /// True if series() is available. The guide is then analytic, as are all loads and prescribed
-  /// accelerations as functions of time; no elements except couplings, and no free joint between
-  /// two bodies.
+  /// accelerations as functions of time. There are no elements except couplings, and no free joint
+  /// between two bodies.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
     return detail::has_series(guide_) && detail::knows_series(tree_);
   }
