@@ -133,12 +133,14 @@ std::string toml_of(const std::string& key, const py::handle& value) {
                        py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>());
 }
 
-/// The scene from keyword arguments, with a line for each keyword and for each body, element and sensor.
+/// The scene from keyword arguments, with a line for each keyword and for each body, element,
+/// constraint and sensor.
 Scene scene_of_keywords(const py::kwargs& keywords) {
   std::string text;
   for (const auto& [name, value] : keywords) {
     const auto key = name.cast<std::string>();
-    const bool list = (key == "body" || key == "sensor" || key == "element") &&
+    const bool list = (key == "body" || key == "sensor" || key == "element" ||
+                       key == "constraint") &&
                       (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
     text += key_of(key) + " = " + (list ? toml_list(key, value, "\n") : toml_of(key, value)) + "\n";
   }

@@ -148,6 +148,10 @@ class Approximation final : public SceneSolver {
                                                     const JointState& state) const override {
     return exact_->element_forces(t, state);
   }
+  [[nodiscard]] std::vector<Motor<>> constraint_forces(double t,
+                                                       const JointState& state) const override {
+    return exact_->constraint_forces(t, state);
+  }
   [[nodiscard]] ForceParts<Body> terms(double t, const JointState& state, int body) const override {
     return exact_->terms(t, state, body);
   }
@@ -187,6 +191,10 @@ std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
   if (scene.model != SceneModel::exact && !scene.discontinuities.empty()) {
     throw InvalidInput("model '" + std::string(name(scene.model)) +
                        "' is for forces that do not jump; take model 'exact'");
+  }
+  if (scene.model != SceneModel::exact && !scene.constraints.empty()) {
+    throw InvalidInput("model '" + std::string(name(scene.model)) +
+                       "' is for scenes without constraints; take model 'exact'");
   }
   switch (scene.model) {
     case SceneModel::linear:

@@ -38,11 +38,23 @@ std::vector<std::string> columns(const std::vector<BodyDescription>& bodies, boo
   return names;
 }
 
+namespace {
+
+void append_force_columns(const std::string& name, std::vector<std::string>& names) {
+  for (const char* const part : element_quantities) names.push_back(name + "." + part);
+}
+
+}  // namespace
+
 std::vector<std::string> columns(const std::vector<Element>& elements) {
   std::vector<std::string> names;
-  for (const Element& element : elements) {
-    for (const char* const part : element_quantities) names.push_back(name(element) + "." + part);
-  }
+  for (const Element& element : elements) append_force_columns(name(element), names);
+  return names;
+}
+
+std::vector<std::string> columns(const std::vector<Constraint>& constraints) {
+  std::vector<std::string> names;
+  for (const Constraint& constraint : constraints) append_force_columns(constraint.name, names);
   return names;
 }
 
@@ -50,6 +62,10 @@ std::vector<std::string> columns(const SceneFile& scene) {
   std::vector<std::string> names = columns(scene.bodies, scene.reactions);
   if (scene.element_forces) {
     const std::vector<std::string> own = columns(scene.elements);
+    names.insert(names.end(), own.begin(), own.end());
+  }
+  if (scene.constraint_forces) {
+    const std::vector<std::string> own = columns(scene.constraints);
     names.insert(names.end(), own.begin(), own.end());
   }
   for (const SceneSensor& sensor : scene.sensors) {
@@ -109,12 +125,14 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
       values.push_back(drive_torque(tree, i, carried));
     }
   }
-  if (forces.elements) {
-    for (const auto& [force, torque] : model.element_forces(t, state)) {
+  const auto append_all = [&append](const std::vector<Motor<>>& all) {
+    for (const auto& [force, torque] : all) {
       append(force);
       append(torque);
     }
-  }
+  };
+  if (forces.elements) append_all(model.element_forces(t, state));
+  if (forces.constraints) append_all(model.constraint_forces(t, state));
   return values;
 }
 

@@ -19,7 +19,7 @@ std::vector<JointQuantity> joint_quantities(JointKind kind);
 inline constexpr std::array reaction_quantities{"force x",  "force y",  "force z",     "torque x",
                                                 "torque y", "torque z", "drive torque"};
 
-/// Names of the components of an element's force.
+/// Names of the components of the force of an element or a constraint.
 inline constexpr std::array element_quantities{"force x",  "force y",  "force z",
                                                "torque x", "torque y", "torque z"};
 
@@ -31,16 +31,19 @@ inline std::vector<std::string> columns(const BodyTree& tree, bool reactions) {
   return columns(tree.bodies(), reactions);
 }
 
-/// The columns of forces and torques of elements.
+/// The columns of forces and torques of elements and of constraints.
 std::vector<std::string> columns(const std::vector<Element>& elements);
+std::vector<std::string> columns(const std::vector<Constraint>& constraints);
 
 /// The forces that the rows of a run contain besides the joints' coordinates and rates.
 struct RowForces {
   bool reactions = false;
   bool elements = false;
+  bool constraints = false;
 };
 
-/// The columns of a scene's run: joints, reactions and elements if they are requested, and sensors.
+/// The columns of a scene's run: joints, reactions, elements and constraints if they are
+/// requested, and sensors.
 [[nodiscard]] std::vector<std::string> columns(const SceneFile& scene);
 
 /// True if a word is a column's name or its group: the part of the name before a dot or a blank.

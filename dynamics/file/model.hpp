@@ -35,6 +35,9 @@ class SceneSolver {
   /// Force and torque of each element on its second body about its end, on the first body's axes.
   [[nodiscard]] virtual std::vector<Motor<>> element_forces(double t,
                                                             const JointState& state) const = 0;
+  /// The same of each constraint, about its point of the second body.
+  [[nodiscard]] virtual std::vector<Motor<>> constraint_forces(double t,
+                                                               const JointState& state) const = 0;
   [[nodiscard]] virtual ForceParts<Body> terms(double t, const JointState& state,
                                                int body) const = 0;
   /// The terms of the equation that is computed; they do not depend on the state.

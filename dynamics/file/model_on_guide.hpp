@@ -17,8 +17,8 @@ class ModelOnGuide final : public SceneSolver {
 
  public:
   ModelOnGuide(M guide, SceneBodies scene)
-      : system_(std::move(guide), std::move(scene.bodies), scene.gravity,
-                std::move(scene.elements)),
+      : system_(std::move(guide), std::move(scene.bodies), scene.gravity, std::move(scene.elements),
+                scene.constraints),
         gravitation_(std::move(scene.gravitation)),
         workspace_(system_.workspace()) {}
 
@@ -49,6 +49,15 @@ class ModelOnGuide final : public SceneSolver {
                                                     const JointState& state) const override {
     std::vector<Motor<>> result;
     system_.element_forces(t, vector(state), result, workspace_);
+    return result;
+  }
+
+  [[nodiscard]] std::vector<Motor<>> constraint_forces(double t,
+                                                       const JointState& state) const override {
+    std::vector<Motor<>> result;
+    for (const auto& reaction : system_.constraint_reactions(t, vector(state), workspace_)) {
+      result.push_back(reaction.on_second);
+    }
     return result;
   }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/constraint_keys.hpp>
 #include <dynamics/file/element_keys.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/scene_guide.hpp>
@@ -82,6 +83,7 @@ class SceneReader {
     scene_.guide = std::move(guide.links);
     read_bodies();
     scene_.elements = detail::read_elements(root_, scene_, mistakes_.none());
+    detail::read_constraints(root_, assembles_, mistakes_.none(), scene_);
     scene_.sensors = detail::read_sensors(root_, scene_, mistakes_.none());
     read_report();
     put_discontinuities_in_order();
@@ -129,6 +131,7 @@ class SceneReader {
       solve->refuse("output_step", "asks for more than ten million rows");
     }
     if (times) check_times(*solve, *times);
+    assembles_ = solve->flag("assemble");
     solve->finish();
     if (mistakes_.none()) set_times(step, times);
   }
@@ -825,6 +828,7 @@ class SceneReader {
     if (!report) return;
     scene_.reactions = report->flag("reactions");
     scene_.element_forces = report->flag("elements");
+    scene_.constraint_forces = report->flag("constraints");
     scene_.terms = report->flag("terms");
     report->finish();
   }
@@ -835,6 +839,7 @@ class SceneReader {
   Mistakes& mistakes_;
   detail::SignalLogs& logs_;
   SceneFile scene_;
+  bool assembles_ = false;
   bool outputs_are_given_ = false;
 };
 

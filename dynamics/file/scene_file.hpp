@@ -158,6 +158,8 @@ struct SceneFile {
   std::vector<JointStart> start;    ///< one for each body
   std::vector<NamedPoints> points;  ///< one for each body
   std::vector<Element> elements = {};
+  std::vector<Constraint> constraints = {};
+  std::vector<RedundantConstraint> redundant_constraints = {};  ///< at the start
   std::vector<SceneSensor> sensors;
   double t_begin = 0;
   double t_end = 0;  ///< after t_begin
@@ -171,6 +173,7 @@ struct SceneFile {
   std::vector<std::string> columns;  ///< chosen columns or groups of columns; empty: all
   bool reactions = false;
   bool element_forces = false;  ///< reported, as the reactions
+  bool constraint_forces = false;
   bool terms = false;
   std::vector<SceneSignalLog> signal_logs = {};
   /// The same scene with other logs of functions of time.

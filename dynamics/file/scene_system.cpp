@@ -155,7 +155,7 @@ SceneGuide make_guide_of_equations(const SceneFile& scene) {
 }
 
 SceneBodies bodies_in_gravity(const SceneFile& scene) {
-  SceneBodies result{scene.bodies, {}, scene.elements};
+  SceneBodies result{scene.bodies, {}, scene.elements, scene.constraints};
   const auto add_to_all = [&result](const auto& load) {
     result.gravitation = load;
     for (BodyDescription& body : result.bodies) {

@@ -54,6 +54,7 @@ struct SceneBodies {
   std::vector<BodyDescription> bodies;
   Gravity gravity;
   std::vector<Element> elements = {};
+  std::vector<Constraint> constraints = {};
   std::optional<BodyLoad> gravitation = {};  ///< the load on all bodies that represents gravity
 };
 

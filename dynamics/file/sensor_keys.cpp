@@ -38,7 +38,9 @@ class SensorReader {
     if (kind == "attitude") sensor.kind = attitude(section);
     if (kind == "joint") sensor.kind = joint(section);
     if (kind == "reaction" && section.has("element")) {
-      sensor.kind = element(section);
+      sensor.kind = element(section, "element");
+    } else if (kind == "reaction" && section.has("constraint")) {
+      sensor.kind = element(section, "constraint");
     } else if (kind == "reaction") {
       sensor.kind = reaction(section);
     }
@@ -165,24 +167,36 @@ class SensorReader {
     return sensor;
   }
 
-  ElementSensor element(Section& section) {
+  /// The reaction of an element or of a constraint, as the key says.
+  ElementSensor element(Section& section, const char* key) {
     ElementSensor sensor;
-    if (section.has("joint")) section.refuse("joint", "and 'element' exclude each other");
+    for (const char* const other : {"joint", "element", "constraint"}) {
+      if (std::string(other) != key && section.has(other)) {
+        section.refuse(other, "and '" + std::string(key) + "' exclude each other");
+      }
+    }
+    const bool is_element = std::string(key) == "element";
     std::vector<std::string> words;
-    for (const Element& element : scene_.elements) words.push_back(name(element));
-    const auto word = section.text("element");
-    if (word && sound_) sensor.element = index_of_name(section, "element", *word, words, "element");
-    if (section.has("at")) sensor.at = at(section, second_body(sensor.element));
+    std::vector<std::string> seconds;
+    for (const Element& element : scene_.elements) {
+      if (is_element) words.push_back(name(element));
+      seconds.push_back(second_of(element));
+    }
+    for (const Constraint& constraint : scene_.constraints) {
+      if (!is_element) words.push_back(constraint.name);
+      seconds.push_back(constraint.second);
+    }
+    const auto word = section.text(key);
+    if (!word || !sound_) return sensor;
+    sensor.element = index_of_name(section, key, *word, words, key);
+    if (!is_element) sensor.element += static_cast<int>(scene_.elements.size());
+    const bool is_known = static_cast<std::size_t>(sensor.element) < seconds.size();
+    const auto found = std::find(names_.begin(), names_.end(),
+                                 is_known ? seconds[std::size_t(sensor.element)] : "");
+    const auto second = found == names_.end() ? 0 : found - names_.begin();
+    if (section.has("at")) sensor.at = at(section, static_cast<int>(second));
     set_axes(section, sensor);
     return sensor;
-  }
-
-  /// The second body of an element; the first of all bodies if there is none.
-  [[nodiscard]] int second_body(int element) const {
-    if (static_cast<std::size_t>(element) >= scene_.elements.size()) return 0;
-    const std::string& second = second_of(scene_.elements[static_cast<std::size_t>(element)]);
-    const auto found = std::find(names_.begin(), names_.end(), second);
-    return found == names_.end() ? 0 : static_cast<int>(found - names_.begin());
   }
 
   /// Reads `axes`: the name of a frame, or a quaternion.
@@ -326,7 +340,9 @@ std::vector<SceneSensor> read_sensors(Section& root, const SceneFile& scene, boo
   const std::vector<std::string> of_bodies = columns(bodies, true);
   const std::vector<std::string> of_elements = columns(scene.elements);
   std::set<std::string> taken(of_bodies.begin(), of_bodies.end());
+  const std::vector<std::string> of_constraints = columns(scene.constraints);
   taken.insert(of_elements.begin(), of_elements.end());
+  taken.insert(of_constraints.begin(), of_constraints.end());
   for (Section& section : root.sections("sensor")) {
     const std::string name = section.required_text("name");
     if (section.has("name") && section.find("name")->is_string() && name.empty()) {

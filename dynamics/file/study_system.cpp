@@ -38,6 +38,11 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 }  // namespace
 
 StudySystem::StudySystem(const SceneFile& scene) : begin_(scene.t_begin) {
+  if (!scene.constraints.empty()) {
+    throw InvalidInput(
+        "constraint '" + scene.constraints.front().name +
+        "': equilibria, roots and approximations are for scenes without constraints");
+  }
   SceneBodies in_gravity = bodies_in_gravity(scene);
   bodies_ =
       std::make_unique<const Bodies>(make_guide_of_equations(scene), std::move(in_gravity.bodies),

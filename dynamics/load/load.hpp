@@ -8,7 +8,6 @@
 
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/inertia.hpp>
-#include <dynamics/load/timed_load.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -56,7 +55,7 @@ struct LoadContext {
 /// potential(context), which the outputs add up. A load that does not read LoadContext::guide
 /// declares a static member ignores_guide = true: scenes then do not compute the guide. A static
 /// member kind is the load's name in terms(). A load that depends on time alone has a member
-/// in_time(), which returns a TimedLoad: it then has Taylor series.
+/// in_time(), which returns a TimedLoad. It then has Taylor series.
 ///
 /// Energy is listed as an invariant only if each load has a member keeps_energy() that returns
 /// true. On a guide at rest the work of such a load is that of its potential(), which does not
@@ -127,11 +126,6 @@ struct ConstantLoad {
     const Vector3<N> f = s.template on_body_axes<A>(force.template cast<N>());
     return {{f, s.template on_body_axes<A>(torque.template cast<N>()) +
                     point.template cast<N>().cross(f)}};
-  }
-
-  [[nodiscard]] TimedLoad in_time() const
-      requires(std::is_same_v<S, double> && !std::is_same_v<A, Inertial>) {
-    return {std::is_same_v<A, Body>, force, torque, point};
   }
 };
 

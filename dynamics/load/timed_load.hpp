@@ -1,5 +1,8 @@
 #pragma once
 
+#include <type_traits>
+
+#include <dynamics/load/load.hpp>
 #include <dynamics/signal/signal.hpp>
 
 namespace kreisel {
@@ -16,5 +19,19 @@ struct TimedLoad {
 
   [[nodiscard]] bool is_analytic() const { return force.is_analytic() && torque.is_analytic(); }
 };
+
+namespace detail {
+
+template <class L>
+requires requires(const L& load) { load.in_time(); }
+[[nodiscard]] TimedLoad in_time(const L& load) { return load.in_time(); }
+
+template <class A>
+requires(!std::is_same_v<A, Inertial>) [[nodiscard]] TimedLoad
+    in_time(const ConstantLoad<A>& load) {
+  return {std::is_same_v<A, Body>, load.force, load.torque, load.point};
+}
+
+}  // namespace detail
 
 }  // namespace kreisel

@@ -1,4 +1,5 @@
 #include <dynamics/sensor/kinematics.hpp>
+#include <dynamics/tree/constraints.hpp>
 #include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/passes.hpp>
 #include <dynamics/tree/rotor_forces.hpp>
@@ -13,6 +14,17 @@ inline void add_elements(const BodyTree& tree, const Eigen::VectorXd& y, const B
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const auto& [first, second] = tree.element_places()[k].body;
     result.push_back({first, second, second_point(tree.elements()[k]), forces[k]});
+  }
+}
+
+/// Appends the forces of the constraints. Needs the multipliers and the motions in w.
+inline void add_constraints(const BodyTree& tree, BodyWorkspace& w,
+                            std::vector<ElementLoad>& result) {
+  const auto reactions = constraint_reactions(tree, w);
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    const ConstraintLink& link = tree.constraints()[k];
+    result.push_back({tree.links()[link.first].body, tree.links()[link.second].body,
+                      reactions[k].at, reactions[k].on_second});
   }
 }
 
@@ -37,6 +49,7 @@ SystemKinematics kinematics(const BodyTree& tree, const Surroundings& now, const
     result.bodies.push_back({w.pose[link].R, x, V.resultant, V.moment, motion.dw, motion.a});
   }
   if (!tree.elements().empty()) add_elements(tree, y, w, result.elements);
+  if (!tree.constraints().empty()) add_constraints(tree, w, result.elements);
   return result;
 }
 

@@ -33,7 +33,7 @@ struct GravityField {
   const BodyLoad* load = nullptr;                     ///< per kg, for a point mass; null: none
 };
 
-/// The force of an element at one moment.
+/// The force of an element or a constraint at one moment.
 ///
 /// Frame  : on the FIRST body's axes; on the second body, about its point `at`
 /// Units  : metre (at: second body's axes), N, N m
@@ -57,7 +57,7 @@ struct SystemKinematics {
   GravityField gravity = {};
   std::vector<BodyKinematics> bodies = {};
   JointReactions reactions = {};
-  std::vector<ElementLoad> elements = {};
+  std::vector<ElementLoad> elements = {};  ///< and, after them, of the constraints
   Eigen::VectorXd rates = {};  ///< y' of the state: of all coordinates, then of the rates
 
   [[nodiscard]] const BodyKinematics& body(int i) const {

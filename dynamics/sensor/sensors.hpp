@@ -138,13 +138,14 @@ struct KREISEL_API ReactionSensor {
   [[nodiscard]] Motor<> operator()(const SystemKinematics& system) const;
 };
 
-/// The force and torque of an element on its second body, about a point of that body.
+/// The force and torque of an element or a constraint on its second body, about a point of that
+/// body.
 ///
 /// Frame  : the axes of `frame`, rotated by `axes`; about the point `at` of the second body
 /// Units  : N, N m
 /// Error  : that of the element
 struct KREISEL_API ElementSensor {
-  int element = 0;
+  int element = 0;                                           ///< constraints follow the elements
   std::optional<Vector3<double>> at = {};                    ///< none: the element's own point
   std::optional<SensorFrame> frame = {};                     ///< none: the first body's
   Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();  ///< sensor to `frame`

@@ -21,15 +21,44 @@
 
 namespace kreisel::detail {
 
-/// The field of a scene of any type.
-using AnyField =
-    std::function<void(const double& t, const Eigen::VectorXd& y, Eigen::VectorXd& rate)>;
+/// The field of a scene of any type, with the projection onto the scene's conditions if it has one.
+class AnyField {
+ public:
+  template <class Field>
+  requires(!std::is_same_v<Field, AnyField>) explicit AnyField(Field field)
+      : rate_(field_of(field)), project_(projection_of(field)) {}
 
-template <class Field>
-[[nodiscard]] AnyField any_field(Field field) {
-  return [field = std::move(field)](const double& t, const Eigen::VectorXd& y,
-                                    Eigen::VectorXd& rate) mutable { call(field, t, y, rate); };
-}
+  void operator()(const double& t, const Eigen::VectorXd& y, Eigen::VectorXd& rate) const {
+    rate_(t, y, rate);
+  }
+
+  void project(Eigen::VectorXd& y) const {
+    if (project_) project_(y);
+  }
+
+ private:
+  using Rate =
+      std::function<void(const double& t, const Eigen::VectorXd& y, Eigen::VectorXd& rate)>;
+  using Projection = std::function<void(Eigen::VectorXd& y)>;
+
+  template <class Field>
+  static Rate field_of(Field field) {
+    return [field = std::move(field)](const double& t, const Eigen::VectorXd& y,
+                                      Eigen::VectorXd& rate) mutable { call(field, t, y, rate); };
+  }
+
+  template <class Field>
+  static Projection projection_of(Field field) {
+    if constexpr (requires(Eigen::VectorXd & y) { field.project(y); }) {
+      return [field = std::move(field)](Eigen::VectorXd& y) mutable { field.project(y); };
+    } else {
+      return nullptr;
+    }
+  }
+
+  Rate rate_;
+  Projection project_;
+};
 
 /// The Taylor series of a scene of any type.
 class AnySeries {

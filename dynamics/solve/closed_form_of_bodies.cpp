@@ -18,7 +18,7 @@ namespace kreisel::detail {
 /// The only body of a tree, if no joint force and no load acts on it.
 [[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
   const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && tree.loaded().empty() &&
-                     tree.elements().empty();
+                     tree.elements().empty() && tree.constraints().empty();
   if (!alone || !tree.links().back().moved_by_forces()) return nullptr;
   for (const JointForce& force : tree.forces()) {
     if (force.stiffness != 0 || force.damping != 0 || force.constant != 0) return nullptr;

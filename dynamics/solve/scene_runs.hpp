@@ -158,7 +158,7 @@ class SceneRuns final : public SteppedScene {
   [[nodiscard]] auto field(bool other) const {
     SceneField<Scene> field{&scene(other)};
     if constexpr (of_any_size) {
-      return any_field(std::move(field));
+      return AnyField(std::move(field));
     } else {
       return field;
     }

@@ -35,7 +35,8 @@ namespace kreisel {
 ///          memory, the steps none. Or Eigen::Matrix<Pack, n, 1>: one solution for each lane. Time
 ///          and step are then double and common to all, by the greatest relative error
 /// Field  : callable (S t, Vector y) -> Vector, or (S t, Vector y, Vector& rate), which writes into
-///          a rate that has its size already
+///          a rate that has its size already. If it has a member project(Vector& y), that moves the
+///          state onto conditions after each step and at each output
 /// Blocks : how many components, in turn, share a unit and a size, e.g. {4, 3} for a quaternion and
 ///          an angular velocity; one block by default
 /// Source : Verner's tableau; step control (PI): E. Hairer, G. Wanner, Solving Ordinary
@@ -167,6 +168,7 @@ class ExplicitRungeKutta {
       if (!polynomial_known_) fit_polynomial();
       polynomial_known_ = true;
       polynomial(((time - from) - before_.time.rest) / before_.length, result);
+      if constexpr (requires { field_.project(result); }) field_.project(result);
     }
   }
 
@@ -451,6 +453,7 @@ class ExplicitRungeKutta {
     effort_.steps += 1;
     detail::perturb(change, accuracy_.perturbed, effort_.steps, static_cast<double>(h));
     state_.set_sum(before_.state, change);
+    if constexpr (requires { field_.project(state_.value); }) field_.project(state_.value);
     before_.length = h;
     sizes_.note(y());
   }

@@ -189,6 +189,7 @@ class GaussIRK {
       if (steps_taken_ % 16 == 0) note_rounding();
       solve_stages();
       state_.add(stage_.rowwise().sum());
+      if constexpr (requires { field_.project(state_.value); }) field_.project(state_.value);
       time_.add(h_);
       squares_ += h_ * h_;
       sizes_.note(y());

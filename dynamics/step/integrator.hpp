@@ -30,6 +30,13 @@ struct SceneField<Scene> {
   void operator()(const S& t, const Vector& y, Vector& rate) {
     scene->rates(t, y, rate, workspace);
   }
+
+  /// Moves a state onto the conditions of the scene.
+  template <class Vector>
+  void project(Vector& y) requires requires {
+    scene->project(y, workspace);
+  }
+  { scene->project(y, workspace); }
 };
 
 /// The blocks of a scene: a static member of its class or a member of the object.

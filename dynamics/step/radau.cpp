@@ -255,7 +255,10 @@ Eigen::VectorXd RadauIntegrator::at(StiffField& field, double time) {
   Eigen::VectorXd there =
       before_.state.value + (stages_.value.col(stages() - 1) + before_.state.rest);
   stages_.value = kept_;
-  if (done) return there;
+  if (done) {
+    field.project(there);
+    return there;
+  }
   RadauIntegrator shorter = *this;
   shorter.time_ = before_.time;
   shorter.state_ = before_.state;
@@ -433,6 +436,7 @@ bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool a
   effort_.steps += 1;
   note_rounding();
   state_.add(change_);
+  field.project(state_.value);
   time_.add(h);
   sizes_.note(y());
   return true;

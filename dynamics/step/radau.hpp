@@ -29,6 +29,9 @@ class StiffField {
 
   virtual void rate(double t, const Eigen::VectorXd& y, double* result) = 0;
   virtual void jacobian(double t, const Eigen::VectorXd& y, Eigen::MatrixXd& result) = 0;
+
+  /// Moves a state onto the conditions of the field, if it has some.
+  virtual void project(Eigen::VectorXd& /*y*/) {}
 };
 
 /// StiffField for states of the type that the field accepts.
@@ -56,6 +59,10 @@ class StiffFieldOf final : public StiffField {
       const auto tangent = jacobian_(t, vector_of<Vector>(y)).of_state;
       std::copy_n(tangent.data(), tangent.size(), result.data());
     }
+  }
+
+  void project(Eigen::VectorXd& y) override {
+    if constexpr (requires { field_.project(y); }) field_.project(y);
   }
 
  private:

@@ -12,6 +12,7 @@
 #include <dynamics/model/scene.hpp>
 #include <dynamics/processor.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
+#include <dynamics/tree/constraints.hpp>
 #include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/passes.hpp>
@@ -20,7 +21,7 @@
 namespace kreisel {
 
 /// A tree of rigid bodies on a moving guide. Any number of bodies are joined to the guide or to
-/// each other, with springs, dampers, drives, locks, loads and elements.
+/// each other, with springs, dampers, drives, locks, loads, elements and constraints.
 ///
 /// The guide's motion enters once, by velocity and acceleration at the root of the tree. Its cost
 /// does not depend on the number of bodies; a guide at rest costs nothing.
@@ -50,8 +51,10 @@ class BodySystem {
   };
 
   BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {},
-             std::vector<Element> elements = {})
-      : guide_(std::move(guide)), tree_(std::move(bodies), std::move(elements)), gravity_(gravity) {
+             std::vector<Element> elements = {}, const std::vector<Constraint>& constraints = {})
+      : guide_(std::move(guide)),
+        tree_(std::move(bodies), std::move(elements), constraints),
+        gravity_(gravity) {
     detail::KREISEL_SAME_MARCH();
     detail::check_gravity(gravity_);
   }
@@ -119,12 +122,14 @@ class BodySystem {
   ///          double alone are differences, with an error of 2^-42 of their fifth derivatives
   /// Cost   : one evaluation of the inverse dynamics in dual numbers, and one solution for each
   ///          derivative; memory is allocated
-  /// Throws : also InvalidInput, naming the body, for a load that takes no dual numbers
+  /// Throws : also InvalidInput, naming the body, for a load that takes no dual numbers; naming the
+  ///          constraint, for a tree with constraints
   template <class Dual>
   [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
     using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
     detail::require_dual_loads(tree_);
+    detail::require_no_constraints(tree_);
     BodyWorkspace w = workspace();
     Vector number(y.size());
     for (Eigen::Index i = 0; i < y.size(); ++i) number[i] = y[i].value();
@@ -183,8 +188,8 @@ class BodySystem {
   }
 
   /// True if series() is available. The guide is then analytic, as are all loads and prescribed
-  /// accelerations as functions of time. There are no elements except couplings, and no free joint
-  /// between two bodies.
+  /// accelerations as functions of time. There are no constraints, no elements except couplings, and
+  /// no free joint between two bodies.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
     return detail::has_series(guide_) && detail::knows_series(tree_);
   }
@@ -196,6 +201,47 @@ class BodySystem {
       rates(t, y, rate, w);
     };
     return {tree_, detail::is_resting<M>, field, felt_at_origin()};
+  }
+
+  /// Moves a state that is close to the constraints onto them, by the least change of the motion
+  /// weighted with the mass matrix. Integrators call it after each step.
+  ///
+  /// Throws : ComputationFailed, naming the constraint, if the state is too far from them
+  void project(Vector& y, BodyWorkspace& w) const {
+    if (tree_.constraints().empty()) return;
+    detail::require(tree_, y, 0, w);
+    detail::project_on_constraints(tree_, y, w);
+  }
+
+  /// The state nearest to a given one that fulfils the constraints, by Newton's method.
+  ///
+  /// Throws : ComputationFailed, naming the constraint that stays open, if there is none near
+  [[nodiscard]] State assembled(const State& state) const {
+    BodyWorkspace w = workspace();
+    return from_vector(detail::assembled(tree_, to_vector(state), w));
+  }
+
+  /// How far a state is from the constraints.
+  [[nodiscard]] std::vector<ConstraintGap> constraint_gaps(const State& state) const {
+    BodyWorkspace w = workspace();
+    return detail::constraint_gaps(tree_, to_vector(state), w);
+  }
+
+  /// Constraints of which some conditions follow from those of earlier ones. They are solved for
+  /// the smallest reactions.
+  [[nodiscard]] std::vector<RedundantConstraint> redundant_constraints(const State& state) const {
+    BodyWorkspace w = workspace();
+    return detail::redundant_constraints(tree_, to_vector(state), w);
+  }
+
+  /// The reactions of the constraints.
+  ///
+  /// Source : paper 002 (26): the R_ij of the cut joints
+  [[nodiscard]] std::vector<ConstraintReaction> constraint_reactions(double t, const Vector& y,
+                                                                     BodyWorkspace& w) const {
+    detail::require(tree_, y, 0, w);
+    detail::accelerate(tree_, at(t), y, {}, w.acceleration.data(), w);
+    return detail::constraint_reactions(tree_, w);
   }
 
   /// True if a spring, a damper or an element may be so stiff that it limits the step.

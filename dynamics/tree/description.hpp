@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <dynamics/inertia.hpp>
-#include <dynamics/load/load.hpp>
+#include <dynamics/load/timed_load.hpp>
 #include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/signal/signal.hpp>
 #include <dynamics/tree/joint/joint.hpp>
@@ -125,8 +125,8 @@ class BodyLoad {
     if constexpr (requires { load.keeps_energy(); }) keeps_energy_ = load.keeps_energy();
     if constexpr (Load<L, detail::AlongOne>) along_ = load;
     if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
-    if constexpr (requires { load.in_time(); }) {
-      in_time_ = std::make_shared<const TimedLoad>(load.in_time());
+    if constexpr (requires { detail::in_time(load); }) {
+      in_time_ = std::make_shared<const TimedLoad>(detail::in_time(load));
     }
   }
 

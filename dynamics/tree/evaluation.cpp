@@ -9,6 +9,7 @@
 #include <dynamics/tree/accelerations.hpp>
 #include <dynamics/tree/check.hpp>
 #include <dynamics/tree/conservation.hpp>
+#include <dynamics/tree/constraints.hpp>
 #include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/kept_momenta.hpp>
@@ -29,7 +30,7 @@ BodyWorkspace::BodyWorkspace(const BodyTree& tree)
       still(Eigen::VectorXd::Zero(tree.rates())),
       acceleration(Eigen::VectorXd::Zero(tree.rates())),
       spin_up(tree.rotors().size()),
-      driven(tree.drives().empty() ? 0 : static_cast<std::size_t>(tree.rates())) {}
+      driven(tree.is_prescribed() ? static_cast<std::size_t>(tree.rates()) : 0) {}
 
 BodyWorkspace::BodyWorkspace(const BodyWorkspace&) = default;
 BodyWorkspace::BodyWorkspace(BodyWorkspace&&) noexcept = default;
@@ -99,6 +100,13 @@ void require_dual_loads(const BodyTree& tree) {
   }
 }
 
+void require_no_constraints(const BodyTree& tree) {
+  if (tree.constraints().empty()) return;
+  throw InvalidInput("constraint '" + tree.constraints().front().constraint.name +
+                     "': a tree with constraints takes no dual numbers, so it has no linear "
+                     "equations");
+}
+
 /// The motion of the tree's root, the guide, with gravity subtracted.
 [[nodiscard]] inline LinkMotion<> root(const Surroundings& now) {
   return root(now.guide, now.gravity, now.guide_rests);
@@ -106,6 +114,15 @@ void require_dual_loads(const BodyTree& tree) {
 
 [[nodiscard]] inline const double* rates_of(const BodyTree& tree, const Eigen::VectorXd& y) {
   return y.data() + tree.coordinates();
+}
+
+/// Sets the accelerations of driven joints, and makes all fulfil the constraints. A null `driven`:
+/// there is neither.
+inline void prescribe(const BodyTree& tree, const Eigen::VectorXd& y, const double* driven,
+                      const double* v, double* acceleration, BodyWorkspace& w) {
+  if (driven == nullptr) return;
+  set_driven(tree, driven, acceleration);
+  if (!tree.constraints().empty()) constrain(tree, y.data(), v, acceleration, w);
 }
 
 void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
@@ -123,7 +140,7 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
   ask_spin_up(tree, now.t, w);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
   eliminate_and_solve(tree, w.joint_force.data(), result, w);
-  set_driven(tree, driven, result);
+  prescribe(tree, y, driven, v, result, w);
 }
 
 void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
@@ -133,16 +150,22 @@ void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd&
   accelerate(tree, now, y, {}, result.data() + tree.coordinates(), w);
 }
 
-void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force, BodyWorkspace& w) {
+void respond(const BodyTree& tree, const double* joint_force, double* result, BodyWorkspace& w) {
   std::fill(w.motion.begin(), w.motion.end(), LinkMotion<>{});
   std::fill(w.force.begin(), w.force.end(), Motor<>{});
   ask_no_spin_up(w);
-  add_rotor_forces(tree, w.still.data(), joint_force.data(), w);
-  solve(tree, joint_force.data(), w.acceleration.data(), w);
+  add_rotor_forces(tree, w.still.data(), joint_force, w);
+  solve(tree, joint_force, result, w);
 }
 
+void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force, BodyWorkspace& w) {
+  respond(tree, joint_force.data(), w.acceleration.data(), w);
+}
+
+/// As joint_forces(). held : the constraints' forces, from the multipliers in w, are among the
+/// forces on the bodies
 void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
-                  const Eigen::VectorXd& dv, Eigen::VectorXd& result, BodyWorkspace& w) {
+                  const Eigen::VectorXd& dv, bool held, Eigen::VectorXd& result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   result.resize(tree.rates());
   set_poses_and_motions(tree, root(now), y.data(), v, dv.size() ? dv.data() : nullptr, w);
@@ -150,6 +173,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   take_off_elements(tree, v, w);
   const double* given = dv.size() ? dv.data() : w.still.data();
   add_rotor_forces_at(tree, v, given, w);
+  if (held) take_off_constraints(tree, w);
   sum_inwards(tree, w);
   project(tree, w, result.data());
   project_rotors(tree, given, w, result.data());
@@ -157,6 +181,11 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   add_timed_forces(tree, now.t, w);
   add_couplings(tree, y.data(), v, w.joint_force);
   result -= w.joint_force;
+}
+
+void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                  const Eigen::VectorXd& dv, Eigen::VectorXd& result, BodyWorkspace& w) {
+  joint_forces(tree, now, y, dv, false, result, w);
 }
 
 void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::MatrixXd& result,
@@ -168,7 +197,7 @@ void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::MatrixXd
 void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                JointReactions& result, BodyWorkspace& w) {
   accelerate(tree, now, y, {}, w.acceleration.data(), w);
-  joint_forces(tree, now, y, w.acceleration, result.drive, w);
+  joint_forces(tree, now, y, w.acceleration, !tree.constraints().empty(), result.drive, w);
   for (const Link& link : tree.links()) {
     if (!link.moved_by_forces()) continue;
     for (int k = 0; k < rate_count(link.kind); ++k) result.drive[link.v + k] = 0;
@@ -198,10 +227,11 @@ inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double*
   set_forces(driven);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
   solve(tree, w.joint_force.data(), w.acceleration.data(), w);
-  set_driven(tree, driven, w.acceleration.data());
+  prescribe(tree, y, driven, v, w.acceleration.data(), w);
   const double* dv = w.acceleration.data();
   set_forces(dv);
   add_rotor_forces_at(tree, v, dv, w);
+  if (!tree.constraints().empty()) take_off_constraints(tree, w);
   sum_inwards(tree, w);
   set_rotor_poses(tree, y.data(), w);
   complete_rotor_forces(tree, v, dv, w);
@@ -232,12 +262,13 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   note(&ReactionParts::guide);
   for (ReactionParts& parts : result) parts.guide = parts.guide - parts.spin;
   ask_no_spin_up(w);
-  answer(tree, weight, still, nullptr, nullptr, y, w);
+  const double* const undriven = tree.constraints().empty() ? nullptr : still;
+  answer(tree, weight, still, undriven, nullptr, y, w);
   note(&ReactionParts::gravity);
   set_joint_forces(tree, y.data(), v, w);
   add_timed_forces(tree, now.t, w);
   add_couplings(tree, y.data(), v, w.joint_force);
-  answer(tree, {}, still, nullptr, &now, y, w);
+  answer(tree, {}, still, undriven, &now, y, w);
   note(&ReactionParts::forces);
 }
 

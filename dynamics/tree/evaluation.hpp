@@ -51,6 +51,9 @@ inline void require(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::Index
 /// Throws : InvalidInput, naming the body, for a load that does not
 KREISEL_API void require_dual_loads(const BodyTree& tree);
 
+/// Throws : InvalidInput, naming a constraint, if the tree has some: its field takes no dual numbers
+KREISEL_API void require_no_constraints(const BodyTree& tree);
+
 /// The accelerations of the joints into `result`; leaves poses, motions and factors in w.
 KREISEL_API void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                             const Eigen::VectorXd& extra, double* result, BodyWorkspace& w);
@@ -62,6 +65,9 @@ KREISEL_API void rates(const BodyTree& tree, const Surroundings& now, const Eige
 /// it at the same coordinates: joints eliminated, axes of rotors set.
 KREISEL_API void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force,
                          BodyWorkspace& w);
+
+/// As above, for joint forces and accelerations as arrays.
+void respond(const BodyTree& tree, const double* joint_force, double* result, BodyWorkspace& w);
 
 KREISEL_API void joint_forces(const BodyTree& tree, const Surroundings& now,
                               const Eigen::VectorXd& y, const Eigen::VectorXd& dv,

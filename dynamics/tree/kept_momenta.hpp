@@ -38,27 +38,23 @@ struct RootedPart {
   return part;
 }
 
-/// Joins the parts that have elements between them, and marks those with elements to the guide. A
-/// joined part has no roots.
+/// Joins the parts that have elements or constraints between them, and marks those with one to the
+/// guide. A joined part has no roots.
 inline void join_parts(const BodyTree& tree, std::vector<int>& part,
                        std::vector<RootedPart>& parts) {
-  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
-    const ElementPlace& place = tree.element_places()[k];
-    if (std::holds_alternative<CouplingElement>(tree.elements()[k])) {
-      for (const std::size_t slot : place.slot) {
-        const Link& link = tree.links()[slot];
-        if (part[slot] >= 0 && part[static_cast<std::size_t>(link.parent)] < 0) {
-          parts[static_cast<std::size_t>(part[slot])].is_loaded = true;
-        }
-      }
-      continue;
+  const auto mark_gear = [&](std::size_t slot) {
+    const Link& link = tree.links()[slot];
+    if (part[slot] >= 0 && part[static_cast<std::size_t>(link.parent)] < 0) {
+      parts[static_cast<std::size_t>(part[slot])].is_loaded = true;
     }
-    const int first = part[place.slot[0]];
-    const int second = part[place.slot[1]];
-    if (first == second) continue;
+  };
+  const auto join = [&](std::size_t first_slot, std::size_t second_slot) {
+    const int first = part[first_slot];
+    const int second = part[second_slot];
+    if (first == second) return;
     if (first < 0 || second < 0) {
       parts[static_cast<std::size_t>(std::max(first, second))].is_loaded = true;
-      continue;
+      return;
     }
     RootedPart& whole = parts[static_cast<std::size_t>(first)];
     RootedPart& joined = parts[static_cast<std::size_t>(second)];
@@ -66,6 +62,23 @@ inline void join_parts(const BodyTree& tree, std::vector<int>& part,
     whole.is_loaded = whole.is_loaded || joined.is_loaded;
     joined = {};
     std::replace(part.begin(), part.end(), second, first);
+  };
+  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
+    const auto& [first, second] = tree.element_places()[k].slot;
+    if (std::holds_alternative<CouplingElement>(tree.elements()[k])) {
+      mark_gear(first);
+      mark_gear(second);
+    } else {
+      join(first, second);
+    }
+  }
+  for (const ConstraintLink& link : tree.constraints()) {
+    if (link.is_gear()) {
+      mark_gear(link.first);
+      mark_gear(link.second);
+    } else {
+      join(link.first, link.second);
+    }
   }
 }
 

@@ -19,18 +19,18 @@ inline void ask_spin_up(const BodyTree& tree, double t, BodyWorkspace& w) {
 
 inline void ask_no_spin_up(BodyWorkspace& w) { std::fill(w.spin_up.begin(), w.spin_up.end(), 0.0); }
 
-/// The prescribed derivatives of rates, one for each rate, in w.driven; null if there are none.
+/// The prescribed derivatives of rates, one for each rate, in w.driven; null if there are neither
+/// drives nor constraints.
 [[nodiscard]] inline const double* ask_drives(const BodyTree& tree, double t, BodyWorkspace& w) {
-  if (tree.drives().empty()) return nullptr;
+  if (!tree.is_prescribed()) return nullptr;
   for (const BodyTree::Drive& drive : tree.drives()) {
     w.driven[static_cast<std::size_t>(drive.rate)] = drive.acceleration(t);
   }
   return w.driven.data();
 }
 
-/// Copies the prescribed derivatives, unless `driven` is null.
+/// Copies the prescribed derivatives.
 inline void set_driven(const BodyTree& tree, const double* driven, double* acceleration) {
-  if (driven == nullptr) return;
   for (const BodyTree::Drive& drive : tree.drives()) acceleration[drive.rate] = driven[drive.rate];
 }
 

@@ -21,7 +21,8 @@ bool knows_series(const BodyTree& tree) {
   const auto all = [](const auto& list, const auto& is_so) {
     return std::all_of(list.begin(), list.end(), is_so);
   };
-  return all(tree.elements(),
+  return tree.constraints().empty() &&
+         all(tree.elements(),
              [](const Element& element) {
                return std::holds_alternative<CouplingElement>(element);
              }) &&

@@ -17,8 +17,8 @@
 namespace kreisel::detail {
 
 /// True if the motion of a tree has a computable Taylor series. Its loads and prescribed
-/// accelerations are then analytic functions of time. It has no elements except couplings, and no
-/// free joint between two bodies.
+/// accelerations are then analytic functions of time. It has no constraints, no elements except
+/// couplings, and no free joint between two bodies.
 KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree);
 
 /// The Taylor series of the motion of a tree, for TaylorSteps.

@@ -52,6 +52,8 @@ namespace kreisel::detail {
   if (!tree.timed_forces().empty()) list.add("load", "forces in joints that change with time");
   list.add("load", "loads on bodies", has_loads, has_loads ? "" : "none is given");
   list.add("load", "elements between bodies", has_elements, has_elements ? "" : "none is given");
+  const bool is_held = !tree.constraints().empty();
+  list.add("constraint", "reactions of constraints", is_held, is_held ? "" : "none is given");
   list.add("load", "R_ij of the joints", false, "eliminated; reactions() has them");
   return list;
 }

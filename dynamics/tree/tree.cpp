@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <dynamics/tree/check.hpp>
+#include <dynamics/tree/constraints.hpp>
 #include <dynamics/tree/tree.hpp>
 #include <motor/displacement.hpp>
 #include <motor/error.hpp>
@@ -46,7 +47,8 @@ BodyTree& BodyTree::operator=(const BodyTree&) = default;
 BodyTree& BodyTree::operator=(BodyTree&&) noexcept = default;
 BodyTree::~BodyTree() = default;
 
-BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements)
+BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements,
+                   const std::vector<Constraint>& constraints)
     : bodies_(std::move(bodies)), elements_(std::move(elements)) {
   links_.emplace_back();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -68,6 +70,17 @@ BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> ele
     last_link_[static_cast<std::size_t>(rotors_[k].link.body)] = rotor_slot(k);
   }
   for (const Element& element : elements_) connect(element);
+  for (const Constraint& constraint : constraints) {
+    const auto same = std::find_if(constraints_.begin(), constraints_.end(),
+                                   [&](const detail::ConstraintLink& link) {
+                                     return link.constraint.name == constraint.name;
+                                   });
+    if (same != constraints_.end()) {
+      throw InvalidInput("constraint '" + constraint.name + "': the name is used twice");
+    }
+    constraints_.push_back(detail::linked(*this, constraint));
+  }
+  is_prescribed_ = !drives_.empty() || !constraints_.empty();
 }
 
 int BodyTree::index(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <dynamics/tree/constraint/constraint.hpp>
 #include <dynamics/tree/element/element.hpp>
 #include <dynamics/tree/link.hpp>
 #include <motor/api.hpp>
@@ -36,10 +37,11 @@ struct ElementPlace {
 ///          axes of a joint; forces that do not fit the joint; a number that is not finite; an
 ///          invalid rotor. Naming element and reason: no or repeated name; unknown body; both ends
 ///          on one body; an end on a rotor; a joint without or with several coordinates; numbers
-///          that are no element
+///          that are no element. Naming constraint and reason: the same
 class KREISEL_API BodyTree {
  public:
-  explicit BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements = {});
+  explicit BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements = {},
+                    const std::vector<Constraint>& constraints = {});
   // Compiled once, in libkreisel: programs would instantiate the vectors' own.
   BodyTree(const BodyTree& other);
   BodyTree(BodyTree&& other) noexcept;
@@ -63,6 +65,11 @@ class KREISEL_API BodyTree {
     TimeFunction acceleration;
   };
   [[nodiscard]] const std::vector<Drive>& drives() const { return drives_; }
+  [[nodiscard]] const std::vector<detail::ConstraintLink>& constraints() const {
+    return constraints_;
+  }
+  /// True if there are drives or constraints.
+  [[nodiscard]] bool is_prescribed() const { return is_prescribed_; }
   /// The forces between bodies and between joints, and their positions, in the same order.
   [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
   [[nodiscard]] const std::vector<ElementPlace>& element_places() const { return element_places_; }
@@ -127,6 +134,7 @@ class KREISEL_API BodyTree {
   std::vector<JointForce> forces_;
   std::vector<TimedForce> timed_forces_;
   std::vector<Drive> drives_;
+  std::vector<detail::ConstraintLink> constraints_;
   std::vector<int> coordinate_of_;
   std::vector<int> coordinate_blocks_;
   std::vector<int> rate_blocks_;
@@ -134,6 +142,7 @@ class KREISEL_API BodyTree {
   int rates_ = 0;
   int balls_ = 0;
   bool is_acted_on_ = false;
+  bool is_prescribed_ = false;
 };
 
 }  // namespace kreisel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <dynamics/tree/articulated.hpp>
@@ -51,6 +52,24 @@ struct MotionSpace {
   Eigen::Matrix<S, Eigen::Dynamic, 1> joint_force;
 };
 
+struct ConstraintSpace;
+
+/// The memory for constraints: nothing until it is asked for.
+class KREISEL_API ConstraintMemory {
+ public:
+  ConstraintMemory();
+  ConstraintMemory(const ConstraintMemory& other);
+  ConstraintMemory(ConstraintMemory&& other) noexcept;
+  ConstraintMemory& operator=(const ConstraintMemory& other);
+  ConstraintMemory& operator=(ConstraintMemory&& other) noexcept;
+  ~ConstraintMemory();
+
+  [[nodiscard]] ConstraintSpace& operator*();
+
+ private:
+  std::unique_ptr<ConstraintSpace> space_;
+};
+
 }  // namespace detail
 
 /// Scratch memory of a BodySystem; each thread needs its own. An evaluation with a workspace
@@ -75,6 +94,7 @@ struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
   Eigen::VectorXd acceleration;
   std::vector<double> spin_up;  ///< prescribed relative acceleration of each rotor
   std::vector<double> driven;   ///< prescribed derivatives of rates; the others are 0
+  detail::ConstraintMemory constraints;
 };
 
 }  // namespace kreisel

@@ -63,7 +63,7 @@ struct Record {
          const kreisel::SceneSolver& solver)
       : model(solver),
         t_begin(scene.t_begin),
-        forces{scene.reactions, scene.element_forces},
+        forces{scene.reactions, scene.element_forces, scene.constraint_forces},
         sensors(scene),
         chosen(scene.columns.empty() ? std::vector<std::size_t>{}
                                      : chosen_columns(columns(scene), scene.columns)),

@@ -132,6 +132,17 @@ ordered_json element_forces(const Result& result, const kreisel::SceneScale& sca
   return table;
 }
 
+/// The forces of the constraints on their second bodies.
+ordered_json constraint_forces(const Result& result, const kreisel::SceneScale& scale) {
+  const auto forces =
+      result.model.constraint_forces(result.run.times.back(), result.run.states.back());
+  ordered_json table = ordered_json::object();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    table[result.scene.constraints[i].name] = json(forces[i], scale);
+  }
+  return table;
+}
+
 ordered_json final_state(const Result& result, const kreisel::SceneScale& scale = {}) {
   const double t = result.run.times.back();
   const kreisel::JointState& state = result.run.states.back();
@@ -152,6 +163,7 @@ ordered_json final_state(const Result& result, const kreisel::SceneScale& scale 
   ordered_json final{{"t", t}, {"joints", joints}};
   if (result.reactions) final["reactions"] = carried;
   if (result.scene.element_forces) final["elements"] = element_forces(result, scale);
+  if (result.scene.constraint_forces) final["constraints"] = constraint_forces(result, scale);
   if (result.terms) final["terms"] = parts;
   if (!result.scene.sensors.empty()) final["sensors"] = final_sensors(result, scale);
   if (!result.log_error.joints.empty()) final["error_of_log"] = log_errors(result);
@@ -307,6 +319,13 @@ void print_summary(const Result& result) {
   if (result.reactions) joint_tables::print("reactions, N and N m", final["reactions"]);
   if (final.contains("elements")) {
     joint_tables::print("elements on their second bodies, N and N m", final["elements"]);
+  }
+  if (final.contains("constraints")) {
+    joint_tables::print("constraints on their second bodies, N and N m", final["constraints"]);
+  }
+  for (const auto& [name, redundant, conditions] : result.scene.redundant_constraints) {
+    fmt::print("\nconstraint '{}': {} of its {} conditions follow from others\n", name, redundant,
+               conditions);
   }
   if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
   if (logged) {

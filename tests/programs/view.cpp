@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   BOOST_TEST(found.at("sensors").get<std::string>().starts_with("probex"));
 
   const SceneFile scene = parse_scene(all_joints, file);
-  auto [bodies, gravity, gravitation] = bodies_in_gravity(scene);
+  const auto [bodies, gravity, elements, constraints, gravitation] = bodies_in_gravity(scene);
   const BodySystem system(make_guide_of_equations(scene), bodies, gravity);
   auto start = system.rest();
   Eigen::Index q = 0;

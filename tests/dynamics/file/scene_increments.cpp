@@ -149,7 +149,8 @@ BOOST_AUTO_TEST_CASE(meet_a_step_within_a_period) {
 BOOST_AUTO_TEST_CASE(stiff_motion_is_integrated) {
   const SceneFile file = scene(
       "[[body]]\nname = \"unit\"\nmass = 2\ninertia = [0.2, 0.25, 0.3]\n"
-      "joint = { kind = \"revolute\", axis = [0, 1, 0] }\nstiffness = 2e5\ndamping = 1e5\n"
+      "joint = { kind = \"revolute\", axis = [0, 1, 0] }\nspring = { stiffness = 2e5 }\ndamping = "
+      "1e5\n"
       "initial = { angle = 0.1 }\n" +
       unit("g", "gyro", "period = 0.5\nincrements = true") +
       "[solve]\nt_end = 1\ntolerance = 1e-12\n");
