@@ -180,7 +180,7 @@ void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion&
 std::vector<int> blocks(const Scene& scene) {
   std::vector<int> result;
   for (const Body& body : scene.bodies) {
-    const kreisel::JointType& type = kreisel::joint_type(body.kind);
+    const kreisel::JointType& type = kreisel::joint_type(body.free_kind());
     for (const auto* const quantities : {&type.coordinates, &type.rates}) {
       for (const auto& quantity : *quantities) {
         const int count = quantity.count();
@@ -190,6 +190,13 @@ std::vector<int> blocks(const Scene& scene) {
     }
   }
   return result;
+}
+
+JointValues start_values(const Scene& scene) {
+  Tree tree(scene);
+  const State start = tree.start();
+  tree.stay_within(Real(scene.t_begin));
+  return tree.values(Real(scene.t_begin), start);
 }
 
 std::vector<double> start_reactions(const Scene& scene) {

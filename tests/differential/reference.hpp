@@ -34,6 +34,9 @@ struct ReferenceMotion {
   Sizes sizes = {};  ///< greatest sizes so far
 };
 
+/// The values of all joints at the start.
+[[nodiscard]] JointValues start_values(const Scene& scene);
+
 /// The force of each body's parent on it at the start: three numbers of force, three of torque. The
 /// torque is about the body's origin, all on body axes.
 [[nodiscard]] std::vector<double> start_reactions(const Scene& scene);

@@ -709,6 +709,18 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
   return result;
 }
 
+State Tree::free_values(int body, const Motion& guide) const {
+  const Pose& b = poses_[static_cast<std::size_t>(body)];
+  const Vec arm = -(b.R * parts_[static_cast<std::size_t>(body)].centre);
+  const Vec x = b.x + arm;
+  const Vec v = b.v + b.w.cross(arm) - guide.w.cross(x);
+  const Mat to_guide = guide.R.transpose();
+  State result(13);
+  result << Quat(Mat(to_guide * b.R)).coeffs(), to_guide * x, b.R.transpose() * (b.w - guide.w),
+      to_guide * v;
+  return result;
+}
+
 JointValues Tree::values(Real t, const State& y) {
   State none(size_);
   read(y, guide_.at(t, y, none));
@@ -718,6 +730,10 @@ JointValues Tree::values(Real t, const State& y) {
     for (Eigen::Index i = 0; i < v.size(); ++i) put(v[i]);
   };
   for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
+    if (scene_.bodies[static_cast<std::size_t>(i)].loose) {
+      put_all(free_values(i, guide_.at(t, y, none)));
+      continue;
+    }
     const Relative r = relative(i);
     const Part& part = parts_[static_cast<std::size_t>(i)];
     const Mat P = parent(i).R;

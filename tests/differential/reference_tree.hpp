@@ -96,6 +96,9 @@ class Tree {
     Vec dw = Vec::Zero();
   };
 
+  /// The values of a body as in a free joint to the guide.
+  [[nodiscard]] State free_values(int body, const Motion& guide) const;
+
   [[nodiscard]] Frame frame(int index, const Motion& guide, const State& accelerations) const;
   [[nodiscard]] Frame at_point(int body, const Vec& at, const State& accelerations) const;
 

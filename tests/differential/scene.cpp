@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <numeric>
 
+#include "reference.hpp"
 #include "reference_guide.hpp"
 
 namespace differential {
@@ -490,11 +492,38 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
   return result;
 }
 
+/// The start of a loose body, from its values in a free joint to the guide.
+std::string loose_start(const Scene& scene, int index) {
+  const std::vector<int> counts =
+      blocks({.bodies = {scene.bodies.begin(), scene.bodies.begin() + index}});
+  const JointValues all = start_values(scene);
+  const double* const x = all.data() + std::accumulate(counts.begin(), counts.end(), 0);
+  Inline table;
+  table.add("attitude", list(std::vector<double>{x[3], x[0], x[1], x[2]}));
+  table.add("position", list(std::vector<double>(x + 4, x + 7)));
+  table.add("angular_velocity", list(std::vector<double>(x + 7, x + 10)));
+  table.add("velocity", list(std::vector<double>(x + 10, x + 13)));
+  return "initial = " + table.text() + "\n";
+}
+
+/// The joint of a loose body as a constraint.
+std::string constraint(const Body& b, int index) {
+  const char* const kind = b.kind == JointKind::spherical ? "point" : nullptr;
+  const std::string name = kind ? kind : kreisel::joint_type(b.kind).name;
+  std::string result = fmt::format("[[constraint]]\nname = \"c{}\"\nkind = \"{}\"\n", index, name);
+  result += "between = [\"" + (b.parent < 0 ? "guide" : body_name(b.parent)) + "\", \"" +
+            body_name(index) + "\"]\nat = [" + list(b.position) + ", [0, 0, 0]]\n";
+  if (b.kind == JointKind::revolute || b.kind == JointKind::prismatic) {
+    result += "axis = " + list(b.axis) + "\n";
+  }
+  return result;
+}
+
 std::string body(const Scene& scene, int index) {
   const Body& b = scene.bodies[static_cast<std::size_t>(index)];
   std::string result = "[[body]]\nname = \"" + body_name(index) + "\"\n";
-  if (b.parent >= 0) result += "parent = \"" + body_name(b.parent) + "\"\n";
-  result += "joint = " + joint(b) + "\n";
+  if (b.parent >= 0 && !b.loose) result += "parent = \"" + body_name(b.parent) + "\"\n";
+  result += "joint = " + (b.loose ? "{ kind = \"free\" }" : joint(b)) + "\n";
   const bool off_centre = !b.centre.isZero(0);
   if (b.has_units) {
     result += "mass = " + with_unit(b.mass, "kg") + "\n";
@@ -505,7 +534,7 @@ std::string body(const Scene& scene, int index) {
     if (off_centre) result += "centre = " + list(b.centre) + "\n";
     result += "inertia = " + list(b.inertia) + "\n";
   }
-  result += initial(b) + forces(b);
+  result += b.loose ? loose_start(scene, index) : initial(b) + forces(b);
   if (b.rotor) result += rotor(*b.rotor);
   if (b.drive && b.motion.empty()) result += "drive = \"constant-rate\"\n";
   if (!b.motion.empty()) {
@@ -629,6 +658,9 @@ std::string to_toml(const Scene& scene) {
   result += guide(scene) + gravity(scene);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) result += body(scene, i);
   for (std::size_t i = 0; i < scene.elements.size(); ++i) result += element(scene.elements[i], i);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].loose) result += constraint(scene.bodies[i], static_cast<int>(i));
+  }
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) result += sensor(scene.sensors[i], i);
   result +=
       "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) + "\n";

@@ -173,8 +173,13 @@ struct Body {
   Signal motion = {};    ///< of the drive instead of a constant rate
   bool is_rate = false;  ///< of the motion: the rate, not the coordinate
   bool hold = false;
+  /// The body is free, and its joint is a constraint between it and its parent. Its values are
+  /// those of a free joint to the guide.
+  bool loose = false;
   std::vector<Load> loads = {};
   bool has_units = false;  ///< mass, centre, inertia and angles as texts with a unit
+
+  [[nodiscard]] JointKind free_kind() const { return loose ? JointKind::free : kind; }
 };
 
 enum class ElementKind { spring, mount, gear };

@@ -187,6 +187,7 @@ void add_body_changes(std::size_t i, std::vector<Change>& changes) {
   add([](Body& b) { b.motion = {}; });
   add([](Body& b) { b.drive = false, b.motion = {}; });
   add([](Body& b) { b.hold = false; });
+  add([](Body& b) { b.loose = false; });
   add([](Body& b) { b.angle.clear(), b.displacement.clear(); });
   add([](Body& b) { b.rate.clear(); });
   add([](Body& b) { b.attitude.reset(); });
