@@ -46,6 +46,7 @@ struct Run {
   py::dict rates;
   py::dict reactions;
   py::dict elements;
+  py::dict constraints;
   py::dict sensors;
   py::array_t<double> errors;
   std::vector<kreisel::Term> terms;
@@ -224,10 +225,12 @@ void warn_if_missed(const kreisel::RunReport& report) {
 
 Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<double> tolerance,
                 const std::optional<std::string>& method,
-                const std::optional<std::vector<double>>& times, bool reactions, bool elements) {
+                const std::optional<std::vector<double>>& times, bool reactions, bool elements,
+                bool constraints) {
   kreisel::SceneFile file = requested(scene, t_end, tolerance, method, times);
   file.reactions = reactions;
   file.element_forces = elements;
+  file.constraint_forces = constraints;
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(file);
   kreisel::SolveOptions options = options_of(file);
   options.output_times = file.output_times;
@@ -238,7 +241,7 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
     options.stop = stop;
     run = model->solve(options, start_of(file));
     for (std::size_t i = 0; i < run.states.size() && !stop.stop_requested(); ++i) {
-      numbers.push_back(row(*model, run.times[i], run.states[i], {reactions, elements}));
+      numbers.push_back(row(*model, run.times[i], run.states[i], {reactions, elements, constraints}));
       const std::vector<double> own = readings.row(*model, run.times[i], run.states[i]);
       numbers.back().insert(numbers.back().end(), own.begin(), own.end());
     }
@@ -281,11 +284,16 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
                  "drive_torque"_a = part(result.rows, at + 6, 1));
     at += 7;
   }
-  for (const kreisel::Element& element : file.elements) {
-    if (!elements) break;
-    result.elements[py::str(kreisel::name(element))] =
+  const auto add_force = [&](py::dict& to, const std::string& name) {
+    to[py::str(name)] =
         py::dict("force"_a = part(result.rows, at, 3), "torque"_a = part(result.rows, at + 3, 3));
     at += 6;
+  };
+  for (const kreisel::Element& element : file.elements) {
+    if (elements) add_force(result.elements, kreisel::name(element));
+  }
+  for (const kreisel::Constraint& constraint : file.constraints) {
+    if (constraints) add_force(result.constraints, constraint.name);
   }
   for (const kreisel::SceneSensor& sensor : file.sensors) {
     py::dict reading;
@@ -369,6 +377,9 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("elements", &Run::elements,
                     "by element, on request: 'force' in N and 'torque' in N m on its second body, "
                     "about its end there, on the first body's axes")
+      .def_readonly("constraints", &Run::constraints,
+                    "by constraint, on request: 'force' in N and 'torque' in N m on its second body, "
+                    "about its point, on the first body's axes")
       .def_readonly("sensors", &Run::sensors,
                     "by sensor a dict of its parts: 'value', with errors also 'true'; of a point "
                     "'position', 'velocity', 'acceleration'; of a reaction 'force', 'torque'")
@@ -397,12 +408,13 @@ PYBIND11_MODULE(kreisel, m) {
           "are searched beside path.")
       .def("solve", &solve_scene, py::kw_only(), "t_end"_a = py::none(), "tolerance"_a = py::none(),
            "method"_a = py::none(), "times"_a = py::none(), "reactions"_a = false,
-           "elements"_a = false,
+           "elements"_a = false, "constraints"_a = false,
            "Computes the motion from t = 0.\n\n"
            "t_end      s; times in s, increasing, instead of the scene's output times\n"
            "tolerance  bound of the global error, see Report.error_estimate\n"
            "method     auto, closed form, verner98, gauss16, radau13, splitting, taylor\n"
            "reactions  True: return the load of every joint\n"
-           "elements   True: return the force of every element\n\n"
+           "elements   True: return the force of every element\n"
+           "constraints True: return the reaction of every constraint\n\n"
            "Omitted arguments are those of the scene. Python's lock is released during the run.");
 }

@@ -139,6 +139,19 @@ class OfKeywords(unittest.TestCase):
         run = self.scene(element=[mount]).solve(elements=True)
         np.testing.assert_allclose(run.elements["m"]["torque"][0], [0, 0, 0], atol=1e-15)
 
+    def test_constraints(self):
+        point = {"name": "p", "kind": "point", "between": ["guide", "rod"], "at": [[0, 0, 0]] * 2}
+        rod = {"name": "rod", "mass": 2, "inertia": [1, 1, 1], "joint": {"kind": "free"},
+               "centre": [0, 0, -0.5]}
+        pull = {"name": "pull", "kind": "reaction", "constraint": "p"}
+        scene = kreisel.Scene(body=[rod], constraint=[point], sensor=[pull],
+                              report={"constraints": True}, solve={"t_end": 0.1},
+                              gravity={"kind": "uniform", "vector": [0, 0, -10]})
+        for run in (scene.solve(), scene.solve(constraints=True)):
+            np.testing.assert_allclose(run.sensors["pull"]["force"][:, 2], 20, rtol=1e-9)
+            self.assertEqual(run.rows.shape[1], len(run.columns))
+        np.testing.assert_allclose(run.constraints["p"]["force"][:, 2], 20, rtol=1e-9)
+
     def test_increments_are_sampled(self):
         gyro = {"name": "gyro", "kind": "gyro", "body": "unit", "period": 0.25, "increments": True}
         unit = {"name": "unit", "mass": "2 kg", "inertia": [1, 1, 1], "joint": {"kind": "fixed"}}

@@ -62,6 +62,7 @@ Scene read(const Request& request) {
   (void)make_model(file);  // refuses what the reader cannot
   file.reactions = false;
   file.element_forces = false;
+  file.constraint_forces = false;
   std::vector<std::string> names = columns(file);
   names.erase(names.begin());  // the time
   return {request, keys, kreisel::SceneNumbers(text, keys), std::move(names)};
