@@ -140,9 +140,9 @@ Scene scene_of_keywords(const py::kwargs& keywords) {
   std::string text;
   for (const auto& [name, value] : keywords) {
     const auto key = name.cast<std::string>();
-    const bool list = (key == "body" || key == "sensor" || key == "element" ||
-                       key == "constraint") &&
-                      (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
+    const bool list =
+        (key == "body" || key == "sensor" || key == "element" || key == "constraint") &&
+        (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value));
     text += key_of(key) + " = " + (list ? toml_list(key, value, "\n") : toml_of(key, value)) + "\n";
   }
   return scene_of_text(std::move(text), "keywords");
@@ -241,7 +241,8 @@ Run solve_scene(const Scene& scene, std::optional<double> t_end, std::optional<d
     options.stop = stop;
     run = model->solve(options, start_of(file));
     for (std::size_t i = 0; i < run.states.size() && !stop.stop_requested(); ++i) {
-      numbers.push_back(row(*model, run.times[i], run.states[i], {reactions, elements, constraints}));
+      numbers.push_back(
+          row(*model, run.times[i], run.states[i], {reactions, elements, constraints}));
       const std::vector<double> own = readings.row(*model, run.times[i], run.states[i]);
       numbers.back().insert(numbers.back().end(), own.begin(), own.end());
     }
@@ -377,9 +378,10 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("elements", &Run::elements,
                     "by element, on request: 'force' in N and 'torque' in N m on its second body, "
                     "about its end there, on the first body's axes")
-      .def_readonly("constraints", &Run::constraints,
-                    "by constraint, on request: 'force' in N and 'torque' in N m on its second body, "
-                    "about its point, on the first body's axes")
+      .def_readonly(
+          "constraints", &Run::constraints,
+          "by constraint, on request: 'force' in N and 'torque' in N m on its second body, "
+          "about its point, on the first body's axes")
       .def_readonly("sensors", &Run::sensors,
                     "by sensor a dict of its parts: 'value', with errors also 'true'; of a point "
                     "'position', 'velocity', 'acceleration'; of a reaction 'force', 'torque'")
