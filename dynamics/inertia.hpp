@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
 
+#include <motor/api.hpp>
 #include <motor/error.hpp>
 #include <motor/frame.hpp>
 #include <motor/rate.hpp>
@@ -319,56 +319,16 @@ template <class S>
 }
 
 /// Throws : InvalidInput with the name of the tensor, the reason and the numbers
-[[noreturn]] inline void refuse_inertia(const std::string& what, const char* why, double a = 0,
-                                        double b = 0, double c = 0) {
-  char text[160];
-  std::snprintf(text, sizeof text, why, a, b, c);
-  throw InvalidInput(what + ": " + text);
-}
-
-/// The legal tensor nearest to a tensor whose principal moments a <= b <= c violate a + b >= c or a
-/// >= 0, in the sum of squares of all entries:
-///
-///   T + e/3 (1 - 2 v v^t)  with e = c - a - b and v along c;  (b + c)/2 (1 - v v^t)  with v along
-///   a, if the first has a moment below 0
-[[nodiscard]] inline Symmetric3<double> nearest_legal(const Symmetric3<double>& t,
-                                                      const std::array<double, 3>& moments) {
-  const auto& [a, b, c] = moments;
-  const Symmetric3<double> one{1, 1, 1, 0, 0, 0};
-  const Symmetric3<double> square{
-      t.xx * t.xx + t.xy * t.xy + t.xz * t.xz, t.xy * t.xy + t.yy * t.yy + t.yz * t.yz,
-      t.xz * t.xz + t.yz * t.yz + t.zz * t.zz, t.xx * t.xy + t.xy * t.yy + t.xz * t.yz,
-      t.xx * t.xz + t.xy * t.yz + t.xz * t.zz, t.xy * t.xz + t.yy * t.yz + t.yz * t.zz};
-  // v v^t of the moment x, from the other moments p and q: (T - p)(T - q) over its value along v
-  const auto along = [&](double x, double p, double q) {
-    return 1 / ((x - p) * (x - q)) * (square - (p + q) * t + p * q * one);
-  };
-  if (2 * a + c - b >= 0) return t + (c - a - b) / 3 * (one - 2.0 * along(c, a, b));
-  return (b + c) / 2 * (one - along(a, b, c));
-}
+KREISEL_API [[noreturn]] void refuse_inertia(const std::string& what, const char* why, double a = 0,
+                                             double b = 0, double c = 0);
 
 /// Refuses principal moments. If the violation is at most 1e-3, as with rounded numbers, the
 /// message ends with the nearest legal tensor.
 ///
 /// Throws : InvalidInput
-[[noreturn]] inline void refuse_moments(const std::string& what, const char* why,
-                                        const Symmetric3<double>& t,
-                                        const std::array<double, 3>& moments) {
-  const auto& [a, b, c] = moments;
-  char text[320];
-  int used = std::snprintf(text, sizeof text, why, a, b, c);
-  const double violation = std::max(c - a - b, -a);
-  if (violation <= 1e-3 * c) {
-    const Symmetric3<double> m = nearest_legal(t, moments);
-    used += std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
-                          ", by %.2g of the greatest; nearest legal tensor: [%.14g, %.14g, %.14g",
-                          violation / c, m.xx, m.yy, m.zz);
-    const bool is_diagonal = t.xy == 0 && t.xz == 0 && t.yz == 0;
-    std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
-                  is_diagonal ? "]" : ", %.14g, %.14g, %.14g]", m.xy, m.xz, m.yz);
-  }
-  throw InvalidInput(what + ": " + text);
-}
+KREISEL_API [[noreturn]] void refuse_moments(const std::string& what, const char* why,
+                                             const Symmetric3<double>& t,
+                                             const std::array<double, 3>& moments);
 
 }  // namespace detail
 
@@ -385,7 +345,8 @@ enum class Mass { positive, zero_allowed };
 /// Throws : InvalidInput with the violated inequality and its numbers. If rounding to three digits
 ///          or more explains the violation, the message adds the nearest legal tensor
 template <class S>
-void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& what = "inertia") {
+KREISEL_API void check(const Inertia<S>& T, Mass rule = Mass::positive,
+                       const std::string& what = "inertia") {
   using Number = decltype(detail::number_in(T.mass));
   const auto refuse = [&what](const char* why, const auto&... numbers) {
     detail::refuse_inertia(what, why, static_cast<double>(numbers)...);
@@ -433,6 +394,8 @@ void check(const Inertia<S>& T, Mass rule = Mass::positive, const std::string& w
         "triangle inequality about the centre of mass fails: %.10g + %.10g >= %.10g kg m^2");
   }
 }
+
+extern template void check(const Inertia<double>& T, Mass rule, const std::string& what);
 
 /// The inertia tensor of a rigid body, written in In: T of the paper.
 ///
