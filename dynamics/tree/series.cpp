@@ -6,7 +6,7 @@
 #include <dynamics/tree/check.hpp>
 #include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
-#include <dynamics/tree/series.hpp>
+#include <dynamics/tree/series_recurrences.hpp>
 
 namespace kreisel::detail {
 
@@ -61,17 +61,17 @@ bool knows_series(const BodyTree& tree) {
 [[nodiscard]] inline Vec4d turned_left(const Vec4d& a) { return {-a[1], a[0], -a[3], a[2]}; }
 
 /// The k-th coefficients of w w^t: first the products with the newest coefficient, then the others.
-inline void TreeSeries::Branch::begin_products(std::size_t k) {
+inline void TreeSeries::Recurrences::Branch::begin_products(std::size_t k) {
   squares = w[0] * w[k];
   next = w[0] * w_cycled[k];
 }
-inline void TreeSeries::Branch::add_product(std::size_t i, std::size_t j) {
+inline void TreeSeries::Recurrences::Branch::add_product(std::size_t i, std::size_t j) {
   squares += w[i] * w[j];
   next += w[i] * w_cycled[j];
 }
 
 /// Computes dw and gamma from w_next; per_time = (k + 1)/h.
-inline void TreeSeries::Branch::accelerate(double per_time) {
+inline void TreeSeries::Recurrences::Branch::accelerate(double per_time) {
   dw.as_is = per_time * w_next.as_is;
   dw.next = per_time * w_next.next;
   dw.after = per_time * w_next.after;
@@ -80,7 +80,7 @@ inline void TreeSeries::Branch::accelerate(double per_time) {
   gamma.lower = next.after() + dw.next;
 }
 
-inline void TreeSeries::Ball::put_attitude(std::size_t k, const Vec4d& coefficient) {
+inline void TreeSeries::Recurrences::Ball::put_attitude(std::size_t k, const Vec4d& coefficient) {
   q[k] = coefficient;
   q_cycled[k] = coefficient.next();
   Vec4d square(0, 0, 0, 0);
@@ -95,7 +95,7 @@ inline void TreeSeries::Ball::put_attitude(std::size_t k, const Vec4d& coefficie
   turn[k] = turn_back[k].transposed();
 }
 
-TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
+TreeSeries::Recurrences::Recurrences(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
     : tree_(tree),
       guide_rests_(guide_rests),
       field_(std::move(field)),
@@ -179,7 +179,8 @@ TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt
   }
 }
 
-void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c) {
+void TreeSeries::Recurrences::operator()(double t, double h, int order,
+                                         Eigen::Ref<Eigen::MatrixXd>& c) {
   y_ = c.col(0);
   field_(t, y_, rate_, workspace_);
   c.col(1) = h * rate_;
@@ -209,7 +210,7 @@ void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::Mat
   }
 }
 
-void TreeSeries::begin_functions_of_time(double t, double h, int order) {
+void TreeSeries::Recurrences::begin_functions_of_time(double t, double h, int order) {
   for (std::size_t j = 0; j < timed_.size(); ++j) {
     tree_.timed_forces()[j].signal.coefficients(t, h, timed_[j]);
   }
@@ -222,7 +223,7 @@ void TreeSeries::begin_functions_of_time(double t, double h, int order) {
   }
 }
 
-void TreeSeries::begin(const Columns& c) {
+void TreeSeries::Recurrences::begin(const Columns& c) {
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     Branch& b = branches_[i];
     const Matrix3<double> to_own = b.own_axes * workspace_.pose[i].R.transpose();
@@ -246,7 +247,7 @@ void TreeSeries::begin(const Columns& c) {
   }
 }
 
-void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
+void TreeSeries::Recurrences::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
   const auto at = static_cast<std::size_t>(k);
   const double weight = h / (k + 1);
   c.col(k + 1).head(tree_.coordinates()).setZero();
@@ -279,7 +280,8 @@ void TreeSeries::prepare(int k, double h, const GuideSeries& felt, Columns& c) {
   prepare_loads(at, weight, felt);
 }
 
-void TreeSeries::prepare_guide(std::size_t k, double per_time, const GuideSeries& felt) {
+void TreeSeries::Recurrences::prepare_guide(std::size_t k, double per_time,
+                                            const GuideSeries& felt) {
   Branch& guide = branches_[0];
   guide.a = -1.0 * vec4d(felt.g[k]);
   if (guide_rests_) return;
@@ -290,7 +292,7 @@ void TreeSeries::prepare_guide(std::size_t k, double per_time, const GuideSeries
   guide_gamma_[k] = guide.gamma;
 }
 
-void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::Recurrences::prepare_turning(Branch& b, int k, double weight, Columns& c) {
   c(b.q, k + 1) = weight * c(b.v, k);
   const auto last = static_cast<std::size_t>(k);
   double by_cos = c(b.v, k) * b.cos[0];
@@ -319,7 +321,7 @@ void TreeSeries::prepare_turning(Branch& b, int k, double weight, Columns& c) {
   b.inner = inner + turned_left(inner_left);
 }
 
-void TreeSeries::prepare_slider(Branch& b, int k, const Columns& c) {
+void TreeSeries::Recurrences::prepare_slider(Branch& b, int k, const Columns& c) {
   const auto last = static_cast<std::size_t>(k);
   Slider& slider = sliders_[b.number];
   slider.w_axis[last] = 2.0 * cross(branches_[b.parent].w[last], slider.axis.as_is);
@@ -332,7 +334,7 @@ void TreeSeries::prepare_slider(Branch& b, int k, const Columns& c) {
   }
 }
 
-void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::Recurrences::prepare_ball(Branch& b, int k, double weight, Columns& c) {
   Ball& ball = balls_[b.number];
   const auto last = static_cast<std::size_t>(k);
   Vec4d x(0, 0, 0, 0);
@@ -366,7 +368,7 @@ void TreeSeries::prepare_ball(Branch& b, int k, double weight, Columns& c) {
   ball.n_sum = n.sum();
 }
 
-void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
+void TreeSeries::Recurrences::prepare_floating(Branch& b, int k, double weight, Columns& c) {
   c.col(k + 1).segment<3>(b.q + 4) = weight * c.col(k).segment<3>(b.v + 3);
   b.carried = Vec4d(0, 0, 0, 0);
   if (guide_rests_) return;
@@ -386,7 +388,7 @@ void TreeSeries::prepare_floating(Branch& b, int k, double weight, Columns& c) {
   }
 }
 
-void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
+void TreeSeries::Recurrences::prepare_spins(int k, double weight, Columns& c) {
   const auto last = static_cast<std::size_t>(k);
   for (Spin& spin : spins_) {
     const Vec4d& w = branches_[spin.carrier].w[last];
@@ -401,13 +403,13 @@ void TreeSeries::prepare_spins(int k, double weight, Columns& c) {
   }
 }
 
-void TreeSeries::prepare_loads(std::size_t k, double weight, const GuideSeries& felt) {
+void TreeSeries::Recurrences::prepare_loads(std::size_t k, double weight, const GuideSeries& felt) {
   using Turning = std::span<const Components<double>>;
   const Turning u = guide_rests_ ? Turning() : Turning(felt.u);
   for (TimedLoadSeries& load : loads_) load.prepare(k, weight, branches_[load.link()].w, u);
 }
 
-void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
+void TreeSeries::Recurrences::go_outwards(std::size_t k, double weight, const double* dv) {
   for (std::size_t i = 1; i < branches_.size(); ++i) {
     Branch& b = branches_[i];
     const Branch& above = branches_[b.parent];
@@ -458,7 +460,7 @@ void TreeSeries::go_outwards(std::size_t k, double weight, const double* dv) {
   }
 }
 
-void TreeSeries::go_inwards(std::size_t k) {
+void TreeSeries::Recurrences::go_inwards(std::size_t k) {
   for (std::size_t i = branches_.size() - 1; i > 0; --i) {
     Branch& b = branches_[i];
     Vec4d f = b.force;
@@ -490,7 +492,7 @@ void TreeSeries::go_inwards(std::size_t k) {
   }
 }
 
-void TreeSeries::set_left(int k, const Columns& c) {
+void TreeSeries::Recurrences::set_left(int k, const Columns& c) {
   for (int i = 0; i < tree_.rates(); ++i) {
     const auto number = static_cast<std::size_t>(i);
     const JointForce& f = tree_.forces()[number];
@@ -517,7 +519,7 @@ void TreeSeries::set_left(int k, const Columns& c) {
   }
 }
 
-void TreeSeries::add_further_forces(int k, const Columns& c) {
+void TreeSeries::Recurrences::add_further_forces(int k, const Columns& c) {
   for (std::size_t j = 0; j < timed_.size(); ++j) {
     left_[tree_.timed_forces()[j].rate] += timed_[j][static_cast<std::size_t>(k)];
   }
@@ -525,7 +527,7 @@ void TreeSeries::add_further_forces(int k, const Columns& c) {
   add_couplings(tree_, now, now + tree_.coordinates(), left_);
 }
 
-void TreeSeries::prepare_response() {
+void TreeSeries::Recurrences::prepare_response() {
   if (fours_ == 0) return;
   left_.setZero();
   for (int j = 0; j < tree_.rates(); ++j) {
@@ -540,7 +542,7 @@ void TreeSeries::prepare_response() {
   }
 }
 
-double* TreeSeries::response() {
+double* TreeSeries::Recurrences::response() {
   if (fours_ == 0) {
     respond(tree_, left_, workspace_);
     return workspace_.acceleration.data();
@@ -553,6 +555,20 @@ double* TreeSeries::response() {
     sum.to(&dv_[4 * i]);
   }
   return dv_.data();
+}
+
+TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
+    : recurrences_(
+          std::make_unique<Recurrences>(tree, guide_rests, std::move(field), std::move(felt))) {}
+TreeSeries::TreeSeries(const TreeSeries& other)
+    : recurrences_(std::make_unique<Recurrences>(*other.recurrences_)) {}
+TreeSeries::TreeSeries(TreeSeries&&) noexcept = default;
+TreeSeries& TreeSeries::operator=(const TreeSeries& other) { return *this = TreeSeries(other); }
+TreeSeries& TreeSeries::operator=(TreeSeries&&) noexcept = default;
+TreeSeries::~TreeSeries() = default;
+
+void TreeSeries::operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd> c) {
+  (*recurrences_)(t, h, order, c);
 }
 
 }  // namespace kreisel::detail
