@@ -50,8 +50,14 @@ class BodySystem {
     Vector rates;
   };
 
-  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {},
-             std::vector<Element> elements = {}, const std::vector<Constraint>& constraints = {})
+  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity = {})
+      : guide_(std::move(guide)), tree_(std::move(bodies)), gravity_(gravity) {
+    detail::KREISEL_SAME_MARCH();
+    detail::check_gravity(gravity_);
+  }
+
+  BodySystem(M guide, std::vector<BodyDescription> bodies, const Gravity& gravity,
+             std::vector<Element> elements, const std::vector<Constraint>& constraints = {})
       : guide_(std::move(guide)),
         tree_(std::move(bodies), std::move(elements), constraints),
         gravity_(gravity) {
@@ -68,24 +74,14 @@ class BodySystem {
   [[nodiscard]] int body_count() const { return static_cast<int>(tree_.bodies().size()); }
 
   /// The state with all coordinates and rates 0 and all quaternions 1.
-  [[nodiscard]] State rest() const {
-    State state{Vector::Zero(tree_.coordinates()), Vector::Zero(tree_.rates())};
-    for (const detail::Link& link : tree_.links()) {
-      if (detail::coordinate_count(link.kind) >= 4) state.coordinates[link.q + 3] = 1;
-    }
-    return state;
-  }
+  [[nodiscard]] State rest() const { return from_vector(tree_.rest()); }
 
   [[nodiscard]] static Vector to_vector(const State& state) {
-    const Eigen::Index n = state.coordinates.size();
-    Vector y(n + state.rates.size());
-    std::copy_n(state.coordinates.data(), n, y.data());
-    std::copy_n(state.rates.data(), state.rates.size(), y.data() + n);
-    return y;
+    return detail::joined(state.coordinates, state.rates);
   }
 
   [[nodiscard]] State from_vector(const Vector& y) const {
-    return {y.head(tree_.coordinates()), y.tail(tree_.rates())};
+    return {detail::coordinates(tree_, y), detail::rates(tree_, y)};
   }
 
   /// Lengths of the blocks of components that share unit and size, for integrators.
@@ -122,14 +118,12 @@ class BodySystem {
   ///          double alone are differences, with an error of 2^-42 of their fifth derivatives
   /// Cost   : one evaluation of the inverse dynamics in dual numbers, and one solution for each
   ///          derivative; memory is allocated
-  /// Throws : also InvalidInput, naming the body, for a load that takes no dual numbers; naming the
-  ///          constraint, for a tree with constraints
+  /// Throws : also InvalidInput, naming the body, for a load that takes no dual numbers
   template <class Dual>
   [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
     using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
     detail::require_dual_loads(tree_);
-    detail::require_no_constraints(tree_);
     BodyWorkspace w = workspace();
     Vector number(y.size());
     for (Eigen::Index i = 0; i < y.size(); ++i) number[i] = y[i].value();
@@ -157,7 +151,7 @@ class BodySystem {
     detail::set_poses_and_motions(tree_, detail::root(guide, gravity_, detail::is_resting<M>),
                                   y.data(), v, dv, d);
     detail::take_off_loads(tree_, t, guide, v, d);
-    detail::take_off_elements(tree_, v, d);
+    detail::take_off_elements(tree_, t, v, d);
     detail::add_rotor_forces_at(tree_, v, dv, d);
     detail::sum_inwards(tree_, d);
     Duals taken(tree_.rates());
@@ -172,7 +166,20 @@ class BodySystem {
       for (Eigen::Index i = 0; i < left.size(); ++i) {
         left[i] = d.joint_force[i].derivatives()[k] - taken[i].derivatives()[k];
       }
-      detail::respond(tree_, left, w);
+      if (tree_.constraints().empty()) {
+        detail::respond(tree_, left, w);
+      } else {
+        const auto along = [k](const Dual* from, Eigen::Index count) {
+          detail::AlongOnes numbers(count);
+          for (Eigen::Index i = 0; i < count; ++i) {
+            numbers[i].value() = from[i].value();
+            numbers[i].derivatives()[0] = from[i].derivatives()[k];
+          }
+          return numbers;
+        };
+        detail::respond_on_constraints(tree_, along(y.data(), tree_.coordinates()),
+                                       along(v, tree_.rates()), along(dv, tree_.rates()), left, w);
+      }
       for (Eigen::Index i = 0; i < left.size(); ++i) {
         result[tree_.coordinates() + i].derivatives()[k] += w.acceleration[i];
       }
@@ -219,6 +226,18 @@ class BodySystem {
   [[nodiscard]] State assembled(const State& state) const {
     BodyWorkspace w = workspace();
     return from_vector(detail::assembled(tree_, to_vector(state), w));
+  }
+
+  [[nodiscard]] Vector assembled(const Vector& y) const {
+    BodyWorkspace w = workspace();
+    detail::require(tree_, y, 0, w);
+    return detail::assembled(tree_, y, w);
+  }
+
+  /// The derivatives of all conditions, then of their rates, along the columns of E: in the gaps'
+  /// units, per unit of the state.
+  [[nodiscard]] Eigen::MatrixXd constraint_slopes(const Vector& y, const Eigen::MatrixXd& E) const {
+    return detail::constraint_slopes(tree_, y, E);
   }
 
   /// How far a state is from the constraints.
@@ -286,13 +305,13 @@ class BodySystem {
 
   /// The forces of all elements in their order: force and torque on the SECOND body about its end,
   /// on the first body's axes. The force of a coupling is that on the second joint's body, about
-  /// its origin. No element depends on time itself.
+  /// its origin.
   ///
   /// Units  : N, N m
-  void element_forces([[maybe_unused]] double t, const Vector& y, std::vector<Motor<>>& result,
+  void element_forces(double t, const Vector& y, std::vector<Motor<>>& result,
                       BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
-    detail::element_forces(tree_, y, result, w);
+    detail::element_forces(tree_, t, y, result, w);
   }
 
   /// The situation of a body, pose and motion: the argument of a Load.

@@ -77,7 +77,7 @@ inline void add_spins(const BodyTree& tree, const GuideNow<>& guide, const doubl
                                          const Gravity& gravity, const double* q, const double* v,
                                          const BodyWorkspace& w) {
   BodyBalance sum;
-  sum.potential_energy = joint_energy(tree, q) + element_energy(tree, q, w);
+  sum.potential_energy = joint_energy(tree, q) + element_energy(tree, t, q, w);
   for (std::size_t link = 0; link < tree.links().size(); ++link) {
     const Inertia<>& T = link == 0 ? tree.links()[0].inertia : w.inertia[link];
     const auto& [x, V_rel] = w.place[link];

@@ -58,11 +58,36 @@ void take_off_constraints(const BodyTree& tree, BodyWorkspace& w);
 /// Throws : ComputationFailed, naming the constraint, if the state is too far from them
 KREISEL_API void project_on_constraints(const BodyTree& tree, Eigen::VectorXd& y, BodyWorkspace& w);
 
+/// Near a singular position: the state on the conditions next to y, in w; null elsewhere, and if y is
+/// far from them. The accelerations at y err there by its distance from the conditions, over its
+/// distance from the singular position. Needs w as constrain() leaves it.
+[[nodiscard]] const Eigen::VectorXd* projected_near_singular(const BodyTree& tree,
+                                                             const Eigen::VectorXd& y,
+                                                             BodyWorkspace& w);
+
 /// The nearest state to y that fulfils the conditions, by Newton's method.
 ///
 /// Throws : ComputationFailed, naming the constraint that stays open, if there is none near
 KREISEL_API [[nodiscard]] Eigen::VectorXd assembled(const BodyTree& tree, Eigen::VectorXd y,
                                                     BodyWorkspace& w);
+
+using AlongOnes = Eigen::Matrix<AlongOne, Eigen::Dynamic, 1>;
+
+/// The derivatives of the accelerations of a constrained tree, along one direction of its state,
+/// into w.acceleration. `joint_force` has the derivatives of all other forces at fixed accelerations
+/// dv. With fixed multipliers mu it follows
+///
+///   M d(dv) = d(forces) + d(J^t mu) + J^t d(mu),   J d(dv) = -d(J dv + c) at fixed dv
+///
+/// Needs w as rates() leaves it at this state.
+KREISEL_API void respond_on_constraints(const BodyTree& tree, const AlongOnes& q,
+                                        const AlongOnes& v, const AlongOnes& dv,
+                                        Eigen::VectorXd& joint_force, BodyWorkspace& w);
+
+/// The derivatives of all conditions' gaps, then of their rates, along the columns of E.
+[[nodiscard]] KREISEL_API Eigen::MatrixXd constraint_slopes(const BodyTree& tree,
+                                                            const Eigen::VectorXd& y,
+                                                            const Eigen::MatrixXd& E);
 
 [[nodiscard]] KREISEL_API std::vector<RedundantConstraint> redundant_constraints(
     const BodyTree& tree, const Eigen::VectorXd& y, BodyWorkspace& w);

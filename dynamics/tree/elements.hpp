@@ -16,6 +16,7 @@ namespace kreisel::detail {
 template <class S>
 [[nodiscard]] ElementMotion<S> motion_between(const std::array<ElementEnd, 2>& ends,
                                               const std::array<std::size_t, 2>& slot,
+                                              const std::type_identity_t<S>& t,
                                               const MotionSpace<S>& w) {
   const LinkPlace<S>& first = w.place[slot[0]];
   const LinkPlace<S>& second = w.place[slot[1]];
@@ -25,6 +26,7 @@ template <class S>
   const Vector3<S> reach = lever - multiply(R, ends[0].at);
   const Vector3<S> v = second.V.reduced_at(arm).moment - first.V.reduced_at(lever).moment;
   ElementMotion<S> m;
+  m.t = t;
   m.reach = transposed_product(R, reach);
   m.velocity = transposed_product(R, v);
   for (int k = 0; k < 3; ++k) {
@@ -67,7 +69,8 @@ template <class S>
 
 /// Subtracts the elements between points from the forces in w, which the joints transmit.
 template <class S>
-void take_off_elements(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
+void take_off_elements(const BodyTree& tree, const std::type_identity_t<S>& t, const S* v,
+                       MotionSpace<S>& w) {
   if (tree.elements().empty()) return;
   set_places(tree, v, w);
   for (std::size_t k = 0; k < tree.elements().size(); ++k) {
@@ -75,7 +78,7 @@ void take_off_elements(const BodyTree& tree, const S* v, MotionSpace<S>& w) {
     std::visit(
         [&](const auto& kind) {
           if constexpr (!joins_joints<std::decay_t<decltype(kind)>>) {
-            const Motor<S> force = kind.force(motion_between(kind.ends, slot, w));
+            const Motor<S> force = kind.force(motion_between(kind.ends, slot, t, w));
             add_element_force(force, kind.ends[1].at, slot, w);
           }
         },
@@ -99,72 +102,22 @@ void add_couplings(const BodyTree& tree, const S* q, const S* v,
 
 /// Applies all elements: take_off_elements() and add_couplings().
 template <class S>
-void apply_elements(const BodyTree& tree, const S* q, const S* v, MotionSpace<S>& w) {
+void apply_elements(const BodyTree& tree, const std::type_identity_t<S>& t, const S* q, const S* v,
+                    MotionSpace<S>& w) {
   if (tree.elements().empty()) return;
-  take_off_elements(tree, v, w);
+  take_off_elements(tree, t, v, w);
   add_couplings(tree, q, v, w.joint_force);
 }
 
 /// The potential energy of all elements. Needs poses and positions in w.
-[[nodiscard]] inline double element_energy(const BodyTree& tree, const double* q,
-                                           const MotionSpace<>& w) {
-  double sum = 0;
-  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
-    const ElementPlace& place = tree.element_places()[k];
-    sum += std::visit(
-        [&](const auto& kind) {
-          if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
-            return kind.potential(difference(kind, place.q, {true, true}, q));
-          } else {
-            return kind.potential(motion_between(kind.ends, place.slot, w));
-          }
-        },
-        tree.elements()[k]);
-  }
-  return sum;
-}
-
-/// The force of a coupling on its second body: along or about the axis of that body's joint.
-[[nodiscard]] inline Motor<> force_on_second(const BodyTree& tree, const CouplingElement& coupling,
-                                             const ElementPlace& place, const double* q,
-                                             const double* v, const MotionSpace<>& w) {
-  const double force = -coupling.ratio * coupling_force(coupling, place, q, v);
-  const Vector3<double> along =
-      transposed_product(w.pose[place.slot[0]].R, w.pose[place.slot[1]].axis);
-  const Vector3<double> zero = Vector3<double>::Zero();
-  if (tree.body(place.body[1]).joint.kind == JointKind::prismatic) return {force * along, zero};
-  return {zero, force * along};
-}
+[[nodiscard]] KREISEL_API double element_energy(const BodyTree& tree, double t, const double* q,
+                                                const MotionSpace<>& w);
 
 /// The point of an element's second body about which its torque is reported.
-[[nodiscard]] inline Vector3<double> second_point(const Element& element) {
-  return std::visit(
-      [](const auto& kind) -> Vector3<double> {
-        if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
-          return Vector3<double>::Zero();
-        } else {
-          return kind.ends[1].at;
-        }
-      },
-      element);
-}
+[[nodiscard]] Vector3<double> second_point(const Element& element);
 
 /// The forces of all elements on their second bodies. Needs poses and positions in w.
-inline void element_forces(const BodyTree& tree, const double* q, const double* v,
-                           const MotionSpace<>& w, std::vector<Motor<>>& result) {
-  result.resize(tree.elements().size());
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    const ElementPlace& place = tree.element_places()[k];
-    result[k] = std::visit(
-        [&](const auto& kind) {
-          if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
-            return force_on_second(tree, kind, place, q, v, w);
-          } else {
-            return kind.force(motion_between(kind.ends, place.slot, w));
-          }
-        },
-        tree.elements()[k]);
-  }
-}
+void element_forces(const BodyTree& tree, double t, const double* q, const double* v,
+                    const MotionSpace<>& w, std::vector<Motor<>>& result);
 
 }  // namespace kreisel::detail

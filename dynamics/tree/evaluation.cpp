@@ -100,11 +100,18 @@ void require_dual_loads(const BodyTree& tree) {
   }
 }
 
-void require_no_constraints(const BodyTree& tree) {
-  if (tree.constraints().empty()) return;
-  throw InvalidInput("constraint '" + tree.constraints().front().constraint.name +
-                     "': a tree with constraints takes no dual numbers, so it has no linear "
-                     "equations");
+Eigen::VectorXd joined(const Eigen::VectorXd& coordinates, const Eigen::VectorXd& rates) {
+  Eigen::VectorXd y(coordinates.size() + rates.size());
+  y << coordinates, rates;
+  return y;
+}
+
+Eigen::VectorXd coordinates(const BodyTree& tree, const Eigen::VectorXd& y) {
+  return y.head(tree.coordinates());
+}
+
+Eigen::VectorXd rates(const BodyTree& tree, const Eigen::VectorXd& y) {
+  return y.tail(tree.rates());
 }
 
 /// The motion of the tree's root, the guide, with gravity subtracted.
@@ -134,7 +141,7 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
   if (tree.is_acted_on()) {
     take_off_loads(tree, now.t, now.guide, v, w);
     add_timed_forces(tree, now.t, w);
-    apply_elements(tree, y.data(), v, w);
+    apply_elements(tree, now.t, y.data(), v, w);
   }
   if (extra.size()) w.joint_force += extra;
   ask_spin_up(tree, now.t, w);
@@ -146,8 +153,13 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
 void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
            Eigen::VectorXd& result, BodyWorkspace& w) {
   result.resize(y.size());
-  set_coordinate_rates(tree, y.data(), rates_of(tree, y), result.data());
-  accelerate(tree, now, y, {}, result.data() + tree.coordinates(), w);
+  const auto evaluate = [&](const Eigen::VectorXd& state) {
+    set_coordinate_rates(tree, state.data(), rates_of(tree, state), result.data());
+    accelerate(tree, now, state, {}, result.data() + tree.coordinates(), w);
+  };
+  evaluate(y);
+  if (tree.constraints().empty()) return;
+  if (const Eigen::VectorXd* const near = projected_near_singular(tree, y, w)) evaluate(*near);
 }
 
 void respond(const BodyTree& tree, const double* joint_force, double* result, BodyWorkspace& w) {
@@ -170,7 +182,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   result.resize(tree.rates());
   set_poses_and_motions(tree, root(now), y.data(), v, dv.size() ? dv.data() : nullptr, w);
   take_off_loads(tree, now.t, now.guide, v, w);
-  take_off_elements(tree, v, w);
+  take_off_elements(tree, now.t, v, w);
   const double* given = dv.size() ? dv.data() : w.still.data();
   add_rotor_forces_at(tree, v, given, w);
   if (held) take_off_constraints(tree, w);
@@ -222,7 +234,7 @@ inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double*
     set_motions(tree, root, v, dv, w);
     if (!forces_at) return;
     take_off_loads(tree, forces_at->t, forces_at->guide, rates_of(tree, y), w);
-    take_off_elements(tree, rates_of(tree, y), w);
+    take_off_elements(tree, forces_at->t, rates_of(tree, y), w);
   };
   set_forces(driven);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
@@ -272,12 +284,12 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   note(&ReactionParts::forces);
 }
 
-void element_forces(const BodyTree& tree, const Eigen::VectorXd& y, std::vector<Motor<>>& result,
-                    BodyWorkspace& w) {
+void element_forces(const BodyTree& tree, double t, const Eigen::VectorXd& y,
+                    std::vector<Motor<>>& result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses(tree, y.data(), w);
   set_places(tree, v, w);
-  element_forces(tree, y.data(), v, w, result);
+  element_forces(tree, t, y.data(), v, w, result);
 }
 
 LoadContext<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,

@@ -51,8 +51,12 @@ inline void require(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::Index
 /// Throws : InvalidInput, naming the body, for a load that does not
 KREISEL_API void require_dual_loads(const BodyTree& tree);
 
-/// Throws : InvalidInput, naming a constraint, if the tree has some: its field takes no dual numbers
-KREISEL_API void require_no_constraints(const BodyTree& tree);
+/// A state as one vector, and its two parts.
+[[nodiscard]] KREISEL_API Eigen::VectorXd joined(const Eigen::VectorXd& coordinates,
+                                                 const Eigen::VectorXd& rates);
+[[nodiscard]] KREISEL_API Eigen::VectorXd coordinates(const BodyTree& tree,
+                                                      const Eigen::VectorXd& y);
+[[nodiscard]] KREISEL_API Eigen::VectorXd rates(const BodyTree& tree, const Eigen::VectorXd& y);
 
 /// The accelerations of the joints into `result`; leaves poses, motions and factors in w.
 KREISEL_API void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
@@ -83,7 +87,7 @@ KREISEL_API void reaction_parts(const BodyTree& tree, const Surroundings& now,
                                 const Eigen::VectorXd& y, std::vector<ReactionParts>& result,
                                 BodyWorkspace& w);
 
-KREISEL_API void element_forces(const BodyTree& tree, const Eigen::VectorXd& y,
+KREISEL_API void element_forces(const BodyTree& tree, double t, const Eigen::VectorXd& y,
                                 std::vector<Motor<>>& result, BodyWorkspace& w);
 
 KREISEL_API [[nodiscard]] LoadContext<> situation(const BodyTree& tree, const Surroundings& now,

@@ -131,7 +131,7 @@ template <class M>
 
   detail::set_motions(tree, weight, w.still.data(), nullptr, w);
   detail::take_off_loads(tree, t, guide, v, w);
-  detail::take_off_elements(tree, v, w);
+  detail::take_off_elements(tree, t, v, w);
   detail::set_joint_forces(tree, y.data(), v, w);
   detail::add_couplings(tree, y.data(), v, w.joint_force);
   detail::ask_spin_up(tree, t, w);

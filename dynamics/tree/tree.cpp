@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,17 +48,23 @@ BodyTree& BodyTree::operator=(const BodyTree&) = default;
 BodyTree& BodyTree::operator=(BodyTree&&) noexcept = default;
 BodyTree::~BodyTree() = default;
 
+BodyTree::BodyTree(std::vector<BodyDescription> bodies) : BodyTree(std::move(bodies), {}) {}
+
 BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements,
                    const std::vector<Constraint>& constraints)
     : bodies_(std::move(bodies)), elements_(std::move(elements)) {
   links_.emplace_back();
+  by_name_.resize(bodies_.size());
+  std::iota(by_name_.begin(), by_name_.end(), 0);
+  std::stable_sort(by_name_.begin(), by_name_.end(),
+                   [this](int a, int b) { return body(a).name < body(b).name; });
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const std::string& name = bodies_[i].name;
     if (name.empty() || name == "guide") {
       detail::refuse_body(
           name, "number " + std::to_string(i + 1) + " of the list needs a name other than 'guide'");
     }
-    if (!index_.emplace(name, static_cast<int>(i)).second) {
+    if (find(name) != static_cast<int>(i)) {
       detail::refuse_body(name, "the name is used twice; a body has one joint to one parent");
     }
   }
@@ -83,10 +90,25 @@ BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> ele
   is_prescribed_ = !drives_.empty() || !constraints_.empty();
 }
 
+int BodyTree::find(const std::string& name) const {
+  const auto found =
+      std::lower_bound(by_name_.begin(), by_name_.end(), name,
+                       [this](int i, const std::string& wanted) { return body(i).name < wanted; });
+  return found != by_name_.end() && body(*found).name == name ? *found : -1;
+}
+
 int BodyTree::index(const std::string& name) const {
-  const auto found = index_.find(name);
-  if (found == index_.end()) throw InvalidInput("body '" + name + "' does not exist");
-  return found->second;
+  const int found = find(name);
+  if (found < 0) throw InvalidInput("body '" + name + "' does not exist");
+  return found;
+}
+
+Eigen::VectorXd BodyTree::rest() const {
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(coordinates_ + rates_);
+  for (const detail::Link& link : links_) {
+    if (detail::coordinate_count(link.kind) >= 4) y[link.q + 3] = 1;
+  }
+  return y;
 }
 
 JointPlace BodyTree::place(int body) const {
@@ -110,23 +132,23 @@ void BodyTree::check_parent(int body) const {
   const std::string& name = this->body(body).name;
   const std::string& parent = this->body(body).parent;
   if (parent == "guide") return;
-  const auto found = index_.find(parent);
-  if (found == index_.end()) detail::refuse_body(name, "its parent '" + parent + "' is unknown");
-  if (this->body(found->second).rotor) {
+  int above = find(parent);
+  if (above < 0) detail::refuse_body(name, "its parent '" + parent + "' is unknown");
+  if (this->body(above).rotor) {
     detail::refuse_body(name, "its parent '" + parent + "' is a rotor, which can carry nothing");
   }
-  if (found->second < body) return;
+  if (above < body) return;
   // Follows the parents to distinguish a loop from a list in the wrong order.
   std::string path = name + " -> " + parent;
-  auto above = found;
-  for (std::size_t step = 0; step < bodies_.size(); ++step) {
-    if (above->second == body) {
-      detail::refuse_body(name, "closed loop " + path + "; only trees are computed");
+  for (std::size_t step = 0; step < bodies_.size() && above >= 0; ++step) {
+    if (above == body) {
+      detail::refuse_body(name, "closed loop " + path +
+                                    "; only trees are computed: cut a joint, and hold its bodies "
+                                    "by a constraint");
     }
-    const std::string& next = this->body(above->second).parent;
-    above = index_.find(next);
-    if (above == index_.end()) break;
-    path += " -> " + next;
+    const std::string& next = this->body(above).parent;
+    above = find(next);
+    if (above >= 0) path += " -> " + next;
   }
   detail::refuse_body(name, "its parent '" + parent + "' comes later; parents come first");
 }
@@ -139,7 +161,7 @@ void BodyTree::append(int body) {
   link.body = body;
   link.rule = b.rule;
   link.position = b.joint.position;
-  link.parent = b.parent == "guide" ? 0 : static_cast<int>(this->link(index_.at(b.parent)));
+  link.parent = b.parent == "guide" ? 0 : static_cast<int>(this->link(find(b.parent)));
   for (const detail::JointPart* part = parts.begin(); part != &parts.back(); ++part) {
     detail::Link between = link;
     detail::set_motion(between, *part);

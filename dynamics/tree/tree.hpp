@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include <dynamics/tree/constraint/constraint.hpp>
@@ -40,8 +39,9 @@ struct ElementPlace {
 ///          that are no element. Naming constraint and reason: the same
 class KREISEL_API BodyTree {
  public:
-  explicit BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements = {},
-                    const std::vector<Constraint>& constraints = {});
+  explicit BodyTree(std::vector<BodyDescription> bodies);
+  BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> elements,
+           const std::vector<Constraint>& constraints = {});
   // Compiled once, in libkreisel: programs would instantiate the vectors' own.
   BodyTree(const BodyTree& other);
   BodyTree(BodyTree&& other) noexcept;
@@ -105,12 +105,17 @@ class KREISEL_API BodyTree {
 
   [[nodiscard]] JointPlace place(int body) const;
 
+  /// The state with all coordinates and rates 0 and all quaternions 1.
+  [[nodiscard]] Eigen::VectorXd rest() const;
+
   /// Lengths of the blocks of coordinates, then of rates, whose components share unit and size.
   [[nodiscard]] std::vector<int> blocks() const;
 
  private:
   void check_parent(int body) const;
   void connect(const Element& element);
+  /// The body with this name; -1 if there is none.
+  [[nodiscard]] int find(const std::string& name) const;
   [[nodiscard]] int body_of_element(const std::string& element, const std::string& body) const;
   void set_joint(const CouplingElement& coupling, std::size_t end, ElementPlace& place) const;
   void append(int body);
@@ -126,7 +131,7 @@ class KREISEL_API BodyTree {
   std::vector<BodyDescription> bodies_;
   std::vector<Element> elements_;
   std::vector<ElementPlace> element_places_;
-  std::unordered_map<std::string, int> index_;
+  std::vector<int> by_name_;  ///< bodies in the order of their names
   std::vector<detail::Link> links_;
   std::vector<detail::RotorLink> rotors_;
   std::vector<std::size_t> last_link_;

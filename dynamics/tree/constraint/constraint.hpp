@@ -18,15 +18,10 @@ namespace constraint {
 ///
 /// Units  : rad, or m for a slide; ratio in their quotient
 struct Gear {
-  static constexpr const char* kind = "gear";
-
   double ratio = 1;
   double offset = 0;
 
-  void list(detail::ConstraintNumbers& n) const {
-    n.add(ratio);
-    n.add(offset);
-  }
+  void list(detail::ConstraintNumbers& numbers) const;
 };
 
 using Kind =

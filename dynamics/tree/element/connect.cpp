@@ -43,14 +43,14 @@ void BodyTree::connect(const Element& element) {
 
 int BodyTree::body_of_element(const std::string& element, const std::string& body) const {
   if (body == "guide") return -1;
-  const auto found = index_.find(body);
-  if (found == index_.end()) refuse_element(element, "its body '" + body + "' does not exist");
-  if (this->body(found->second).rotor) {
+  const int found = find(body);
+  if (found < 0) refuse_element(element, "its body '" + body + "' does not exist");
+  if (this->body(found).rotor) {
     refuse_element(element, "'" + body +
                                 "' is a rotor, whose angle no force may depend on; leave `rotor` "
                                 "out and it is an ordinary body");
   }
-  return found->second;
+  return found;
 }
 
 void BodyTree::set_joint(const CouplingElement& coupling, std::size_t end,

@@ -19,6 +19,53 @@ bool MountElement::has_potential() const {
   return fits(K.rm, K.rm) && fits(K.mr, K.mr) && fits(K.rr, K.mm);
 }
 
+double MountElement::potential(const ElementMotion<>& m) const {
+  const Matrix3<double> to_mount = to_body().transpose();
+  const Motor<> z{to_mount * turn(m), to_mount * m.reach};
+  return reciprocal(stiffness * z, z) / 2 - reciprocal(preload, z);
+}
+
+bool MountElement::feels_rotation() const {
+  return !(stiffness.rr.isZero(0) && stiffness.mr.isZero(0) && stiffness.mm.isZero(0) &&
+           preload.moment.isZero(0));
+}
+
+Matrix3<double> MountElement::to_body() const {
+  return detail::Rotation<double>::from(axes).matrix();
+}
+
+double SpringElement::potential(const ElementMotion<>& m) const {
+  const double distance = m.reach.norm();
+  if (table.empty()) return stiffness * (distance - length) * (distance - length) / 2;
+  double sum = 0;
+  double from = table.front().length;
+  for (std::size_t i = 1; i + 1 < table.size() && table[i].length < distance; ++i) {
+    sum += (table[i].length - from) * (pull(from) + table[i].pull) / 2;
+    from = table[i].length;
+  }
+  return sum + (distance - from) * (pull(from) + pull(distance)) / 2;
+}
+
+double RopeElement::potential(const ElementMotion<>& m) const {
+  const double stretch = std::max(0.0, m.reach.norm() - length(m.t));
+  return stiffness * stretch * stretch / 2;
+}
+
+const std::string& name(const Element& element) {
+  return std::visit([](const auto& kind) -> const std::string& { return kind.name; }, element);
+}
+
+bool has_potential(const Element& element) {
+  const auto* const mount = std::get_if<MountElement>(&element);
+  const auto* const rope = std::get_if<RopeElement>(&element);
+  return (mount == nullptr || mount->has_potential()) &&
+         (rope == nullptr || rope->length.is_constant());
+}
+
+bool keeps_energy(const Element& element) {
+  return std::visit([](const auto& kind) { return kind.keeps_energy(); }, element);
+}
+
 namespace detail {
 
 namespace {
@@ -77,6 +124,14 @@ void check_kind(const SpringElement& spring) {
     refuse_element(spring.name, "its length must be finite and not below 0");
   }
   check_table(spring);
+}
+
+void check_kind(const RopeElement& rope) {
+  check_numbers(rope.name, rope.stiffness, rope.damping, false);
+  if (!(rope.stiffness > 0)) refuse_element(rope.name, "its stiffness must be above 0");
+  if (rope.length.is_constant() && !(rope.length(0.0) >= 0)) {
+    refuse_element(rope.name, "its length must not be below 0");
+  }
 }
 
 void check_kind(const MountElement& mount) {

@@ -6,32 +6,26 @@
 
 #include <dynamics/tree/element/coupling.hpp>
 #include <dynamics/tree/element/mount.hpp>
+#include <dynamics/tree/element/rope.hpp>
 #include <dynamics/tree/element/spring.hpp>
 
 namespace kreisel {
 
 /// A force between two bodies, between the guide and a body, or between two joints. It acts on both
 /// with opposite signs.
-using Element = std::variant<SpringElement, MountElement, CouplingElement>;
+using Element = std::variant<SpringElement, MountElement, CouplingElement, RopeElement>;
 
-[[nodiscard]] inline const std::string& name(const Element& element) {
-  return std::visit([](const auto& kind) -> const std::string& { return kind.name; }, element);
-}
+[[nodiscard]] KREISEL_API const std::string& name(const Element& element);
 
 /// The names of an element's first and second body; "guide" for the guide.
 [[nodiscard]] KREISEL_API const std::string& first_of(const Element& element);
 [[nodiscard]] KREISEL_API const std::string& second_of(const Element& element);
 
 /// True if the forces on bodies at rest have a potential.
-[[nodiscard]] inline bool has_potential(const Element& element) {
-  const auto* const mount = std::get_if<MountElement>(&element);
-  return mount == nullptr || mount->has_potential();
-}
+[[nodiscard]] KREISEL_API bool has_potential(const Element& element);
 
 /// True if the work of an element is that of its potential alone.
-[[nodiscard]] inline bool keeps_energy(const Element& element) {
-  return std::visit([](const auto& kind) { return kind.keeps_energy(); }, element);
-}
+[[nodiscard]] KREISEL_API bool keeps_energy(const Element& element);
 
 namespace detail {
 

@@ -57,11 +57,7 @@ struct MountElement {
     return {A * all.resultant, A * all.moment};
   }
 
-  [[nodiscard]] double potential(const ElementMotion<>& m) const {
-    const Matrix3<double> to_mount = to_body().transpose();
-    const Motor<> z{to_mount * turn(m), to_mount * m.reach};
-    return reciprocal(stiffness * z, z) / 2 - reciprocal(preload, z);
-  }
+  [[nodiscard]] KREISEL_API double potential(const ElementMotion<>& m) const;
 
   /// True if the stiffness is symmetric up to rounding.
   [[nodiscard]] KREISEL_API bool has_potential() const;
@@ -70,16 +66,11 @@ struct MountElement {
   [[nodiscard]] KREISEL_API bool keeps_energy() const;
 
   /// True if the force depends on the rotation theta.
-  [[nodiscard]] bool feels_rotation() const {
-    return !(stiffness.rr.isZero(0) && stiffness.mr.isZero(0) && stiffness.mm.isZero(0) &&
-             preload.moment.isZero(0));
-  }
+  [[nodiscard]] KREISEL_API bool feels_rotation() const;
 
  private:
   /// The rotation from the mount's axes to the first body's.
-  [[nodiscard]] Matrix3<double> to_body() const {
-    return detail::Rotation<double>::from(axes).matrix();
-  }
+  [[nodiscard]] KREISEL_API Matrix3<double> to_body() const;
 
   template <class S>
   [[nodiscard]] static Motor<S> cast(const Motor<>& m) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <dynamics/tree/element/motion.hpp>
+#include <motor/api.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -68,17 +69,7 @@ struct SpringElement {
   }
 
   /// Zero at the unloaded length, or at the first point of the table.
-  [[nodiscard]] double potential(const ElementMotion<>& m) const {
-    const double distance = m.reach.norm();
-    if (table.empty()) return stiffness * (distance - length) * (distance - length) / 2;
-    double sum = 0;
-    double from = table.front().length;
-    for (std::size_t i = 1; i + 1 < table.size() && table[i].length < distance; ++i) {
-      sum += (table[i].length - from) * (pull(from) + table[i].pull) / 2;
-      from = table[i].length;
-    }
-    return sum + (distance - from) * (pull(from) + pull(distance)) / 2;
-  }
+  [[nodiscard]] KREISEL_API double potential(const ElementMotion<>& m) const;
 
   [[nodiscard]] bool keeps_energy() const { return damping == 0; }
 

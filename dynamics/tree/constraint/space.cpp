@@ -1,0 +1,107 @@
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <dynamics/tree/constraint/space.hpp>
+#include <dynamics/tree/evaluation.hpp>
+#include <dynamics/tree/passes.hpp>
+
+namespace kreisel::detail {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+ConstraintMemory::ConstraintMemory() = default;
+ConstraintMemory::ConstraintMemory(const ConstraintMemory& other)
+    : space_(other.space_ ? std::make_unique<ConstraintSpace>(*other.space_) : nullptr) {}
+ConstraintMemory::ConstraintMemory(ConstraintMemory&& other) noexcept = default;
+ConstraintMemory& ConstraintMemory::operator=(const ConstraintMemory& other) {
+  return *this = ConstraintMemory(other);
+}
+ConstraintMemory& ConstraintMemory::operator=(ConstraintMemory&& other) noexcept = default;
+ConstraintMemory::~ConstraintMemory() = default;
+
+ConstraintSpace& ConstraintMemory::operator*() {
+  if (!space_) space_ = std::make_unique<ConstraintSpace>();
+  return *space_;
+}
+
+namespace {
+
+/// The joint forces of a unit multiplier: the row of J.
+void set_direction(const BodyTree& tree, const ConstraintLink& link, const ConstraintRow<>& row,
+                   Eigen::Ref<VectorXd> result, BodyWorkspace& w) {
+  result.setZero();
+  if (const auto* gear = std::get_if<constraint::Gear>(&link.constraint.kind)) {
+    result[link.v_first] = 1;
+    result[link.v_second] = -gear->ratio;
+    return;
+  }
+  std::fill(w.force.begin(), w.force.end(), Motor<>{});
+  add_between(link, row.direction, w);
+  sum_inwards(tree, w);
+  project(tree, w, result.data());
+}
+
+}  // namespace
+
+void set_directions(const BodyTree& tree, BodyWorkspace& w) {
+  ConstraintSpace& c = *w.constraints;
+  const auto m = static_cast<Index>(c.rows.size());
+  c.directions.resize(tree.rates(), m);
+  c.responses.resize(tree.rates(), m);
+  c.spin_up = w.spin_up;
+  for (Index k = 0; k < m; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    set_direction(tree, tree.constraints()[c.owner[row]], c.rows[row], c.directions.col(k), w);
+    respond(tree, c.directions.col(k).data(), c.responses.col(k).data(), w);
+  }
+  w.spin_up = c.spin_up;
+  c.mass = c.directions.transpose() * c.responses;
+}
+
+void solve_multipliers(const VectorXd& b, VectorXd& x, ConstraintSpace& c) {
+  constexpr double least = 1e-12;
+  c.scale = c.mass.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
+  c.scaled = c.scale.asDiagonal() * c.mass * c.scale.asDiagonal();
+  c.factors.compute(c.scaled);
+  c.pivot = c.factors.info() == Eigen::Success
+                ? c.factors.matrixLLT().diagonal().cwiseAbs2().minCoeff()
+                : 0;
+  x = c.scale.cwiseProduct(b);
+  if (c.pivot > least) {
+    c.factors.solveInPlace(x);
+  } else {
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> general;
+    general.setThreshold(least);
+    general.compute(c.scaled);
+    x = general.solve(x).eval();
+    if (const Index rank = general.rank(); rank > 0) {
+      const auto pivots = general.matrixQTZ().diagonal().cwiseAbs();
+      c.pivot = pivots[rank - 1] / pivots[0];
+    }
+  }
+  x = c.scale.cwiseProduct(x);
+}
+
+double independence(const ConstraintSpace& c) {
+  // A condition that moves nothing at all follows from the joints.
+  constexpr double none = 1e-13;
+  const auto turns = [&c](std::size_t k) { return c.rows[k].direction.resultant.isZero(0); };
+  double least = c.pivot;
+  for (std::size_t k = 0; k < c.rows.size(); ++k) {
+    double greatest = 0;
+    for (std::size_t i = 0; i < c.rows.size(); ++i) {
+      if (c.owner[i] != c.owner[k] || turns(i) != turns(k)) continue;
+      greatest = std::max(greatest, c.mass(static_cast<Index>(i), static_cast<Index>(i)));
+    }
+    const double own = c.mass(static_cast<Index>(k), static_cast<Index>(k));
+    if (own > none * greatest) least = std::min(least, own / greatest);
+  }
+  return least;
+}
+
+}  // namespace kreisel::detail

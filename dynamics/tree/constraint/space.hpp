@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <vector>
+
+#include <dynamics/tree/constraint/conditions.hpp>
+
+namespace kreisel::detail {
+
+/// The linear equations of the constraints at one state, and their memory.
+struct ConstraintSpace : Conditions<> {
+  Eigen::MatrixXd directions;  ///< J^t
+  Eigen::MatrixXd responses;   ///< M^-1 J^t
+  Eigen::MatrixXd mass;        ///< J M^-1 J^t
+  Eigen::MatrixXd scaled;
+  Eigen::VectorXd scale;
+  Eigen::LLT<Eigen::MatrixXd> factors;
+  Eigen::VectorXd right;
+  Eigen::VectorXd multipliers;
+  Eigen::VectorXd change;  ///< of the motion, and that of the coordinates
+  Eigen::VectorXd moved;
+  Eigen::VectorXd projected;  ///< a state on the conditions
+  std::vector<double> spin_up;
+  double pivot = 1;  ///< the least of the scaled mass, as a part of the greatest
+};
+
+/// Sets J, M^-1 J^t and J M^-1 J^t. Needs the rows set and the joints eliminated.
+void set_directions(const BodyTree& tree, BodyWorkspace& w);
+
+/// Solves  (J M^-1 J^t) x = b  for rows scaled to a diagonal of 1. Directions that are below 1e-6 of
+/// the greatest follow from the others.
+void solve_multipliers(const Eigen::VectorXd& b, Eigen::VectorXd& x, ConstraintSpace& c);
+
+/// The least mobility of a condition, as a part of the greatest of its constraint. Near a singular
+/// position it is the square of the distance, in radians or lengths of the bodies. Needs the
+/// multipliers solved.
+[[nodiscard]] double independence(const ConstraintSpace& c);
+
+}  // namespace kreisel::detail

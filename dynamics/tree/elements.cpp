@@ -1,0 +1,67 @@
+#include <dynamics/tree/elements.hpp>
+
+namespace kreisel::detail {
+
+double element_energy(const BodyTree& tree, double t, const double* q, const MotionSpace<>& w) {
+  double sum = 0;
+  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
+    const ElementPlace& place = tree.element_places()[k];
+    sum += std::visit(
+        [&](const auto& kind) {
+          if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
+            return kind.potential(difference(kind, place.q, {true, true}, q));
+          } else {
+            return kind.potential(motion_between(kind.ends, place.slot, t, w));
+          }
+        },
+        tree.elements()[k]);
+  }
+  return sum;
+}
+
+namespace {
+
+/// The force of a coupling on its second body: along or about the axis of that body's joint.
+Motor<> force_on_second(const BodyTree& tree, const CouplingElement& coupling,
+                        const ElementPlace& place, const double* q, const double* v,
+                        const MotionSpace<>& w) {
+  const double force = -coupling.ratio * coupling_force(coupling, place, q, v);
+  const Vector3<double> along =
+      transposed_product(w.pose[place.slot[0]].R, w.pose[place.slot[1]].axis);
+  const Vector3<double> zero = Vector3<double>::Zero();
+  if (tree.body(place.body[1]).joint.kind == JointKind::prismatic) return {force * along, zero};
+  return {zero, force * along};
+}
+
+}  // namespace
+
+Vector3<double> second_point(const Element& element) {
+  return std::visit(
+      [](const auto& kind) -> Vector3<double> {
+        if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
+          return Vector3<double>::Zero();
+        } else {
+          return kind.ends[1].at;
+        }
+      },
+      element);
+}
+
+void element_forces(const BodyTree& tree, double t, const double* q, const double* v,
+                    const MotionSpace<>& w, std::vector<Motor<>>& result) {
+  result.resize(tree.elements().size());
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const ElementPlace& place = tree.element_places()[k];
+    result[k] = std::visit(
+        [&](const auto& kind) {
+          if constexpr (joins_joints<std::decay_t<decltype(kind)>>) {
+            return force_on_second(tree, kind, place, q, v, w);
+          } else {
+            return kind.force(motion_between(kind.ends, place.slot, t, w));
+          }
+        },
+        tree.elements()[k]);
+  }
+}
+
+}  // namespace kreisel::detail
