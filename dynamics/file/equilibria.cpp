@@ -141,14 +141,12 @@ class Search {
       const int rate = directions_.rates + i;
       if (!directions_.held[static_cast<std::size_t>(rate)]) base_[q + i] = 0;
     }
+    base_ = detail::on_constraints(system, base_);
     const Places cyclic =
-        directions_.cyclic(linearized(system, system.begin(), base_).A,
-                           linearized(system, system.begin(), off(system, base_)).A);
+        directions_.cyclic(linearized(system, system.begin(), base_),
+                           linearized(system, system.begin(), off(system, base_)));
     fixed_ = joined(directions_.held, cyclic);
     running_ = list(joined(directions_.running, cyclic));
-    for (int i = 0; i < directions_.rates; ++i) {
-      if (!fixed_[static_cast<std::size_t>(i)]) free_.push_back(i);
-    }
   }
 
   Equilibria run() {
@@ -193,14 +191,14 @@ class Search {
   /// The end of  dq/ds = q''(q), where q'' is the acceleration of a body released at rest. Implicit
   /// Euler steps grow as the acceleration falls: close to an equilibrium they are Newton's.
   [[nodiscard]] std::optional<VectorXd> descended(VectorXd y) const {
-    if (free_.empty()) return std::nullopt;
+    y = detail::on_constraints(system_, y);
     double step = 0;
     double before = 0;
     for (int i = 0; i < 50; ++i) {
-      const auto there =
-          detail::derivatives(system_, system_.begin(), y, tangent_.basis(y), detail::InTime::no);
-      const auto r = detail::reduced(tangent_, y, there);
-      const VectorXd a = r.v.tail(directions_.rates)(free_);
+      const auto r = detail::reduced(system_, system_.begin(), y, tangent_, detail::InTime::no);
+      const std::vector<int> free = searched(r.free);
+      if (free.empty()) return std::nullopt;
+      const VectorXd a = r.v.tail(directions_.rates)(free);
       const double size = a.cwiseAbs().maxCoeff();
       if (!std::isfinite(size)) return std::nullopt;
       if (i == 0) {
@@ -211,11 +209,11 @@ class Search {
         step *= std::clamp(before / size, 0.3, 5.0);
       }
       before = size;
-      const MatrixXd J = r.A.bottomRows(directions_.rates)(free_, free_);
+      const MatrixXd J = r.A.bottomRows(directions_.rates)(free, free);
       const MatrixXd M = MatrixXd::Identity(J.rows(), J.cols()) / step - J;
       VectorXd move = detail::shortest_solution(M, a, 1e-15).x;
       move *= std::min(1.0, 1 / move.cwiseAbs().maxCoeff());
-      y = tangent_.moved(y, detail::scattered(tangent_.dimension(), free_, move));
+      y = moved(system_, y, r.free.complete(detail::scattered(tangent_.dimension(), free, move)));
     }
     return y;
   }
@@ -229,7 +227,7 @@ class Search {
     }
     Equilibrium equilibrium{in_turns_of(system_, std::move(state), VectorXd::Zero(base_.size())),
                             residual};
-    note_neutral(there.A, equilibrium);
+    note_neutral(there, equilibrium);
     const auto is_same = [&](std::size_t k) {
       const Equilibrium& other = found_.list[k];
       if (distance(system_, other.state, equilibrium.state) <= 1e-6) return true;
@@ -245,18 +243,29 @@ class Search {
     traces_.push_back(traces(there.A));
   }
 
+  /// The coordinates that are searched, as far as they are independent.
+  [[nodiscard]] std::vector<int> searched(const FreeDirections& directions) const {
+    const std::vector<int>& dependent = directions.dependent;
+    std::vector<int> free;
+    for (int i = 0; i < directions_.rates; ++i) {
+      const bool follows = std::binary_search(dependent.begin(), dependent.end(), i);
+      if (!follows && !fixed_[static_cast<std::size_t>(i)]) free.push_back(i);
+    }
+    return free;
+  }
+
   /// The accelerations of the coordinates that are searched.
   [[nodiscard]] VectorXd accelerations(const VectorXd& y) const {
     const VectorXd rate = tangent_.inverse(y) * system_.rates(system_.begin(), y);
-    return rate.tail(directions_.rates)(free_);
+    return rate.tail(directions_.rates)(searched({}));
   }
 
   /// True if all states between two equilibria are equilibria.
   [[nodiscard]] bool are_joined(const VectorXd& from, const VectorXd& to, double norm) const {
     const VectorXd way = tangent_.between(from, in_turns_of(system_, to, from));
     return std::all_of(std::begin(shares), std::end(shares), [&](double share) {
-      const VectorXd y = tangent_.moved(from, VectorXd(share * way));
-      return accelerations(y).cwiseAbs().maxCoeff() <= 1e-9 * norm;
+      const auto y = detail::moved_or_none(system_, tangent_, from, VectorXd(share * way));
+      return y && accelerations(*y).cwiseAbs().maxCoeff() <= 1e-9 * norm;
     });
   }
 
@@ -274,17 +283,20 @@ class Search {
   }
 
   /// Counts the directions in which the equilibrium is not isolated.
-  void note_neutral(const MatrixXd& A, Equilibrium& equilibrium) const {
-    const MatrixXd J = A.bottomRows(directions_.rates)(free_, free_);
+  void note_neutral(const Linearization& there, Equilibrium& equilibrium) const {
+    const std::vector<int> free = searched(there.free);
+    const MatrixXd J = there.A.bottomRows(directions_.rates)(free, free);
     if (J.size() == 0) return;
     const auto [values, U, V] = detail::singular_values(J);
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       if (values[k] > 1e-9 * values[0]) continue;
       const double reach = 0.2;
       const VectorXd eta =
-          detail::scattered(tangent_.dimension(), free_, VectorXd(reach * V.col(k)));
-      const VectorXd a = accelerations(tangent_.moved(equilibrium.state, eta));
-      const bool is_family = a.cwiseAbs().maxCoeff() <= 1e-8 * (1e-9 + reach * values[0]);
+          detail::scattered(tangent_.dimension(), free, VectorXd(reach * V.col(k)));
+      const auto near =
+          detail::moved_or_none(system_, tangent_, equilibrium.state, there.free.complete(eta));
+      const bool is_family =
+          near && accelerations(*near).cwiseAbs().maxCoeff() <= 1e-8 * (1e-9 + reach * values[0]);
       equilibrium.neutral += is_family ? 1 : 0;
       equilibrium.degenerate = equilibrium.degenerate || !is_family;
     }
@@ -297,7 +309,6 @@ class Search {
   VectorXd base_;
   Places fixed_;
   std::vector<int> running_;
-  std::vector<int> free_;
   Equilibria found_;
   std::vector<Eigen::Vector4d> traces_;
 };

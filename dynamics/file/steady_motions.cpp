@@ -50,10 +50,12 @@ std::pair<int, int> Directions::group(int direction) const {
   return {direction, 1};
 }
 
-Places Directions::cyclic(const MatrixXd& here, const MatrixXd& elsewhere) const {
+Places Directions::cyclic(const Linearization& here, const Linearization& elsewhere) const {
   Places result(2 * static_cast<std::size_t>(rates), false);
-  const auto counts = [this](const MatrixXd& A, int i) {
-    return A.col(i).tail(rates).cwiseAbs().maxCoeff() > 1e-13 * A.norm();
+  const auto counts = [this](const Linearization& linear, int i) {
+    const std::vector<int>& dependent = linear.free.dependent;
+    return linear.A.col(i).tail(rates).cwiseAbs().maxCoeff() > 1e-13 * linear.A.norm() ||
+           std::binary_search(dependent.begin(), dependent.end(), i);
   };
   for (int i = 0; i < rates; ++i) {
     const auto [first, count] = group(i);
@@ -66,8 +68,9 @@ Places Directions::cyclic(const MatrixXd& here, const MatrixXd& elsewhere) const
   return result;
 }
 
-Places Directions::without_roots(const MatrixXd& A) const {
-  Places out(given.size(), false);
+Places Directions::without_roots(const Linearization& linear) const {
+  const MatrixXd& A = linear.A;
+  Places out = set(linear.free.dependent);
   const double zero = 1e-14 * A.norm();
   const auto in = [](const Places& places, int i) { return places[static_cast<std::size_t>(i)]; };
   const auto nothing_depends = [&](int i) {
@@ -99,23 +102,30 @@ Places joined(Places a, const Places& b) {
   return a;
 }
 
+VectorXd moved(const StudySystem& system, const VectorXd& y, const VectorXd& eta) {
+  return detail::moved(system, tangent_of(system, y), y, eta);
+}
+
 VectorXd off(const StudySystem& system, const VectorXd& y) {
-  const Tangent tangent = tangent_of(system, y);
-  VectorXd eta(tangent.dimension());
+  VectorXd eta(2 * system.tree().rates());
   for (Eigen::Index i = 0; i < eta.size(); ++i) {
     eta[i] = 0.1 * std::cos(2.0 * static_cast<double>(i + 1));
   }
-  return tangent.moved(y, eta);
+  // Constraints may leave less room.
+  for (const double share : {1.0, 0.25, 0.06, 0.015, 0.004}) {
+    const auto there = detail::moved_or_none(system, tangent_of(system, y), y, share * eta);
+    if (there) return *there;
+  }
+  return y;
 }
 
 bool stays(const StudySystem& system, const Linearization& linear, double duration) {
-  const Tangent tangent = tangent_of(system, linear.state);
   const double fastest = linear.rate.cwiseAbs().maxCoeff();
   std::vector<double> times{0.31 * duration, 0.77 * duration};
   // Later times, so that no angle has changed by full rotations by chance.
   if (fastest * duration > 1.9) times.insert(times.end(), {0.7 / fastest, 1.9 / fastest});
   return std::all_of(times.begin(), times.end(), [&](double t) {
-    const VectorXd later = tangent.moved(linear.state, VectorXd(t * linear.rate));
+    const VectorXd later = moved(system, linear.state, VectorXd(t * linear.rate));
     const Linearization then = linearized(system, system.begin() + t, later);
     return (then.A - linear.A).norm() <= 1e-9 * linear.A.norm() &&
            (then.rate - linear.rate).norm() <= 1e-9 * (1 + linear.rate.norm());
@@ -139,7 +149,8 @@ Steady steady_at(const StudySystem& system, const Linearization& linear) {
 }  // namespace
 
 Steady find_steady(const StudySystem& system, const VectorXd& guess, double duration) {
-  const Linearization at_guess = linearized(system, system.begin(), guess);
+  const Linearization at_guess =
+      linearized(system, system.begin(), detail::on_constraints(system, guess));
   const double change = at_guess.unsteadiness.norm();
   const bool moves = at_guess.rate.norm() > 0;
   if (moves && change <= 1e-12 * at_guess.A.norm() * at_guess.rate.norm() &&
@@ -150,7 +161,7 @@ Steady find_steady(const StudySystem& system, const VectorXd& guess, double dura
   }
   const Directions directions(system);
   const Places cyclic =
-      directions.cyclic(at_guess.A, linearized(system, system.begin(), off(system, guess)).A);
+      directions.cyclic(at_guess, linearized(system, system.begin(), off(system, guess)));
   Places held = joined(directions.held, cyclic);
   for (const int first : directions.attitudes) {
     // Newton's steps would otherwise halve the angular velocity of a free body down to 0.

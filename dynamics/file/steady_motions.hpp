@@ -59,11 +59,12 @@ struct Directions {
 
   /// Coordinates on which no acceleration depends. The test uses two states, because an equilibrium
   /// may hide a dependence.
-  [[nodiscard]] Places cyclic(const Eigen::MatrixXd& here, const Eigen::MatrixXd& elsewhere) const;
+  [[nodiscard]] Places cyclic(const Linearization& here, const Linearization& elsewhere) const;
 
   /// Directions that can be left out without changing the roots of the others. They depend on no
-  /// other direction because they are given, or no other direction depends on them.
-  [[nodiscard]] Places without_roots(const Eigen::MatrixXd& A) const;
+  /// other direction because they are given, or no other direction depends on them. Directions that
+  /// follow from the others by constraints are among them.
+  [[nodiscard]] Places without_roots(const Linearization& linear) const;
 
  private:
   [[nodiscard]] Places set(const std::vector<int>& directions) const;
@@ -72,6 +73,10 @@ struct Directions {
   /// group.
   [[nodiscard]] std::pair<int, int> group(int direction) const;
 };
+
+/// The state after a move along eta, on the constraints.
+[[nodiscard]] Eigen::VectorXd moved(const StudySystem& system, const Eigen::VectorXd& y,
+                                    const Eigen::VectorXd& eta);
 
 /// A state next to y without special values.
 [[nodiscard]] Eigen::VectorXd off(const StudySystem& system, const Eigen::VectorXd& y);

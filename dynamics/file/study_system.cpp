@@ -38,15 +38,10 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 }  // namespace
 
 StudySystem::StudySystem(const SceneFile& scene) : begin_(scene.t_begin) {
-  if (!scene.constraints.empty()) {
-    throw InvalidInput(
-        "constraint '" + scene.constraints.front().name +
-        "': equilibria, roots and approximations are for scenes without constraints");
-  }
   SceneBodies in_gravity = bodies_in_gravity(scene);
-  bodies_ =
-      std::make_unique<const Bodies>(make_guide_of_equations(scene), std::move(in_gravity.bodies),
-                                     in_gravity.gravity, std::move(in_gravity.elements));
+  bodies_ = std::make_unique<const Bodies>(make_guide_of_equations(scene),
+                                           std::move(in_gravity.bodies), in_gravity.gravity,
+                                           std::move(in_gravity.elements), scene.constraints);
 }
 
 StudySystem::~StudySystem() = default;
@@ -55,6 +50,12 @@ const BodyTree& StudySystem::tree() const { return bodies_->tree(); }
 
 StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {
   return bodies_->rates(t, y);
+}
+
+StudySystem::Vector StudySystem::assembled(const Vector& y) const { return bodies_->assembled(y); }
+
+Eigen::MatrixXd StudySystem::constraint_slopes(const Vector& y, const Eigen::MatrixXd& E) const {
+  return bodies_->constraint_slopes(y, E);
 }
 
 template <class Dual>
@@ -83,6 +84,10 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
   PrecessionCheck check;
   if (tree().rotors().empty()) {
     check.beyond = "there is no rotor among the bodies";
+    return check;
+  }
+  if (!tree().constraints().empty()) {
+    check.beyond = "precession equations are for scenes without constraints";
     return check;
   }
   PrecessionOptions options;

@@ -70,6 +70,10 @@ class StudySystem {
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
 
+  /// As BodySystem has them.
+  [[nodiscard]] Vector assembled(const Vector& y) const;
+  [[nodiscard]] Eigen::MatrixXd constraint_slopes(const Vector& y, const Eigen::MatrixXd& E) const;
+
   /// The rates in the dual numbers of the studies.
   template <class Dual>
   requires(!std::same_as<Dual, double>)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -55,6 +56,11 @@ namespace detail {
   return positions;
 }
 
+[[nodiscard]] inline std::vector<int> appended(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 /// x at the positions, 0 elsewhere. A loop: g++ 12 warns about freed memory in Eigen's indexed
 /// assignment.
 [[nodiscard]] inline Eigen::VectorXd scattered(int dimension, const std::vector<int>& positions,
@@ -89,11 +95,24 @@ struct NewtonStep {
   }
 };
 
+/// As moved(); nothing if no state near there fulfils the constraints.
+template <class Scene>
+[[nodiscard]] std::optional<typename Scene::Vector> moved_or_none(const Scene& scene,
+                                                                  const Tangent& tangent,
+                                                                  const typename Scene::Vector& y,
+                                                                  const Eigen::VectorXd& eta) {
+  try {
+    return moved(scene, tangent, y, eta);
+  } catch (const ComputationFailed&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace detail
 
 /// Newton's method with the exact Jacobian; steps that lead uphill are halved. If equations or
 /// unknowns are redundant, the shortest step is taken: it leads to the equilibrium nearest to the
-/// guess.
+/// guess. States of a constrained system are moved onto its constraints.
 ///
 /// Scene  : Differentiable
 /// Error  : quadratic convergence down to rounding, `step`; linear where the Jacobian is singular
@@ -105,7 +124,6 @@ template <class Scene>
     const Scene& scene, double t, const typename Scene::Vector& guess,
     const EquilibriumOptions& search = {}) {
   const Tangent tangent = detail::tangent_of(scene, guess.size(), search.quaternions);
-  const std::vector<int> unknown = detail::others(tangent.dimension(), search.held);
   const std::vector<int> wanted = detail::others(tangent.dimension(), search.running);
   const auto rates = [&](const typename Scene::Vector& y) {
     const Eigen::VectorXd f = scene.rates(t, y);
@@ -114,24 +132,28 @@ template <class Scene>
   const auto greatest = [](const Eigen::VectorXd& v) { return v.lpNorm<Eigen::Infinity>(); };
 
   EquilibriumResult<typename Scene::Vector> result;
-  result.state = guess;
-  Eigen::VectorXd f = rates(guess);
+  result.state = detail::on_constraints(scene, guess);
+  Eigen::VectorXd f = rates(result.state);
   for (; result.iterations < search.most_iterations; ++result.iterations) {
     const typename Scene::Vector& y = result.state;
-    const auto d = detail::derivatives(scene, t, y, tangent.basis(y), detail::InTime::no);
-    const Eigen::MatrixXd A = detail::reduced(tangent, y, d).A(wanted, unknown);
+    const detail::Reduced r = detail::reduced(scene, t, y, tangent, detail::InTime::no);
+    const std::vector<int> unknown =
+        detail::others(tangent.dimension(), detail::appended(search.held, r.free.dependent));
+    const Eigen::MatrixXd A = r.A(wanted, unknown);
     const detail::NewtonStep newton(A, f);
     const bool suffices = newton.suffices(A, f, 1 + greatest(y));
     result.neutral = static_cast<int>(A.cols()) - newton.rank;
-    const Eigen::VectorXd eta = detail::scattered(tangent.dimension(), unknown, newton.step);
+    const Eigen::VectorXd eta =
+        r.free.complete(detail::scattered(tangent.dimension(), unknown, newton.step));
     double share = 1;
     bool falls = false;
     for (; share > 1e-4 && !falls; share /= 2) {
-      const typename Scene::Vector next = tangent.moved(y, Eigen::VectorXd(share * eta));
-      const Eigen::VectorXd f_next = rates(next);
+      const auto next = detail::moved_or_none(scene, tangent, y, Eigen::VectorXd(share * eta));
+      if (!next) continue;
+      const Eigen::VectorXd f_next = rates(*next);
       falls = f_next.norm() < f.norm();
       if (!falls) continue;
-      result.state = next;
+      result.state = *next;
       f = f_next;
     }
     result.residual = greatest(f);

@@ -14,8 +14,10 @@ namespace kreisel {
 /// Dependence of a motion on its start, in the directions eta in which its state can move
 /// (study/tangent.hpp).
 struct TangentTransition {
-  Eigen::VectorXd state;   ///< y(t_end)
-  Eigen::MatrixXd matrix;  ///< d eta(t_end) / d eta(t_begin)
+  Eigen::VectorXd state;  ///< y(t_end)
+  /// d eta(t_end) / d eta(t_begin); with constraints of the independent components at t_begin, and
+  /// 0 in the columns of the others.
+  Eigen::MatrixXd matrix;
 
   /// Error of each entry of the matrix: its change for steps with a hundred times the error.
   Eigen::MatrixXd error;
@@ -32,10 +34,10 @@ template <class Scene>
   const Eigen::Index n = y.size(), d = tangent.dimension();
   const auto field = [&, n, d](double t, const Eigen::VectorXd& z, Eigen::VectorXd& rate) {
     const Eigen::VectorXd now = z.head(n);
-    const Derivatives at = derivatives(scene, t, now, tangent.basis(now), InTime::no);
+    const Reduced at = reduced(scene, t, now, tangent, InTime::no);
     rate.head(n) = at.f;
     Eigen::Map<Eigen::MatrixXd>(rate.data() + n, d, d).noalias() =
-        reduced(tangent, now, at).A * Eigen::Map<const Eigen::MatrixXd>(z.data() + n, d, d);
+        at.A * Eigen::Map<const Eigen::MatrixXd>(z.data() + n, d, d);
   };
   const std::vector<int> of_state = scene.blocks();
   std::vector<int> of_column;
@@ -51,7 +53,8 @@ template <class Scene>
   }
   Eigen::VectorXd start(n + d * d);
   start.head(n) = y;
-  Eigen::Map<Eigen::MatrixXd>(start.data() + n, d, d).setIdentity();
+  Eigen::Map<Eigen::MatrixXd>(start.data() + n, d, d) =
+      free_directions(scene, y, tangent.basis(y)).unit_moves(tangent.dimension());
   ExplicitRungeKutta steps(field, t_begin, start, accuracy, blocks);
   return steps.advance_to(t_end);
 }
@@ -100,10 +103,9 @@ template <class Scene>
                                              const EquilibriumOptions& search = {},
                                              const Accuracy& accuracy = {.relative = 1e-12}) {
   const Tangent tangent = detail::tangent_of(scene, guess.size(), {});
-  const std::vector<int> unknown = detail::others(tangent.dimension(), search.held);
   const std::vector<int> wanted = detail::others(tangent.dimension(), search.running);
   PeriodicMotion motion;
-  motion.start = guess;
+  motion.start = detail::on_constraints(scene, guess);
   for (; motion.iterations < search.most_iterations; ++motion.iterations) {
     motion.period = tangent_transition(scene, t, motion.start, t + period, accuracy);
     const Eigen::VectorXd away =
@@ -112,12 +114,16 @@ template <class Scene>
     motion.residual = off.lpNorm<Eigen::Infinity>();
     const double size = 1 + motion.start.lpNorm<Eigen::Infinity>();
     if (motion.residual <= 1e3 * accuracy.relative * size) return motion;
-    const Eigen::MatrixXd identity =
-        Eigen::MatrixXd::Identity(tangent.dimension(), tangent.dimension());
+    const FreeDirections free =
+        detail::free_directions(scene, motion.start, tangent.basis(motion.start));
+    const std::vector<int> unknown =
+        detail::others(tangent.dimension(), detail::appended(search.held, free.dependent));
+    const Eigen::MatrixXd change = motion.period.matrix - free.unit_moves(tangent.dimension());
     // The matrix has the error of its steps, which exceeds rounding.
-    const detail::NewtonStep newton((motion.period.matrix - identity)(wanted, unknown), off, 1e-9);
+    const detail::NewtonStep newton(change(wanted, unknown), off, 1e-9);
     motion.start =
-        tangent.moved(motion.start, detail::scattered(tangent.dimension(), unknown, newton.step));
+        detail::moved(scene, tangent, motion.start,
+                      free.complete(detail::scattered(tangent.dimension(), unknown, newton.step)));
   }
   std::ostringstream text;
   text.precision(10);

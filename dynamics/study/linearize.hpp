@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <dynamics/study/body_states.hpp>
+#include <dynamics/study/free_directions.hpp>
 #include <dynamics/study/tangent.hpp>
 
 namespace kreisel {
@@ -42,6 +43,10 @@ concept Differentiable = requires(const Scene& scene, const detail::Duals<1>& t,
 /// The rate is the one that `Observer` sees; eta is written in `In`, on its axes and reduced at its
 /// origin. Matrices of different observers or frames are different types.
 ///
+/// Constraints make components of eta depend on the others. Their columns of A are then 0, and
+/// their rows are the rates that follow. The equations of the independent components are those of
+/// the motions that fulfil the constraints.
+///
 /// Units  : those of the state, radian for the angles that stand for a quaternion
 template <class Observer, class In>
 struct Linearization {
@@ -53,6 +58,7 @@ struct Linearization {
   /// The rate of the rate along the motion. It is 0 at an equilibrium and in a steady motion, in
   /// which only cyclic components run. Otherwise A holds only at that time.
   Eigen::VectorXd unsteadiness;
+  FreeDirections free = {};
 };
 
 namespace detail {
@@ -136,28 +142,85 @@ template <class Scene>
   return names;
 }
 
-/// The derivatives of a field along E, reduced to the coordinates eta. y' = E v and the rate dE of
-/// E give A = P (f_y E - dE), v' = P (f_t + f_y E v - dE v).
+/// True if a scene has constraints.
+template <class Scene>
+[[nodiscard]] bool is_constrained(const Scene& scene) {
+  if constexpr (requires {
+                  scene.constraint_slopes(typename Scene::Vector(), Eigen::MatrixXd());
+                }) {
+    return !scene.tree().constraints().empty();
+  } else {
+    return false;
+  }
+}
+
+/// The state nearest to y that fulfils the constraints.
+///
+/// Throws : ComputationFailed, naming the constraint that stays open, if there is none near
+template <class Scene>
+[[nodiscard]] typename Scene::Vector on_constraints(const Scene& scene,
+                                                    const typename Scene::Vector& y) {
+  if constexpr (requires { scene.assembled(y); }) {
+    if (is_constrained(scene)) return scene.assembled(y);
+  }
+  return y;
+}
+
+/// The state after a finite move along eta.
+///
+/// Throws : as on_constraints()
+template <class Scene>
+[[nodiscard]] typename Scene::Vector moved(const Scene& scene, const Tangent& tangent,
+                                           const typename Scene::Vector& y,
+                                           const Eigen::VectorXd& eta) {
+  return on_constraints(scene, tangent.moved(y, eta));
+}
+
+template <class Scene>
+[[nodiscard]] FreeDirections free_directions(const Scene& scene, const typename Scene::Vector& y,
+                                             const Eigen::MatrixXd& E) {
+  if constexpr (requires { scene.constraint_slopes(y, E); }) {
+    if (is_constrained(scene)) {
+      return free_directions(scene.constraint_slopes(y, E),
+                             RuledDirections::of(scene.tree()).given);
+    }
+  }
+  return {};
+}
+
+/// The derivatives of a field along eta. y' = E v and the rate dE of E give
+/// A = P (f_y E - dE), v' = P (f_t + f_y E v - dE v).
 struct Reduced {
+  Eigen::VectorXd f;
   Eigen::VectorXd v;
   Eigen::MatrixXd A;
   Eigen::VectorXd dv;
+  FreeDirections free = {};
 };
 
-[[nodiscard]] inline Reduced reduced(const Tangent& tangent, const Eigen::VectorXd& y,
-                                     const Derivatives& d) {
-  const Eigen::MatrixXd P = tangent.inverse(y);
-  const Eigen::MatrixXd dE = tangent.basis_rate(d.f);
+template <class Scene>
+[[nodiscard]] Reduced reduced(const Scene& scene, double t, const typename Scene::Vector& y,
+                              const Tangent& tangent, InTime in_time = InTime::yes) {
   Reduced r;
+  Eigen::MatrixXd E = tangent.basis(y);
+  r.free = free_directions(scene, y, E);
+  if (r.free.bound()) E *= r.free.N;
+  const Derivatives d = derivatives(scene, t, y, E, in_time);
+  const Eigen::MatrixXd P = tangent.inverse(y);
+  Eigen::MatrixXd dE = tangent.basis_rate(d.f);
+  if (r.free.bound()) dE *= r.free.N;
+  r.f = d.f;
   r.v = P * d.f;
   r.A = P * (d.along - dE);
+  if (r.free.bound()) r.A = with_columns(r.A, r.free.independent, tangent.dimension());
   r.dv = P * d.along_time + r.A * r.v;
   return r;
 }
 
 }  // namespace detail
 
-/// The linear equations about the state y at the time t, by dual numbers: exact, no differences.
+/// The linear equations about the state y at the time t, by dual numbers: exact, no differences. The
+/// state fulfils the constraints, if there are any, at a position where their rank does not change.
 ///
 /// Scene       : Differentiable. May offer quaternions(), the positions in y of quaternions, and
 ///               names, of the components of y; a BodySystem has both
@@ -172,9 +235,13 @@ template <class Observer, class In, class Scene>
                                                     const typename Scene::Vector& y,
                                                     std::vector<int> quaternions = {}) {
   const Tangent tangent = detail::tangent_of(scene, y.size(), std::move(quaternions));
-  const auto d = detail::derivatives(scene, t, y, tangent.basis(y));
-  const detail::Reduced r = detail::reduced(tangent, y, d);
-  return {y, r.A, r.v, detail::names_of(scene, tangent), r.dv};
+  detail::Reduced r = detail::reduced(scene, t, y, tangent);
+  return {y,
+          std::move(r.A),
+          std::move(r.v),
+          detail::names_of(scene, tangent),
+          std::move(r.dv),
+          std::move(r.free)};
 }
 
 }  // namespace kreisel

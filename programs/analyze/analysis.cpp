@@ -70,13 +70,21 @@ std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) 
 Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   const kreisel::steady_motion::Linearization there = linearized(system, system.begin(), state);
   const Directions directions(system);
-  const Places out = directions.without_roots(there.A);
+  const Places out = directions.without_roots(there);
   const std::vector<int> kept = list(out, false);
   Linear linear;
   linear.names = there.names;
   linear.frame = frame_of(system, state);
-  linear.has_rotors = !system.tree().rotors().empty();
-  for (const int i : list(out)) linear.left_out.push_back(there.names[static_cast<std::size_t>(i)]);
+  // Modes have kinds by their change with the rotors' momenta, which is for trees alone.
+  linear.has_rotors = !system.tree().rotors().empty() && !there.free.bound();
+  std::vector<int> left_out;
+  for (const int i : list(out)) {
+    const std::vector<int>& dependent = there.free.dependent;
+    const bool follows = std::binary_search(dependent.begin(), dependent.end(), i);
+    (follows ? linear.dependent : linear.left_out)
+        .push_back(there.names[static_cast<std::size_t>(i)]);
+    if (!follows) left_out.push_back(i);
+  }
   if (kept.empty()) return linear;
   const MatrixXd A = there.A(kept, kept);
   MatrixXd slope = MatrixXd::Zero(A.rows(), A.cols());
@@ -86,10 +94,10 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
     const Eigen::VectorXcd own = mode.shape;
     mode.shape.setZero(there.A.rows());
     mode.shape(kept) = own;
+    if (there.free.bound()) mode.shape = (there.free.N * mode.shape(there.free.independent)).eval();
     linear.modes.push_back(std::move(mode));
   }
   // A coordinate that is neither held nor restored drifts, however slowly.
-  const std::vector<int> left_out = list(out);
   const bool drifts = std::any_of(left_out.begin(), left_out.end(), [&directions](int i) {
     return !directions.held[static_cast<std::size_t>(i)];
   });
@@ -145,13 +153,18 @@ bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibriu
   const kreisel::steady_motion::Linearization there =
       linearized(system, system.begin(), equilibrium.state);
   const Directions directions(system);
-  const Places fixed =
-      joined(directions.held,
-             directions.cyclic(
-                 there.A, linearized(system, system.begin(), off(system, equilibrium.state)).A));
+  const Places fixed = joined(
+      directions.held,
+      directions.cyclic(there, linearized(system, system.begin(), off(system, equilibrium.state))));
+  const std::vector<int>& dependent = there.free.dependent;
+  const auto follows = [&dependent](int i) {
+    return std::binary_search(dependent.begin(), dependent.end(), i);
+  };
   std::vector<int> free;
   for (int i = 0; i < directions.rates; ++i) {
-    if (!fixed[static_cast<std::size_t>(i)]) free.push_back(i);
+    // A condition on velocities alone, as of rolling: the theorem is for others.
+    if (follows(i) != follows(directions.rates + i)) return false;
+    if (!follows(i) && !fixed[static_cast<std::size_t>(i)]) free.push_back(i);
   }
   if (free.empty() || equilibrium.degenerate) return false;
   const MatrixXd J = there.A.bottomRows(directions.rates)(free, free);
@@ -312,8 +325,8 @@ Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, d
   floquet.period = period;
   const Directions directions(system);
   const double middle = (system.begin() + t_of_guide) / 2;
-  const Places cyclic = directions.cyclic(linearized(system, middle, start).A,
-                                          linearized(system, middle, off(system, start)).A);
+  const Places cyclic = directions.cyclic(linearized(system, middle, start),
+                                          linearized(system, middle, off(system, start)));
   try {
     const auto motion =
         kreisel::periodic_motion(system, system.begin(), period, start,
@@ -323,8 +336,11 @@ Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, d
                                  {.relative = 1e-12, .max_evaluations = max_evaluations});
     floquet.start = motion.start;
     floquet.residual = motion.residual;
-    const std::vector<int> kept =
-        list(joined(directions.given, joined(directions.running, cyclic)), false);
+    Places out = joined(directions.given, joined(directions.running, cyclic));
+    for (const int i : linearized(system, system.begin(), motion.start).free.dependent) {
+      out[static_cast<std::size_t>(i)] = true;
+    }
+    const std::vector<int> kept = list(out, false);
     const MatrixXd X = motion.period.matrix(kept, kept);
     if (X.size() == 0) return floquet;
     floquet.multipliers = kreisel::spectrum(X, motion.period.error.norm());
@@ -341,9 +357,9 @@ Floquet multipliers(const kreisel::StudySystem& system, const VectorXd& start, d
 }
 
 /// True if a ball joint rotates at the start but in no equilibrium, so that another motion was
-/// meant.
+/// meant. Constraints may be what stops it.
 bool lost_spin(const kreisel::StudySystem& system, const VectorXd& start, const Steady& steady) {
-  if (steady.kind == Steady::Kind::start) return false;
+  if (steady.kind == Steady::Kind::start || !system.tree().constraints().empty()) return false;
   const int q = system.tree().coordinates();
   const auto attitudes = Directions(system).attitudes;
   return std::any_of(attitudes.begin(), attitudes.end(), [&](int first) {
@@ -366,6 +382,7 @@ Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& s
   const auto [coordinates, rates] = start_of(scene);
   VectorXd start(coordinates.size() + rates.size());
   start << coordinates, rates;
+  start = kreisel::detail::on_constraints(system, start);
   if (rates.size() == 0) throw InvalidInput("nothing in this scene can move");
   Analysis result;
   const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);

@@ -19,10 +19,11 @@ struct Linear {
   /// Slowest first; of two conjugate modes the one with root.imag() > 0. Shapes have all
   /// directions.
   std::vector<kreisel::GyroscopicMode> modes;
-  std::vector<std::string> names;     ///< of the directions
-  std::vector<std::string> left_out;  ///< directions that are given or on which nothing depends
-  std::string frame;                  ///< in which the modes are observed: "against the guide", ..
-  bool has_rotors = false;            ///< so that modes have a kind
+  std::vector<std::string> names;      ///< of the directions
+  std::vector<std::string> left_out;   ///< directions that are given or on which nothing depends
+  std::vector<std::string> dependent;  ///< directions that follow from the others by constraints
+  std::string frame;                   ///< in which the modes are observed: "against the guide", ..
+  bool has_rotors = false;             ///< so that modes have a kind
   Verdict verdict = Verdict::marginal;
 };
 

@@ -113,10 +113,21 @@ ordered_json roots_json(const Linear& linear) {
 }
 
 ordered_json json(const Linear& linear) {
-  return {{"verdict", name(linear.verdict)},
-          {"frame", linear.frame},
-          {"roots", roots_json(linear)},
-          {"left_out", linear.left_out}};
+  ordered_json result = {{"verdict", name(linear.verdict)},
+                         {"frame", linear.frame},
+                         {"roots", roots_json(linear)},
+                         {"left_out", linear.left_out}};
+  if (!linear.dependent.empty()) result["dependent"] = linear.dependent;
+  return result;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) {
+    all += all.empty() ? "" : ", ";
+    all += name;
+  }
+  return all;
 }
 
 ordered_json json(const Rest& rest, const Result& result, const kreisel::SceneScale& scale = {}) {
@@ -264,13 +275,13 @@ void print(const Linear& linear) {
                root.imag() / (2 * std::numbers::pi), damping_ratio(root),
                kind(mode, linear.has_rotors), mostly(mode, linear.names));
   }
-  if (linear.left_out.empty()) return;
-  std::string all;
-  for (const std::string& direction : linear.left_out) {
-    all += all.empty() ? "" : ", ";
-    all += direction;
+  if (!linear.left_out.empty()) {
+    fmt::print("  without roots, given or such that nothing depends on it: {}\n",
+               joined(linear.left_out));
   }
-  fmt::print("  without roots, given or such that nothing depends on it: {}\n", all);
+  if (!linear.dependent.empty()) {
+    fmt::print("  follow from the others by constraints: {}\n", joined(linear.dependent));
+  }
 }
 
 void print(const Campbell& campbell) {

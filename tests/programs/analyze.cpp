@@ -401,6 +401,31 @@ BOOST_AUTO_TEST_CASE(governor) {
                    {{{out}, "stable"}, {{-out}, "stable"}, {{0}, "unstable"}, {{pi}, "unstable"}});
 }
 
+// Two cranks of 1 m and a rod between them: hanging, upright, and crossed. The hanging one swings with
+// omega^2 = (2 m g/2 + m g) / (2/3 m + m).
+BOOST_AUTO_TEST_CASE(linkage) {
+  const auto rod = [](const std::string& name, const std::string& joint, const std::string& rest) {
+    return "[[body]]\nname = \"" + name + "\"\njoint = { kind = \"revolute\", axis = [0, 1, 0], " +
+           joint + " }\nmass = 3\ninertia = [0.25, 0.25, 0.25]\n" + rest;
+  };
+  const json result = answer_to(
+      "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n" +
+      rod("left", "position = [0, 0, 0]", "centre = [0, 0, -0.5]\ninitial = { angle = 0.1 }\n") +
+      rod("right", "position = [2, 0, 0]", "centre = [0, 0, -0.5]\ninitial = { angle = 0.1 }\n") +
+      rod("rod", "position = [0, 0, -1]",
+          "parent = \"left\"\ncentre = [1, 0, 0]\ninitial = { angle = -0.1 }\n") +
+      "[[constraint]]\nname = \"loop\"\nkind = \"point\"\nbetween = [\"right\", \"rod\"]\n"
+      "at = [[0, 0, -1], [2, 0, 0]]\n[solve]\nt_end = 1\n");
+  const json& hanging = result.at("equilibria").at(0);
+  BOOST_TEST(hanging.at("stability") == "stable");
+  for (const char* const body : {"left", "right", "rod"}) {
+    check_near(body, hanging.at("joints").at(body).at("coordinate"), 0, 1e-14);
+  }
+  const json& root = hanging.at("roots").at(0);
+  check_near("frequency", root.at("frequency"), std::sqrt(2 * 9.81 / (5.0 / 3)), 1e-12);
+  BOOST_TEST(result.at("linear").at("dependent").size() == 4U);
+}
+
 // A family of equilibria is listed once.
 BOOST_AUTO_TEST_CASE(one_for_each_family) {
   std::string ball = point_pendulum("initial = { attitude = [0.8, 0.6, 0, 0] }");
@@ -473,6 +498,22 @@ t_end = 1
 BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(analyze_against_references)
+
+// Castering, weave and capsize of the benchmark at 5 m/s.
+BOOST_AUTO_TEST_CASE(bicycle) {
+  const json result = answer(scene("bicycle"));
+  BOOST_TEST(result.at("steady").at("motion") == "steady motion");
+  const std::pair<double, double> wanted[] = {
+      {-14.07838969279822, 0}, {-0.77534188219585, 4.46486771378823}, {-0.32286642900409, 0}};
+  for (const auto& [growth, frequency] : wanted) {
+    double least = INFINITY;
+    for (const json& root : result.at("linear").at("roots")) {
+      least = std::min(least, std::hypot(root.at("growth_rate").get<double>() - growth,
+                                         root.at("frequency").get<double>() - frequency));
+    }
+    BOOST_TEST(least <= 1e-10, growth);
+  }
+}
 
 // 32 digits. The growth of roots with the momenta is the difference of two such scenes, damped or
 // not.

@@ -1,0 +1,98 @@
+#include <Eigen/QR>
+
+#include <algorithm>
+
+#include <dynamics/study/free_directions.hpp>
+
+namespace kreisel {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Conditions that are below this part of the greatest follow from the others.
+constexpr double least = 1e-10;
+
+/// The rows with length 1, without those that are 0.
+MatrixXd normalized_rows(const MatrixXd& rows) {
+  MatrixXd result(rows.rows(), rows.cols());
+  Index count = 0;
+  for (Index i = 0; i < rows.rows(); ++i) {
+    const double norm = rows.row(i).norm();
+    if (norm > 0) result.row(count++) = rows.row(i) / norm;
+  }
+  return result.topRows(count);
+}
+
+/// The candidates among the columns of G that the other columns determine, by pivoting.
+std::vector<int> pivots(const MatrixXd& G, const std::vector<int>& candidates) {
+  const MatrixXd among = normalized_rows(G)(Eigen::all, candidates);
+  if (among.size() == 0) return {};
+  Eigen::ColPivHouseholderQR<MatrixXd> qr;
+  qr.setThreshold(least);
+  qr.compute(among);
+  std::vector<int> chosen;
+  for (Index k = 0; k < qr.rank(); ++k) {
+    const int column = qr.colsPermutation().indices()[k];
+    chosen.push_back(candidates[static_cast<std::size_t>(column)]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+VectorXd FreeDirections::complete(const VectorXd& eta) const {
+  return bound() ? VectorXd(N * eta(independent)) : eta;
+}
+
+MatrixXd FreeDirections::unit_moves(int dimension) const {
+  return bound() ? detail::with_columns(N, independent, dimension)
+                 : MatrixXd::Identity(dimension, dimension);
+}
+
+namespace detail {
+
+FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& given) {
+  const auto dimension = static_cast<int>(slopes.cols());
+  const int rates = dimension / 2;
+  const Index conditions = slopes.rows() / 2;
+  const auto open = [&given](int begin, int end) {
+    std::vector<int> components;
+    for (int i = begin; i < end; ++i) {
+      if (std::find(given.begin(), given.end(), i) == given.end()) components.push_back(i);
+    }
+    return components;
+  };
+  FreeDirections free;
+  free.dependent = pivots(slopes.topRows(conditions), open(0, rates));
+  const std::vector<int> of_rates = pivots(slopes.bottomRows(conditions), open(rates, dimension));
+  free.dependent.insert(free.dependent.end(), of_rates.begin(), of_rates.end());
+  std::sort(free.dependent.begin(), free.dependent.end());
+  for (int i = 0; i < dimension; ++i) {
+    if (!std::binary_search(free.dependent.begin(), free.dependent.end(), i)) {
+      free.independent.push_back(i);
+    }
+  }
+  const MatrixXd G = normalized_rows(slopes);
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> of_dependent;
+  of_dependent.setThreshold(least);
+  of_dependent.compute(G(Eigen::all, free.dependent));
+  const auto count = static_cast<Index>(free.independent.size());
+  free.N = MatrixXd::Zero(dimension, count);
+  free.N(free.independent, Eigen::all) = MatrixXd::Identity(count, count);
+  free.N(free.dependent, Eigen::all) =
+      -of_dependent.solve(MatrixXd(G(Eigen::all, free.independent)));
+  return free;
+}
+
+MatrixXd with_columns(const MatrixXd& given, const std::vector<int>& positions, int count) {
+  MatrixXd result = MatrixXd::Zero(given.rows(), count);
+  result(Eigen::all, positions) = given;
+  return result;
+}
+
+}  // namespace detail
+
+}  // namespace kreisel

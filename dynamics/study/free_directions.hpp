@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+#include <motor/api.hpp>
+
+namespace kreisel {
+
+/// The directions in which a constrained state can move.
+///
+///   eta = N eta_I,   G N = 0
+///
+/// eta_I are the independent components of eta; G are the derivatives of the conditions and of
+/// their rates. Without constraints all components are independent.
+struct FreeDirections {
+  std::vector<int> independent = {};
+  std::vector<int> dependent = {};  ///< components of eta that follow from the others
+  Eigen::MatrixXd N = {};           ///< empty if there are no constraints
+
+  [[nodiscard]] bool bound() const { return N.size() > 0; }
+
+  /// A move, from its independent components.
+  [[nodiscard]] Eigen::VectorXd complete(const Eigen::VectorXd& eta) const;
+
+  /// The moves of unit independent components, as columns at their positions among `dimension`; the
+  /// unit matrix without constraints.
+  [[nodiscard]] Eigen::MatrixXd unit_moves(int dimension) const;
+};
+
+namespace detail {
+
+/// Chooses dependent components by QR decompositions with pivoting: first among the coordinates,
+/// for the conditions on positions, then among their rates. Components that are given, as those of
+/// drives, stay independent.
+///
+/// slopes : derivatives of the gaps of all conditions, then of their rates, along eta; the first
+///          half of eta are the coordinates
+[[nodiscard]] KREISEL_API FreeDirections free_directions(const Eigen::MatrixXd& slopes,
+                                                         const std::vector<int>& given);
+
+/// A matrix of `count` columns with the given ones at these positions; the others are 0.
+[[nodiscard]] KREISEL_API Eigen::MatrixXd with_columns(const Eigen::MatrixXd& given,
+                                                       const std::vector<int>& positions,
+                                                       int count);
+
+}  // namespace detail
+
+}  // namespace kreisel
