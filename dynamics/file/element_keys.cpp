@@ -7,6 +7,7 @@
 #include <dynamics/file/element_keys.hpp>
 #include <dynamics/file/pair_keys.hpp>
 #include <dynamics/file/quoted.hpp>
+#include <dynamics/file/scene_signal.hpp>
 #include <dynamics/tree/joint/list.hpp>
 
 namespace kreisel::detail {
@@ -19,16 +20,11 @@ class ElementReader {
 
   /// Nothing if the kind is wrong, so that the other keys cannot be checked.
   std::optional<Element> read(Section& section, const std::string& name) {
-    if (section.peek("kind") == "rope") {
-      section.refuse("kind",
-                     "'rope' is not available: a motion that becomes slack and taut needs events; "
-                     "take a 'spring', which also pushes");
-      return std::nullopt;
-    }
     const std::string kind =
-        section.required_choice("kind", {"spring", "mount", "coupling", "gear"});
+        section.required_choice("kind", {"spring", "rope", "mount", "coupling", "gear"});
     if (section.peek("kind") != kind) return std::nullopt;
     if (kind == "spring") return spring(section, name);
+    if (kind == "rope") return rope(section, name);
     if (kind == "mount") return mount(section, name);
     return coupling(section, name);
   }
@@ -58,6 +54,24 @@ class ElementReader {
       }
       result.table.push_back({length, pull});
     }
+    return result;
+  }
+
+  RopeElement rope(Section& section, const std::string& name) const {
+    RopeElement result{.name = name, .ends = pairs_.ends(section)};
+    if (!section.has("length")) section.refuse_missing("length");
+    result.stiffness =
+        section.required_number("stiffness", dimension::force / dimension::length, Range::positive);
+    result.damping = damping(section, dimension::force / dimension::velocity);
+    const auto length = read_signal<double>(section, "length", dimension::length);
+    if (!length) return result;
+    if (length->jumps()) {
+      section.refuse("length", "jumps at t = " + shown_time(length->discontinuities().front()) +
+                                   " s; a winch needs time: take 'points' or 'rate'");
+    } else if (length->is_constant() && (*length)(0.0) < 0) {
+      section.refuse("length", "must not be below 0");
+    }
+    result.length = *length;
     return result;
   }
 

@@ -83,6 +83,9 @@ class SceneReader {
     scene_.guide = std::move(guide.links);
     read_bodies();
     scene_.elements = detail::read_elements(root_, scene_, mistakes_.none());
+    for (const Element& element : scene_.elements) {
+      if (const auto* const rope = std::get_if<RopeElement>(&element)) note(rope->length);
+    }
     detail::read_constraints(root_, assembles_, mistakes_.none(), scene_);
     scene_.sensors = detail::read_sensors(root_, scene_, mistakes_.none());
     read_report();

@@ -64,7 +64,9 @@ Vec Tree::spring_force(const Element& e) const {
   const Real length = reach.norm();
   if (length == 0) return Vec::Zero();
   const Vec v = b.v + b.w.cross(arm_b) - a.v - a.w.cross(arm_a);
-  return -(pull(e, length) + Real(e.damping) * reach.dot(v) / length) * reach / length;
+  const Real tension = pull(e, length) + Real(e.damping) * reach.dot(v) / length;
+  const bool is_slack = e.kind == ElementKind::rope && (length <= Real(e.length) || tension <= 0);
+  return is_slack ? Vec(Vec::Zero()) : Vec(-tension * reach / length);
 }
 
 std::pair<Vec, Vec> Tree::mount_force(const Element& e) const {

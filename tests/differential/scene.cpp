@@ -433,7 +433,7 @@ void add_spring(const Element& e, Keys& keys) {
 }
 
 std::string element(const Element& e, std::size_t index) {
-  static const char* const kinds[] = {"spring", "mount", "gear"};
+  static const char* const kinds[] = {"spring", "mount", "gear", "rope"};
   const std::string names =
       "[\"" + body_name(e.bodies[0]) + "\", \"" + body_name(e.bodies[1]) + "\"]";
   Keys keys{{"name", fmt::format("\"e{}\"", index)},
@@ -449,7 +449,7 @@ std::string element(const Element& e, std::size_t index) {
       keys.emplace_back("at", "[" + list(e.at[0]) + ", " + list(e.at[1]) + "]");
     }
     if (e.kind == ElementKind::mount) add_mount(e, keys);
-    if (e.kind == ElementKind::spring) add_spring(e, keys);
+    if (e.kind == ElementKind::spring || e.kind == ElementKind::rope) add_spring(e, keys);
   }
   std::string result = "[[element]]\n";
   for (const auto& [key, value] : keys) result += key + " = " + value + "\n";

@@ -182,14 +182,14 @@ struct Body {
   [[nodiscard]] JointKind free_kind() const { return loose ? JointKind::free : kind; }
 };
 
-enum class ElementKind { spring, mount, gear };
+enum class ElementKind { spring, mount, gear, rope };
 
 /// A force between two bodies or two joints.
 struct Element {
   ElementKind kind = ElementKind::spring;
   std::array<int, 2> bodies = {-1, 0};  ///< -1: the guide; for a gear the joints' bodies
   std::array<Vector, 2> at = {Vector::Zero(), Vector::Zero()};
-  double stiffness = 0;  ///< of a spring or a gear
+  double stiffness = 0;  ///< of a spring, a rope or a gear
   double damping = 0;
   double length = 0;
   std::vector<std::pair<double, double>> table = {};  ///< instead of stiffness and length

@@ -33,6 +33,7 @@ const std::string run_part = "[solve]\nt_end = 0.7\ntolerance = 1e-11\n";
 std::string element(const std::string& keys) { return "[[element]]\n" + keys + "\n"; }
 
 const std::string named_spring = "name = \"s\"\nkind = \"spring\"\nbetween = [\"a\", \"b\"]\n";
+const std::string named_rope = "name = \"r\"\nkind = \"rope\"\nbetween = [\"a\", \"b\"]\n";
 const std::string named_mount = "name = \"m\"\nkind = \"mount\"\nbetween = [\"guide\", \"a\"]\n";
 const std::string named_gear = "name = \"g\"\nkind = \"gear\"\njoints = [\"a\", \"b\"]\n";
 
@@ -62,6 +63,23 @@ BOOST_AUTO_TEST_CASE(a_spring_swings_two_masses) {
   const double damped = std::exp(-2.1) * 0.3 * (std::cos(0.7 * w) + 3 / w * std::sin(0.7 * w));
   BOOST_TEST(std::abs(stretch("stiffness = 40\nlength = 0.5\ndamping = \"6 N s/m\"") - damped) <=
              1e-10);
+}
+
+// The hook, 2 kg, hangs on a winch that pulls it up at 0.3 m/s from t = 0.2 s on.
+BOOST_AUTO_TEST_CASE(a_winch_pulls_a_hook) {
+  const std::string hook =
+      "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -10]\n" +
+      body("a", "{ kind = \"prismatic\", axis = [0, 0, 1] }", "initial = { displacement = -1.1 }") +
+      element(
+          "name = \"r\"\nkind = \"rope\"\nbetween = [\"guide\", \"a\"]\nstiffness = 200\n"
+          "length = { points = [[0, 1], [0.2, 1], [1.2, 0.7]] }") +
+      "[report]\nelements = true\n" + run_part;
+  const SceneFile file = scene(hook);
+  BOOST_TEST(file.discontinuities == (std::vector<double>{0.2}), boost::test_tools::per_element());
+  BOOST_TEST(file.forces_change);
+  const double w = 10, t = 0.5;
+  const double stretch = 0.1 + 0.3 / w * std::sin(w * t);
+  BOOST_TEST(std::abs(end(hook).coordinates[0] + 1 - 0.3 * t + stretch) <= 1e-10);
 }
 
 BOOST_AUTO_TEST_CASE(a_gear_joins_two_wheels) {
@@ -150,7 +168,12 @@ BOOST_AUTO_TEST_CASE(refuses_wrong_elements) {
        "'a' is the name of a body"},
       {"name = \"s\"\nbetween = [\"a\", \"b\"]", "element 's'.kind: is missing"},
       {"name = \"s\"\nkind = \"sprung\"", "did you mean 'spring'?"},
-      {"name = \"s\"\nkind = \"rope\"\nstiffness = 1", "'rope' is not available"},
+      {named_rope + "stiffness = 1", "element 'r'.length: is missing"},
+      {named_rope + "length = 1", "element 'r'.stiffness: is missing"},
+      {named_rope + "length = 1\nstiffness = -1", "must be"},
+      {named_rope + "length = -1\nstiffness = 1", "must not be below 0"},
+      {named_rope + "stiffness = 1\nlength = { steps = [[0, 2], [1, 3]] }", "a winch needs time"},
+      {named_rope + "stiffness = 1\nlength = 1\ntable = [[1, 2], [2, 3]]", "is no key here"},
       {"name = \"s\"\nkind = \"spring\"\nstiffness = 1", "element 's'.between: is missing"},
       {"name = \"s\"\nkind = \"spring\"\nstiffness = 1\nbetween = [\"a\"]", "two names, not 1"},
       {"name = \"s\"\nkind = \"spring\"\nstiffness = 1\nbetween = \"a\"", "list of texts"},

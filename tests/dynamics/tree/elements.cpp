@@ -11,6 +11,7 @@
 #include <complex>
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -208,6 +209,47 @@ BOOST_AUTO_TEST_CASE(a_table_is_a_polyline_of_the_pull) {
     energy += work;
     BOOST_TEST(std::abs(spring.potential({.reach = {x + 0.125, 0, 0}}) - energy) <= 1e-12);
   }
+}
+
+// A mass falls 0.3 m, is caught by a rope, and is thrown up again as fast as it came.
+BOOST_AUTO_TEST_CASE(a_rope_catches_and_throws) {
+  const double g = 10, m = 2, k = 800, length = 0.5, start_at = -0.2;
+  BodyDescription mass = slider("a", m);
+  mass.joint.axis = {0, 0, 1};
+  const RopeElement rope{
+      .name = "r", .ends = {{{"guide"}, {"a"}}}, .stiffness = k, .length = length};
+  const Resting system(RestingFrame<>{}, {mass}, UniformGravity<Guide>{{0, 0, -g}}, {rope});
+  Resting::State start = system.rest();
+  start.coordinates[0] = start_at;
+  const double falls = std::sqrt(2 * (length + start_at) / g);
+  const double v = g * falls;
+  const double w = std::sqrt(k / m);
+  const double sag = m * g / k;
+  // s = sag (1 - cos w t) + (v/w) sin w t is the stretch, 0 again at pi + 2 atan(sag w/v) over w.
+  const double held = (std::numbers::pi + 2 * std::atan(sag * w / v)) / w;
+  const double taut = falls + 0.4 * held;
+  const double free = falls + held + 0.2;
+  const auto run = solve(system, start, {.output_times = {taut, free}, .tolerance = 1e-11});
+  BOOST_TEST(run.report.tolerance_kept);
+  const double s = sag * (1 - std::cos(0.4 * w * held)) + v / w * std::sin(0.4 * w * held);
+  BOOST_TEST(std::abs(run.states[0].coordinates[0] + length + s) <= 1e-10);
+  const double up = -length + v * 0.2 - g * 0.02;
+  BOOST_TEST(std::abs(run.states[1].coordinates[0] - up) <= 1e-10);
+  BOOST_TEST(invariant(system, start, "energy").has_value());
+  BOOST_TEST(!has_potential(RopeElement{.length = Signal<double>(1, -0.1, {})}));
+}
+
+// A damper alone never makes a rope push.
+BOOST_AUTO_TEST_CASE(a_rope_never_pushes) {
+  const RopeElement rope{.name = "r", .stiffness = 10, .length = 1, .damping = 3};
+  const auto force = [&rope](double reach, double rate) {
+    return rope.force(ElementMotion<>{.reach = {reach, 0, 0}, .velocity = {rate, 0, 0}})
+        .resultant.x();
+  };
+  BOOST_TEST(force(0.9, 5) == 0);
+  BOOST_TEST(force(0, 0) == 0);
+  BOOST_TEST(std::abs(force(1.5, 2) + 11) <= 1e-14);
+  BOOST_TEST(force(1.5, -2) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(ends_that_meet) {
