@@ -62,14 +62,14 @@ class ConstraintReader {
     if (kind == "point") result.kind = centre;
     if (kind == "distance") {
       const double length = section.required_number("length", dimension::length, Range::positive);
-      result.kind = constraint::Distance{first.at, second.at, length};
+      result.kind = constraint::Distance{centre, length};
     }
     if (kind == "revolute") {
       const auto [one, other] = axes(section, first, second);
       result.kind = constraint::Revolute{centre, one, other};
     }
     if (kind == "universal") result.kind = universal(section, centre);
-    const constraint::SameAttitude kept{attitude(first, second)};
+    const Quaterniond kept = attitude(first, second);
     if (kind == "fixed") result.kind = constraint::Fixed{centre, kept};
     if (kind == "prismatic") {
       const Vector3<double> axis = direction(section, "axis");

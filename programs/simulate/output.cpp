@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include <dynamics/file/contacts.hpp>
 #include <dynamics/file/printable.hpp>
 #include <dynamics/file/readings.hpp>
 #include <dynamics/solve/report.hpp>
@@ -231,6 +232,22 @@ std::vector<TermLine> terms_dropped(const Result& result) {
 
 namespace {
 
+/// Facts of the run that a user would not expect.
+std::vector<std::string> warnings(const Result& result) {
+  std::vector<std::string> all;
+  for (const auto& [name, redundant, conditions] : result.scene.redundant_constraints) {
+    all.push_back(fmt::format("constraint '{}': {} of its {} conditions follow from others", name,
+                              redundant, conditions));
+  }
+  for (const auto& [name, t, force] :
+       kreisel::pulling_contacts(result.scene, result.model, result.run)) {
+    all.push_back(fmt::format(
+        "constraint '{}': at t = {:.9g} s its contact pulls with {:.4g} N; a real one lifts off",
+        name, t, -force));
+  }
+  return all;
+}
+
 ordered_json summary(const Result& result) {
   const kreisel::RunReport& r = report(result);
   ordered_json invariants = ordered_json::array();
@@ -257,6 +274,7 @@ ordered_json summary(const Result& result) {
           {"error", error},
           {"tolerance_kept", r.tolerance_kept},
           {"invariants", invariants},
+          {"warnings", warnings(result)},
           {"terms_kept", json(terms_kept(result))},
           {"terms_dropped", json(terms_dropped(result))},
           {"final", final_state(result)}};
@@ -323,9 +341,8 @@ void print_summary(const Result& result) {
   if (final.contains("constraints")) {
     joint_tables::print("constraints on their second bodies, N and N m", final["constraints"]);
   }
-  for (const auto& [name, redundant, conditions] : result.scene.redundant_constraints) {
-    fmt::print("\nconstraint '{}': {} of its {} conditions follow from others\n", name, redundant,
-               conditions);
+  for (const std::string& warning : warnings(result)) {
+    fmt::print("\nwarning: {}\n", kreisel::printable(warning));
   }
   if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
   if (logged) {

@@ -215,6 +215,18 @@ BOOST_AUTO_TEST_CASE(elements_are_reported) {
   BOOST_TEST(text.out.find("load: elements between bodies") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(constraints_are_reported) {
+  const std::string bicycle = scene("bicycle") + " --t-end 0.1";
+  const json result = answer(bicycle);
+  BOOST_TEST(result.at("warnings").empty());
+  double weight = 0;
+  for (const auto& [name, load] : result.at("final").at("constraints").items()) {
+    weight += load.at("force").at(2).get<double>();
+  }
+  BOOST_TEST(std::abs(weight - 94 * 9.81) < 20);  // the frame leans over
+  BOOST_TEST(run(bicycle).out.find("constraints on their second bodies") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(every_example_runs) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(KREISEL_SCENES)) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/contacts.hpp>
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/readings.hpp>
 
@@ -109,6 +110,24 @@ BOOST_AUTO_TEST_CASE(reactions_are_columns_and_readings) {
   BOOST_TEST(std::abs(read.at(2) - 20) <= 1e-13);
 }
 
+// With gravity upward a ball on the plane is held by its contact alone.
+BOOST_AUTO_TEST_CASE(a_contact_that_pulls_is_told) {
+  const auto pulls = [](const std::string& gravity) {
+    const SceneFile file =
+        scene("[gravity]\nkind = \"uniform\"\nvector = [0, 0, " + gravity + "]\n" +
+              body("a", floating, "initial = { position = [0, 0, 0.3] }") +
+              constraint("name = \"x\"\nkind = \"rolling\"\nbody = \"a\"\nradius = 0.3\n"
+                         "plane = { normal = [0, 0, 2] }") +
+              run_part);
+    return pulling_contacts(file, *make_model(file), run_scene(file));
+  };
+  BOOST_TEST(pulls("-10").empty());
+  const auto found = pulls("10");
+  BOOST_TEST_REQUIRE(found.size() == 1U);
+  BOOST_TEST(found[0].constraint == "x");
+  BOOST_TEST(std::abs(found[0].force + 20) <= 1e-13);
+}
+
 BOOST_AUTO_TEST_CASE(reads_every_kind) {
   const std::string bodies =
       body("a", floating) + body("b", floating) + body("c", hinge(0)) + body("d", hinge(3));
@@ -171,7 +190,7 @@ BOOST_AUTO_TEST_CASE(wrong_keys_are_told) {
              std::string::npos);
 }
 
-// The rod is too long for the distance: no state fulfils both.
+// The fixed point lies 5 m below the guide, out of the reach of 1 m.
 BOOST_AUTO_TEST_CASE(contradictions_are_told) {
   const std::string far =
       body("a", hinge(0)) +
@@ -180,6 +199,19 @@ BOOST_AUTO_TEST_CASE(contradictions_are_told) {
           "0, 1]]");
   BOOST_TEST(mistakes(far + run_part + "assemble = true\n").find("no state near the start") !=
              std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(conditions_without_direction_are_told) {
+  const std::string wheel =
+      "name = \"x\"\nkind = \"rolling\"\nbody = \"a\"\nradius = 0.3\naxis = [0, 0, 1]\n"
+      "plane = { normal = [0, 0, 1] }";
+  const std::string rod =
+      "name = \"x\"\nkind = \"distance\"\nbetween = [\"guide\", \"a\"]\nlength = 0.3";
+  for (const std::string& keys : {wheel, rod}) {
+    const std::string found =
+        mistakes(body("a", floating) + constraint(keys) + run_part + "assemble = true\n");
+    BOOST_TEST(found.find("constraint 'x': it has no direction here") != std::string::npos, found);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
