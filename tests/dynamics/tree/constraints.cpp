@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/sensor/kinematics.hpp>
 #include <dynamics/solve/output_times.hpp>
@@ -59,9 +60,9 @@ Constraint as_constraint(const Joint& joint) {
       result.kind = constraint::Universal{centre, joint.axis, on_body(joint.second_axis)};
       break;
     case JointKind::prismatic:
-      result.kind = constraint::Prismatic{centre, joint.axis, {joint.orientation}};
+      result.kind = constraint::Prismatic{centre, joint.axis, joint.orientation};
       break;
-    default: result.kind = constraint::Fixed{centre, {joint.orientation}};
+    default: result.kind = constraint::Fixed{centre, joint.orientation};
   }
   return result;
 }
@@ -191,7 +192,7 @@ BOOST_AUTO_TEST_CASE(distance_makes_a_pendulum) {
   const BodySystem system(
       RestingFrame<>{}, {ball_at(Vector3<double>::Constant(1e-3), m)},
       UniformGravity<Guide>{{0, 0, -g}}, {},
-      {{"rod", "guide", "body", constraint::Distance{{0, 0, 0}, {0, 0, 0}, l}}});
+      {{"rod", "guide", "body", constraint::Distance{{{0, 0, 0}, {0, 0, 0}}, l}}});
   auto start = system.rest();
   start.coordinates.segment<3>(4) = Vector3<double>(l, 0, 0);
   // A quarter of the period from rest at 90 degrees: sqrt(l/g) K(1/2).
@@ -371,6 +372,43 @@ BOOST_AUTO_TEST_CASE(wrong_ones_are_refused) {
   BOOST_TEST(has(told({"c", "guide", "body", constraint::Blade{Vector3<double>(NAN, 0, 0)}}),
                  "not finite"));
   BOOST_TEST(has(told({"c", "guide", "body", constraint::Gear{}}), "'guide' does not exist"));
+}
+
+// Two cranks and a rod of 1 m and 1 kg lie on a line once in half a turn. The rod could begin to turn
+// there. As a parallelogram they are a pendulum with the inertia 5/3 and the first moment 2.
+BOOST_AUTO_TEST_CASE(four_bar_passes_its_singular_position) {
+  const auto rod = [](const std::string& name, const std::string& parent,
+                      const Vector3<double>& position, const Vector3<double>& centre) {
+    BodyDescription body;
+    body.name = name;
+    body.parent = parent;
+    body.joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}, .position = position};
+    const Matrix3<double> tensor = Eigen::Vector3d::Constant(1.0 / 12).asDiagonal();
+    body.inertia = InertiaTensor<Body>::about_centre(1, centre, tensor);
+    return body;
+  };
+  const UniformGravity<Guide> down{{0, 0, -9.81}};
+  const BodySystem linkage(
+      RestingFrame<>{},
+      {rod("left", "guide", {0, 0, 0}, {0, 0, 0.5}), rod("right", "guide", {1, 0, 0}, {0, 0, 0.5}),
+       rod("rod", "left", {0, 0, 1}, {0.5, 0, 0})},
+      down, {}, {{"loop", "right", "rod", constraint::Point{{0, 0, 1}, {1, 0, 0}}}});
+  auto start = linkage.rest();
+  start.rates << 1, 1, -1;
+  const auto run = solve(linkage, start, {.output_times = {0.8, 3}, .tolerance = 1e-8});
+  BOOST_TEST(run.report.tolerance_kept);
+
+  BodyDescription pendulum = rod("p", "guide", {0, 0, 0}, {0, 0, 0});
+  const Matrix3<double> inertia = Eigen::Vector3d(5.0 / 3, 5.0 / 3, 0.1).asDiagonal();
+  pendulum.inertia = InertiaTensor<Body>::about_origin(3, {0, 0, 2.0 / 3}, inertia);
+  const BodySystem simple(RestingFrame<>{}, {pendulum}, down);
+  const auto expected = solve(simple, {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)},
+                              {.output_times = {0.8, 3}, .tolerance = 1e-12});
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double angle = expected.states[i].coordinates[0];
+    const Vector3<double> off = run.states[i].coordinates - angle * Vector3<double>(1, 1, -1);
+    BOOST_TEST(off.cwiseAbs().maxCoeff() <= 1e-7, i);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,110 @@
+// Mechanisms with closed loops: the same motion wherever the loop is cut, and against single bodies.
+
+#include <boost/test/data/monomorphic.hpp>
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/sensor/kinematics.hpp>
+#include <dynamics/solve/solve.hpp>
+#include <dynamics/tree/body_system.hpp>
+
+using namespace kreisel;
+namespace data = boost::unit_test::data;
+
+namespace {
+
+const RotatingFrame<> turntable{{0.1, -0.3, 0.2}};
+const UniformGravity<Guide> weight{{0, -9.81, 0}};
+
+/// Bricard's mechanism: five rods of 1 m and 1 kg along edges of a cube, and six hinges. Such a loop
+/// is rigid in general. Here one condition follows from the others, so that the mechanism moves.
+struct Bricard {
+  static constexpr std::size_t rods = 5;
+  std::array<Vector3<double>, rods + 1> corner{
+      {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}}};
+  std::array<Vector3<double>, rods + 1> axis{
+      {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
+
+  /// The rod i in the hinge at a corner, on the rod or the guide whose origin is given.
+  [[nodiscard]] BodyDescription rod(std::size_t i, std::size_t at, const std::string& parent,
+                                    const Vector3<double>& origin) const {
+    BodyDescription body;
+    body.name = "rod " + std::to_string(i);
+    body.parent = parent;
+    body.joint = {.kind = JointKind::revolute, .axis = axis[at], .position = corner[at] - origin};
+    const Vector3<double> along = corner[i + 1] - corner[i];
+    const Matrix3<double> across = Matrix3<double>::Identity() - along * along.transpose();
+    const Vector3<double> middle = (corner[i] + corner[i + 1]) / 2;
+    body.inertia = InertiaTensor<Body>::about_centre(
+        1, middle - corner[at], across / 12 + 1e-3 * Matrix3<double>::Identity());
+    return body;
+  }
+
+  /// The mechanism as two open chains, held together at the hinge `cut`.
+  [[nodiscard]] BodySystem<RotatingFrame<>> cut_at(std::size_t cut) const {
+    std::vector<BodyDescription> bodies;
+    for (std::size_t i = 0; i < cut; ++i) {
+      bodies.push_back(i == 0 ? rod(0, 0, "guide", Vector3<double>::Zero())
+                              : rod(i, i, bodies.back().name, corner[i - 1]));
+    }
+    for (std::size_t i = rods; i-- > cut;) {
+      bodies.push_back(i + 1 == rods ? rod(i, rods, "guide", Vector3<double>::Zero())
+                                     : rod(i, i + 1, bodies.back().name, corner[i + 2]));
+    }
+    constraint::Revolute hinge;
+    hinge.at_first = corner[cut] - corner[cut - 1];
+    hinge.at_second = corner[cut] - corner[cut + 1];
+    hinge.axis_of_first = hinge.axis_of_second = axis[cut];
+    return {turntable,
+            bodies,
+            weight,
+            {},
+            {{"hinge", "rod " + std::to_string(cut - 1), "rod " + std::to_string(cut), hinge}}};
+  }
+};
+
+/// The pose of the rod in the middle after 1 s from rest.
+template <class System>
+BodyKinematics after_a_second(const System& system) {
+  const auto run = solve(system, system.rest(), {.output_times = {1}, .tolerance = 1e-10});
+  BOOST_TEST(run.report.tolerance_kept);
+  auto w = system.workspace();
+  for (const ConstraintGap& gap : system.constraint_gaps(run.states[0])) {
+    BOOST_TEST(gap.relative <= 1e-14);
+  }
+  const auto all = kinematics(system, 1, system.to_vector(run.states[0]), w);
+  return all.body(system.tree().index("rod 2"));
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(linkages)
+
+BOOST_DATA_TEST_CASE(bricard_moves_the_same_wherever_it_is_cut, data::make({2, 3, 4}), cut) {
+  const Bricard mechanism;
+  const auto wanted = after_a_second(mechanism.cut_at(1));
+  const auto system = mechanism.cut_at(static_cast<std::size_t>(cut));
+  const auto found = after_a_second(system);
+  // The middle of the rod: its origin is one of its ends.
+  const Vector3<double> half = (mechanism.corner[3] - mechanism.corner[2]) / 2;
+  const auto middle = [&](const BodyKinematics& body, double side) -> Vector3<double> {
+    return body.x + side * (body.R * half);
+  };
+  const Vector3<double> off = middle(found, cut > 2 ? 1 : -1) - middle(wanted, -1);
+  BOOST_TEST(off.norm() <= 1e-9);
+  BOOST_TEST((found.R - wanted.R).norm() <= 1e-9);
+  BOOST_TEST((found.w - wanted.w).norm() <= 1e-8);
+  const auto redundant = system.redundant_constraints(system.rest());
+  BOOST_TEST_REQUIRE(redundant.size() == 1U);
+  BOOST_TEST(redundant[0].redundant == 1);
+  BOOST_TEST(redundant[0].conditions == 5);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
