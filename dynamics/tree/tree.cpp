@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,8 +57,8 @@ BodyTree::BodyTree(std::vector<BodyDescription> bodies, std::vector<Element> ele
   links_.emplace_back();
   by_name_.resize(bodies_.size());
   std::iota(by_name_.begin(), by_name_.end(), 0);
-  std::stable_sort(by_name_.begin(), by_name_.end(),
-                   [this](int a, int b) { return body(a).name < body(b).name; });
+  std::sort(by_name_.begin(), by_name_.end(),
+            [this](int a, int b) { return std::tie(body(a).name, a) < std::tie(body(b).name, b); });
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const std::string& name = bodies_[i].name;
     if (name.empty() || name == "guide") {
