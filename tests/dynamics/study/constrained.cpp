@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(bicycle_has_the_digits_of_the_table) {
                     {-0.77534188219585, 4.46486771378823},
                     {-0.77534188219585, -4.46486771378823},
                     -0.32286642900409};
-  BOOST_TEST(distance(roots(system, system.to_vector(state)), table) <= 1e-13);
+  BOOST_TEST(distance(roots(system, system.to_vector(state)), table) <= 1e-12);
 }
 
 // An upright wheel at the spin n:  (A + m r^2) lambda^2 = m g r - (C + m r^2) C n^2/A.
