@@ -245,11 +245,9 @@ class Search {
 
   /// The coordinates that are searched, as far as they are independent.
   [[nodiscard]] std::vector<int> searched(const FreeDirections& directions) const {
-    const std::vector<int>& dependent = directions.dependent;
     std::vector<int> free;
     for (int i = 0; i < directions_.rates; ++i) {
-      const bool follows = std::binary_search(dependent.begin(), dependent.end(), i);
-      if (!follows && !fixed_[static_cast<std::size_t>(i)]) free.push_back(i);
+      if (!directions.is_dependent(i) && !fixed_[static_cast<std::size_t>(i)]) free.push_back(i);
     }
     return free;
   }

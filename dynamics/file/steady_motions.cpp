@@ -53,9 +53,8 @@ std::pair<int, int> Directions::group(int direction) const {
 Places Directions::cyclic(const Linearization& here, const Linearization& elsewhere) const {
   Places result(2 * static_cast<std::size_t>(rates), false);
   const auto counts = [this](const Linearization& linear, int i) {
-    const std::vector<int>& dependent = linear.free.dependent;
     return linear.A.col(i).tail(rates).cwiseAbs().maxCoeff() > 1e-13 * linear.A.norm() ||
-           std::binary_search(dependent.begin(), dependent.end(), i);
+           linear.free.is_dependent(i);
   };
   for (int i = 0; i < rates; ++i) {
     const auto [first, count] = group(i);

@@ -76,6 +76,7 @@ class KREISEL_API Signal {
 
   /// The derivative of the given order, after a jump if t is one.
   [[nodiscard]] Value derivative(double t, int order) const;
+  /// The same in dual numbers.
   template <class S>
   requires(!std::is_arithmetic_v<S>)
       [[nodiscard]] detail::SignalValue<Value, S> derivative(const S& t, int order) const {

@@ -43,6 +43,10 @@ std::vector<int> pivots(const MatrixXd& G, const std::vector<int>& candidates) {
 
 }  // namespace
 
+bool FreeDirections::is_dependent(int component) const {
+  return std::binary_search(dependent.begin(), dependent.end(), component);
+}
+
 VectorXd FreeDirections::complete(const VectorXd& eta) const {
   return bound() ? VectorXd(N * eta(independent)) : eta;
 }
@@ -71,9 +75,7 @@ FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& g
   free.dependent.insert(free.dependent.end(), of_rates.begin(), of_rates.end());
   std::sort(free.dependent.begin(), free.dependent.end());
   for (int i = 0; i < dimension; ++i) {
-    if (!std::binary_search(free.dependent.begin(), free.dependent.end(), i)) {
-      free.independent.push_back(i);
-    }
+    if (!free.is_dependent(i)) free.independent.push_back(i);
   }
   const MatrixXd G = normalized_rows(slopes);
   Eigen::CompleteOrthogonalDecomposition<MatrixXd> of_dependent;

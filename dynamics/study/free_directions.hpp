@@ -14,12 +14,17 @@ namespace kreisel {
 ///
 /// eta_I are the independent components of eta; G are the derivatives of the conditions and of
 /// their rates. Without constraints all components are independent.
+///
+/// Frame : eta as in study/tangent.hpp
+/// Units : those of eta
 struct FreeDirections {
   std::vector<int> independent = {};
-  std::vector<int> dependent = {};  ///< components of eta that follow from the others
+  std::vector<int> dependent = {};  ///< components that follow from the others, in order
   Eigen::MatrixXd N = {};           ///< empty if there are no constraints
 
   [[nodiscard]] bool bound() const { return N.size() > 0; }
+
+  [[nodiscard]] bool is_dependent(int component) const;
 
   /// A move, from its independent components.
   [[nodiscard]] Eigen::VectorXd complete(const Eigen::VectorXd& eta) const;

@@ -58,7 +58,7 @@ struct Linearization {
   /// The rate of the rate along the motion. It is 0 at an equilibrium and in a steady motion, in
   /// which only cyclic components run. Otherwise A holds only at that time.
   Eigen::VectorXd unsteadiness;
-  FreeDirections free = {};
+  FreeDirections free = {};  ///< of a constrained scene: its independent components
 };
 
 namespace detail {

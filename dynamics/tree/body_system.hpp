@@ -228,14 +228,17 @@ class BodySystem {
     return from_vector(detail::assembled(tree_, to_vector(state), w));
   }
 
+  /// The same for a state as one vector.
   [[nodiscard]] Vector assembled(const Vector& y) const {
     BodyWorkspace w = workspace();
     detail::require(tree_, y, 0, w);
     return detail::assembled(tree_, y, w);
   }
 
-  /// The derivatives of all conditions, then of their rates, along the columns of E: in the gaps'
-  /// units, per unit of the state.
+  /// The derivatives of the gaps of all conditions along the columns of E, then those of the gaps'
+  /// rates: exact, by dual numbers.
+  ///
+  /// Units : m or rad and their rates, per unit of the columns
   [[nodiscard]] Eigen::MatrixXd constraint_slopes(const Vector& y, const Eigen::MatrixXd& E) const {
     return detail::constraint_slopes(tree_, y, E);
   }

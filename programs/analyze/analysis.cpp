@@ -79,8 +79,7 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   linear.has_rotors = !system.tree().rotors().empty() && !there.free.bound();
   std::vector<int> left_out;
   for (const int i : list(out)) {
-    const std::vector<int>& dependent = there.free.dependent;
-    const bool follows = std::binary_search(dependent.begin(), dependent.end(), i);
+    const bool follows = there.free.is_dependent(i);
     (follows ? linear.dependent : linear.left_out)
         .push_back(there.names[static_cast<std::size_t>(i)]);
     if (!follows) left_out.push_back(i);
@@ -156,15 +155,11 @@ bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibriu
   const Places fixed = joined(
       directions.held,
       directions.cyclic(there, linearized(system, system.begin(), off(system, equilibrium.state))));
-  const std::vector<int>& dependent = there.free.dependent;
-  const auto follows = [&dependent](int i) {
-    return std::binary_search(dependent.begin(), dependent.end(), i);
-  };
   std::vector<int> free;
   for (int i = 0; i < directions.rates; ++i) {
     // A condition on velocities alone, as of rolling: the theorem is for others.
-    if (follows(i) != follows(directions.rates + i)) return false;
-    if (!follows(i) && !fixed[static_cast<std::size_t>(i)]) free.push_back(i);
+    if (there.free.is_dependent(i) != there.free.is_dependent(directions.rates + i)) return false;
+    if (!there.free.is_dependent(i) && !fixed[static_cast<std::size_t>(i)]) free.push_back(i);
   }
   if (free.empty() || equilibrium.degenerate) return false;
   const MatrixXd J = there.A.bottomRows(directions.rates)(free, free);

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <boost/test/unit_test.hpp>
+
 #include <string>
 
+#include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_file.hpp>
 
 /// Scenes from texts, for the tests of scene files.
@@ -20,6 +23,20 @@ namespace kreisel::test {
     return error.what();
   }
   return "none";
+}
+
+/// A body of 2 kg.
+[[nodiscard]] inline std::string body(const std::string& name, const std::string& joint,
+                                      const std::string& rest = "") {
+  return "[[body]]\nname = \"" + name + "\"\njoint = " + joint +
+         "\nmass = 2\ninertia = [0.3, 0.3, 0.5]\n" + rest + "\n";
+}
+
+/// The last state of a run.
+[[nodiscard]] inline JointState end(const std::string& text) {
+  const auto motion = run_scene(scene(text));
+  BOOST_TEST(motion.report.tolerance_kept);
+  return motion.states.back();
 }
 
 }  // namespace kreisel::test

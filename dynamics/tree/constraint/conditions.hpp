@@ -63,8 +63,8 @@ template <class S>
   return size > 0 ? size : 1;
 }
 
-/// Lists the conditions at a state. Needs poses, positions and the motions relative to the guide in
-/// w; without accelerations dv = 0 they are those at rest.
+/// Lists the conditions at a state with the accelerations dv. Needs poses, positions and the motions
+/// relative to the guide in w, for the same dv.
 template <class S>
 void list_conditions(const BodyTree& tree, const S* q, const S* v, const S* dv,
                      const MotionSpace<S>& w, Conditions<S>& c) {

@@ -51,7 +51,7 @@ struct ConstraintReaction {
   Vector3<double> at = Vector3<double>::Zero();
 };
 
-/// How far a state is from the conditions of one constraint.
+/// How far a state is from the conditions of one constraint; not a number where it has no direction.
 struct ConstraintGap {
   std::string name;
   double position = 0;  ///< m or rad: the greatest of its conditions

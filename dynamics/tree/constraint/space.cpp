@@ -64,7 +64,6 @@ void set_directions(const BodyTree& tree, BodyWorkspace& w) {
 }
 
 void solve_multipliers(const VectorXd& b, VectorXd& x, ConstraintSpace& c) {
-  constexpr double least = 1e-12;
   c.scale = c.mass.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
   c.scaled = c.scale.asDiagonal() * c.mass * c.scale.asDiagonal();
   c.factors.compute(c.scaled);
@@ -72,17 +71,16 @@ void solve_multipliers(const VectorXd& b, VectorXd& x, ConstraintSpace& c) {
                 ? c.factors.matrixLLT().diagonal().cwiseAbs2().minCoeff()
                 : 0;
   x = c.scale.cwiseProduct(b);
-  if (c.pivot > least) {
+  if (c.pivot > redundant_below) {
     c.factors.solveInPlace(x);
   } else {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> general;
-    general.setThreshold(least);
+    general.setThreshold(redundant_below);
     general.compute(c.scaled);
     x = general.solve(x).eval();
-    if (const Index rank = general.rank(); rank > 0) {
-      const auto pivots = general.matrixQTZ().diagonal().cwiseAbs();
-      c.pivot = pivots[rank - 1] / pivots[0];
-    }
+    const Index rank = general.rank();
+    const auto pivots = general.matrixQTZ().diagonal().cwiseAbs();
+    c.pivot = rank > 0 ? pivots[rank - 1] / pivots[0] : 1;
   }
   x = c.scale.cwiseProduct(x);
 }

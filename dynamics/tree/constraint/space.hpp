@@ -29,8 +29,12 @@ struct ConstraintSpace : Conditions<> {
 /// Sets J, M^-1 J^t and J M^-1 J^t. Needs the rows set and the joints eliminated.
 void set_directions(const BodyTree& tree, BodyWorkspace& w);
 
-/// Solves  (J M^-1 J^t) x = b  for rows scaled to a diagonal of 1. Directions that are below 1e-6 of
-/// the greatest follow from the others.
+/// Conditions whose direction is below 1e-6 of the others' follow from these: in J M^-1 J^t it stands
+/// squared.
+inline constexpr double redundant_below = 1e-12;
+
+/// Solves  (J M^-1 J^t) x = b  for rows scaled to a diagonal of 1, for the least x if some conditions
+/// follow from others.
 void solve_multipliers(const Eigen::VectorXd& b, Eigen::VectorXd& x, ConstraintSpace& c);
 
 /// The least mobility of a condition, as a part of the greatest of its constraint. Near a singular

@@ -86,11 +86,14 @@ std::vector<ConstraintGap> constraint_gaps(const BodyTree& tree, const VectorXd&
   const ConstraintSpace& c = *w.constraints;
   std::vector<ConstraintGap> result;
   for (const ConstraintLink& link : tree.constraints()) result.push_back({link.constraint.name});
+  const auto grow = [](double& greatest, double size) {
+    if (std::isnan(size) || size > greatest) greatest = size;
+  };
   for (std::size_t k = 0; k < c.rows.size(); ++k) {
     ConstraintGap& gap = result[c.owner[k]];
-    gap.position = std::max(gap.position, std::abs(c.rows[k].gap));
-    gap.rate = std::max(gap.rate, std::abs(c.rates[k]));
-    gap.relative = std::max(gap.relative, relative_gap(c.rows[k]));
+    grow(gap.position, std::abs(c.rows[k].gap));
+    grow(gap.rate, std::abs(c.rates[k]));
+    grow(gap.relative, relative_gap(c.rows[k]));
   }
   return result;
 }
@@ -117,6 +120,7 @@ void project_on_constraints(const BodyTree& tree, VectorXd& y, BodyWorkspace& w)
 }
 
 const VectorXd* projected_near_singular(const BodyTree& tree, const VectorXd& y, BodyWorkspace& w) {
+  // The square of a tenth of a radian.
   constexpr double near = 1e-2;
   ConstraintSpace& c = *w.constraints;
   if (independence(c) > near) return nullptr;
@@ -124,7 +128,7 @@ const VectorXd* projected_near_singular(const BodyTree& tree, const VectorXd& y,
   try {
     project_on_constraints(tree, c.projected, w);
   } catch (const ComputationFailed&) {
-    return nullptr;
+    return nullptr;  // a trial point far from the conditions: its step is rejected
   }
   return &c.projected;
 }
@@ -152,7 +156,6 @@ VectorXd assembled(const BodyTree& tree, VectorXd y, BodyWorkspace& w) {
 
 std::vector<RedundantConstraint> redundant_constraints(const BodyTree& tree, const VectorXd& y,
                                                        BodyWorkspace& w) {
-  constexpr double least = 1e-12;
   ConstraintSpace& c = *w.constraints;
   set_state(tree, y, w);
   eliminate_all(tree, w);
@@ -164,7 +167,7 @@ std::vector<RedundantConstraint> redundant_constraints(const BodyTree& tree, con
   for (Index k = 0; k < L.rows(); ++k) {
     RedundantConstraint& own = all[c.owner[static_cast<std::size_t>(k)]];
     own.conditions += 1;
-    if (L(k, k) <= least * c.mass(k, k)) {
+    if (L(k, k) <= redundant_below * c.mass(k, k)) {
       own.redundant += 1;
       continue;
     }

@@ -18,7 +18,7 @@ namespace kreisel {
 /// length of the rope without load. On a winch l changes with time.
 ///
 /// Units  : N/m, metre, N s/m
-/// Error  : 8u of the terms' sizes, and u |x|/L for ends at the distance |x| from the guide's origin
+/// Error  : as SpringElement
 struct RopeElement {
   static constexpr const char* kind = "rope";
 

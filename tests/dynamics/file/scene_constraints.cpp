@@ -16,15 +16,12 @@
 #include <support/scene_text.hpp>
 
 using namespace kreisel;
+using test::body;
+using test::end;
 using test::mistakes;
 using test::scene;
 
 namespace {
-
-std::string body(const std::string& name, const std::string& joint, const std::string& rest = "") {
-  return "[[body]]\nname = \"" + name + "\"\njoint = " + joint +
-         "\nmass = 2\ninertia = [0.3, 0.3, 0.5]\n" + rest + "\n";
-}
 
 std::string hinge(double x) {
   return "{ kind = \"revolute\", axis = [0, 1, 0], position = [" + std::to_string(x) + ", 0, 0] }";
@@ -34,7 +31,7 @@ const std::string floating = "{ kind = \"free\" }";
 const std::string weight = "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -10]\n";
 const std::string run_part = "[solve]\nt_end = 0.7\ntolerance = 1e-11\n";
 
-std::string constraint(const std::string& keys) { return "[[constraint]]\n" + keys + "\n"; }
+std::string condition(const std::string& keys) { return "[[constraint]]\n" + keys + "\n"; }
 
 /// Two cranks of length 1 at a distance of 2, and a rod on the left one.
 std::string linkage(const std::string& left, const std::string& right, const std::string& rod) {
@@ -44,15 +41,9 @@ std::string linkage(const std::string& left, const std::string& right, const std
               "parent = \"left\"\npoints = { end = [2, 0, 0] }\ninitial = { angle = " + rod + " }");
 }
 
-const std::string loop = constraint(
+const std::string loop = condition(
     "name = \"loop\"\nkind = \"revolute\"\nbetween = [\"right\", \"rod\"]\n"
     "at = [[0, 0, \"-100 cm\"], \"end\"]\naxis = [0, 1, 0]");
-
-JointState end(const std::string& text) {
-  const auto motion = run_scene(scene(text));
-  BOOST_TEST(motion.report.tolerance_kept);
-  return motion.states.back();
-}
 
 }  // namespace
 
@@ -70,7 +61,7 @@ BOOST_AUTO_TEST_CASE(a_hinge_is_a_joint) {
           body("a", floating,
                centre + "initial = { attitude = [0.92106099400288508, 0, "
                         "0.38941834230865049, 0] }") +
-          constraint(
+          condition(
               "name = \"h\"\nkind = \"revolute\"\nbetween = [\"guide\", \"a\"]\naxis = [0, 1, 0]") +
           run_part);
   const double angle = 2 * std::atan2(loose.coordinates[1], loose.coordinates[3]);
@@ -94,7 +85,7 @@ BOOST_AUTO_TEST_CASE(a_start_is_assembled) {
 BOOST_AUTO_TEST_CASE(reactions_are_columns_and_readings) {
   const std::string text =
       weight + body("a", floating, "centre = [0, 0, -0.5]\npoints = { tip = [0, 0, -1] }") +
-      constraint("name = \"h\"\nkind = \"point\"\nbetween = [\"guide\", \"a\"]") +
+      condition("name = \"h\"\nkind = \"point\"\nbetween = [\"guide\", \"a\"]") +
       "[[sensor]]\nname = \"pull\"\nkind = \"reaction\"\nconstraint = \"h\"\n"
       "[report]\nconstraints = true\n" +
       run_part;
@@ -116,8 +107,8 @@ BOOST_AUTO_TEST_CASE(a_contact_that_pulls_is_told) {
     const SceneFile file =
         scene("[gravity]\nkind = \"uniform\"\nvector = [0, 0, " + gravity + "]\n" +
               body("a", floating, "initial = { position = [0, 0, 0.3] }") +
-              constraint("name = \"x\"\nkind = \"rolling\"\nbody = \"a\"\nradius = 0.3\n"
-                         "plane = { normal = [0, 0, 2] }") +
+              condition("name = \"x\"\nkind = \"rolling\"\nbody = \"a\"\nradius = 0.3\n"
+                        "plane = { normal = [0, 0, 2] }") +
               run_part);
     return pulling_contacts(file, *make_model(file), run_scene(file));
   };
@@ -132,7 +123,7 @@ BOOST_AUTO_TEST_CASE(reads_every_kind) {
   const std::string bodies =
       body("a", floating) + body("b", floating) + body("c", hinge(0)) + body("d", hinge(3));
   const auto read = [&](const std::string& keys) {
-    return scene(bodies + constraint("name = \"x\"\n" + keys) + run_part + "assemble = true\n")
+    return scene(bodies + condition("name = \"x\"\n" + keys) + run_part + "assemble = true\n")
         .constraints.at(0);
   };
   const std::string pair = "between = [\"a\", \"b\"]\n";
@@ -181,11 +172,11 @@ BOOST_AUTO_TEST_CASE(wrong_keys_are_told) {
       {"kind = \"point\"\nbetween = [\"a\", \"b\"]\nstiffness = 3", "stiffness: is no key here"}};
   for (const auto& [keys, reason] : cases) {
     const std::string found =
-        mistakes(bodies + constraint("name = \"x\"\n" + keys) + run_part + "assemble = true\n");
+        mistakes(bodies + condition("name = \"x\"\n" + keys) + run_part + "assemble = true\n");
     BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
   }
   const std::string twice =
-      constraint("name = \"x\"\nkind = \"point\"\nbetween = [\"guide\", \"a\"]");
+      condition("name = \"x\"\nkind = \"point\"\nbetween = [\"guide\", \"a\"]");
   BOOST_TEST(mistakes(bodies + twice + twice + run_part).find("is used by an earlier") !=
              std::string::npos);
 }
@@ -194,7 +185,7 @@ BOOST_AUTO_TEST_CASE(wrong_keys_are_told) {
 BOOST_AUTO_TEST_CASE(contradictions_are_told) {
   const std::string far =
       body("a", hinge(0)) +
-      constraint(
+      condition(
           "name = \"x\"\nkind = \"point\"\nbetween = [\"guide\", \"a\"]\nat = [[0, 0, 5], [0, "
           "0, 1]]");
   BOOST_TEST(mistakes(far + run_part + "assemble = true\n").find("no state near the start") !=
@@ -209,7 +200,7 @@ BOOST_AUTO_TEST_CASE(conditions_without_direction_are_told) {
       "name = \"x\"\nkind = \"distance\"\nbetween = [\"guide\", \"a\"]\nlength = 0.3";
   for (const std::string& keys : {wheel, rod}) {
     const std::string found =
-        mistakes(body("a", floating) + constraint(keys) + run_part + "assemble = true\n");
+        mistakes(body("a", floating) + condition(keys) + run_part + "assemble = true\n");
     BOOST_TEST(found.find("constraint 'x': it has no direction here") != std::string::npos, found);
   }
 }

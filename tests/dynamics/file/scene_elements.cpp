@@ -15,15 +15,12 @@
 #include <support/scene_text.hpp>
 
 using namespace kreisel;
+using test::body;
+using test::end;
 using test::mistakes;
 using test::scene;
 
 namespace {
-
-std::string body(const std::string& name, const std::string& joint, const std::string& rest = "") {
-  return "[[body]]\nname = \"" + name + "\"\njoint = " + joint +
-         "\nmass = 2\ninertia = [0.3, 0.3, 0.5]\n" + rest + "\n";
-}
 
 const std::string slide = "{ kind = \"prismatic\", axis = [1, 0, 0] }";
 const std::string hinge = "{ kind = \"revolute\", axis = [0, 0, 1] }";
@@ -39,12 +36,6 @@ const std::string named_gear = "name = \"g\"\nkind = \"gear\"\njoints = [\"a\", 
 
 const std::string sliders = body("a", slide) + body("b", slide, "initial = { displacement = 0.8 }");
 const std::string wheels = body("a", hinge, "initial = { angle = 0.3 }") + body("b", hinge);
-
-JointState end(const std::string& text) {
-  const auto motion = run_scene(scene(text));
-  BOOST_TEST(motion.report.tolerance_kept);
-  return motion.states.back();
-}
 
 }  // namespace
 

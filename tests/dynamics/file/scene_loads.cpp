@@ -15,6 +15,7 @@
 #include <support/scene_text.hpp>
 
 using namespace kreisel;
+using test::end;
 using test::mistakes;
 using test::scene;
 
@@ -31,12 +32,6 @@ const std::string weight = "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81
 const std::string slide = "{ kind = \"prismatic\", axis = [0, 0, 1] }";
 const std::string hinge = "{ kind = \"revolute\", axis = [0, 0, 1] }";
 const std::string floating = "{ kind = \"free\" }";
-
-JointState end(const std::string& text) {
-  const auto motion = run_scene(scene(text));
-  BOOST_TEST(motion.report.tolerance_kept);
-  return motion.states.back();
-}
 
 }  // namespace
 

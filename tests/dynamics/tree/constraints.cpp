@@ -376,7 +376,8 @@ BOOST_AUTO_TEST_CASE(wrong_ones_are_refused) {
 
 // Two cranks and a rod of 1 m and 1 kg lie on a line once in half a turn. The rod could begin to turn
 // there. As a parallelogram they are a pendulum with the inertia 5/3 and the first moment 2.
-BOOST_AUTO_TEST_CASE(four_bar_passes_its_singular_position) {
+BOOST_DATA_TEST_CASE(four_bar_passes_its_singular_position, data::make({0.5, 1.0, 2.0, 3.7}),
+                     speed) {
   const auto rod = [](const std::string& name, const std::string& parent,
                       const Vector3<double>& position, const Vector3<double>& centre) {
     BodyDescription body;
@@ -394,7 +395,7 @@ BOOST_AUTO_TEST_CASE(four_bar_passes_its_singular_position) {
        rod("rod", "left", {0, 0, 1}, {0.5, 0, 0})},
       down, {}, {{"loop", "right", "rod", constraint::Point{{0, 0, 1}, {1, 0, 0}}}});
   auto start = linkage.rest();
-  start.rates << 1, 1, -1;
+  start.rates << speed, speed, -speed;
   const auto run = solve(linkage, start, {.output_times = {0.8, 3}, .tolerance = 1e-8});
   BOOST_TEST(run.report.tolerance_kept);
 
@@ -402,12 +403,13 @@ BOOST_AUTO_TEST_CASE(four_bar_passes_its_singular_position) {
   const Matrix3<double> inertia = Eigen::Vector3d(5.0 / 3, 5.0 / 3, 0.1).asDiagonal();
   pendulum.inertia = InertiaTensor<Body>::about_origin(3, {0, 0, 2.0 / 3}, inertia);
   const BodySystem simple(RestingFrame<>{}, {pendulum}, down);
-  const auto expected = solve(simple, {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)},
-                              {.output_times = {0.8, 3}, .tolerance = 1e-12});
+  const auto expected =
+      solve(simple, {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, speed)},
+            {.output_times = {0.8, 3}, .tolerance = 1e-12});
   for (std::size_t i = 0; i < 2; ++i) {
     const double angle = expected.states[i].coordinates[0];
     const Vector3<double> off = run.states[i].coordinates - angle * Vector3<double>(1, 1, -1);
-    BOOST_TEST(off.cwiseAbs().maxCoeff() <= 1e-7, i);
+    BOOST_TEST(off.cwiseAbs().maxCoeff() <= 1e-8 * (1 + std::abs(angle)), i);
   }
 }
 

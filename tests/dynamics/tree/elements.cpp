@@ -527,6 +527,12 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_element) {
     change(changed);
     return std::vector<Element>{changed};
   };
+  const auto rope = [](const std::function<void(RopeElement&)>& change) {
+    RopeElement changed{
+        .name = "r", .ends = {{{"a"}, {"b", {1, 0, 0}}}}, .stiffness = 1, .length = 2};
+    change(changed);
+    return std::vector<Element>{changed};
+  };
   const auto coupling = [c](const std::function<void(CouplingElement&)>& change) {
     CouplingElement changed = c;
     change(changed);
@@ -579,6 +585,12 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_no_element) {
       {mount([](auto& e) { e.damping.rm(1, 1) = -1; }), "must not be below 0"},
       {mount([&](auto& e) { e.preload.moment[1] = nan; }), "preload is not finite"},
       {mount([](auto& e) { e.axes.coeffs().setZero(); }), "no quaternion"},
+      {rope([](auto& e) { e.stiffness = 0; }), "and so no force"},
+      {rope([](auto& e) { e.stiffness = -1; }), "stiffness must be above 0"},
+      {rope([&](auto& e) { e.stiffness = nan; }), "stiffness is not finite"},
+      {rope([](auto& e) { e.damping = -1; }), "damping must be"},
+      {rope([](auto& e) { e.length = -1; }), "length must not be below 0"},
+      {rope([](auto& e) { e.ends[1].body = "a"; }), "both of its ends"},
       {coupling([](auto& e) { e.ratio = 0; }), "ratio must be"},
       {coupling([](auto& e) { e.joints[1] = "a"; }), "to itself"},
       {coupling([](auto& e) { e.joints[1] = "guide"; }), "the guide has none"},
