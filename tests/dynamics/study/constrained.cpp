@@ -104,6 +104,15 @@ BodySystem<RestingFrame<>> bicycle() {
            {"front contact", "guide", "front", rolling(0.35)}}};
 }
 
+/// The state of the bicycle that runs straight ahead at the speed v.
+Eigen::VectorXd at_speed(const BodySystem<RestingFrame<>>& system, double v) {
+  auto state = system.rest();
+  state.rates[3] = v;
+  state.rates[6] = v / 0.3;
+  state.rates[8] = v / 0.35;
+  return system.to_vector(state);
+}
+
 /// The roots of the published equations  M q'' + v C q' + (g K_0 + v^2 K_2) q = 0  of lean and steer.
 Roots published(double v) {
   Eigen::Matrix2d M, C, K_0, K_2;
@@ -126,25 +135,38 @@ BOOST_AUTO_TEST_SUITE(constrained_systems)
 // The equations are published with 15 digits; their sensitivity makes 1e-12 of it.
 BOOST_DATA_TEST_CASE(bicycle_has_the_published_roots, data::make({0.0, 3.0, 5.0, 10.0}), v) {
   const auto system = bicycle();
-  auto state = system.rest();
-  state.rates[3] = v;
-  state.rates[6] = v / 0.3;
-  state.rates[8] = v / 0.35;
-  const double off = distance(roots(system, system.to_vector(state)), published(v));
+  const double off = distance(roots(system, at_speed(system, v)), published(v));
   BOOST_TEST(off <= 1e-11, "v = " << v << ": " << off);
 }
 
 BOOST_AUTO_TEST_CASE(bicycle_has_the_digits_of_the_table) {
   const auto system = bicycle();
-  auto state = system.rest();
-  state.rates[3] = 5;
-  state.rates[6] = 5 / 0.3;
-  state.rates[8] = 5 / 0.35;
   const Roots table{-14.07838969279822,
                     {-0.77534188219585, 4.46486771378823},
                     {-0.77534188219585, -4.46486771378823},
                     -0.32286642900409};
-  BOOST_TEST(distance(roots(system, system.to_vector(state)), table) <= 1e-12);
+  BOOST_TEST(distance(roots(system, at_speed(system, 5)), table) <= 1e-12);
+}
+
+// Between the published weave and capsize speeds the bicycle balances itself.
+BOOST_AUTO_TEST_CASE(bicycle_balances_between_two_speeds) {
+  const auto system = bicycle();
+  const auto growth = [&system](double v, bool swings) {
+    double greatest = -INFINITY;
+    for (const auto& root : roots(system, at_speed(system, v))) {
+      if ((std::abs(root.imag()) > 1) == swings) greatest = std::max(greatest, root.real());
+    }
+    return greatest;
+  };
+  const double weave = 4.29238253634111, capsize = 6.02426201538837, off = 1e-3;
+  BOOST_TEST(std::abs(growth(weave, true)) <= 1e-12);
+  BOOST_TEST(growth(weave - off, true) > 1e-4);
+  BOOST_TEST(growth(weave + off, true) < -1e-4);
+  // Not at the speed itself: roots() leaves out what is below 1e-3.
+  const double before = growth(capsize - 0.1, false);
+  const double after = growth(capsize + 0.1, false);
+  BOOST_TEST(before < -1e-3);
+  BOOST_TEST(after > 1e-3);
 }
 
 // An upright wheel at the spin n:  (A + m r^2) lambda^2 = m g r - (C + m r^2) C n^2/A.
@@ -207,6 +229,11 @@ BOOST_AUTO_TEST_CASE(held_body_is_that_of_a_tree) {
   const double size = wanted.norm();
   BOOST_TEST(std::abs(found.trace() - wanted.trace()) <= 1e-11 * size);
   BOOST_TEST(std::abs(found.determinant() - wanted.determinant()) <= 1e-11 * size * size);
+
+  auto pushed = loose.from_vector(held.state);
+  pushed.rates.head<3>() += 1e-3 * axis;
+  const auto motion = periodic_motion(loose, 0, 0.3, loose.to_vector(pushed));
+  BOOST_TEST((motion.start - held.state).cwiseAbs().maxCoeff() <= 1e-8);
 }
 
 // Two cranks and a rod as a parallelogram: the rod is translated.
