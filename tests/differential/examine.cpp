@@ -27,7 +27,8 @@ void send(int pipe, char letter, std::string words) {
   }
 }
 
-std::string note(const Scene& scene, const Answer& answer, const ReferenceMotion& reference) {
+std::string note(const Scene& scene, const Answer& answer, const Answer& way,
+                 const ReferenceMotion& reference) {
   if (!answer.answered) {
     return fmt::format("{}: {}", answer.asked,
                        answer.out_of_budget ? "out of budget" : answer.message);
@@ -35,7 +36,7 @@ std::string note(const Scene& scene, const Answer& answer, const ReferenceMotion
   std::string result =
       fmt::format("{} ({}): error {:.2g}{}, {:.3g} evaluations", answer.asked, answer.method,
                   answer.estimate, answer.kept ? "" : " (not kept)", answer.evaluations);
-  if (const auto off = off_at_end(scene, answer, reference)) {
+  if (const auto off = greatest_off(scene, answer, way, reference)) {
     result += fmt::format(", off by {:.2g} (known to {:.1g})", off->first, off->second);
   }
   return result;
@@ -54,7 +55,9 @@ std::string note(const Scene& scene, const Answer& answer, const ReferenceMotion
     begin("the independent integrator");
     reference = integrate(scene, scene.times(), how.limits.work);
   }
-  for (const Answer& answer : answers.by_method) send(pipe, 'n', note(scene, answer, reference));
+  for (const Answer& answer : answers.by_method) {
+    send(pipe, 'n', note(scene, answer, answers.way, reference));
+  }
   for (const Fault& fault : judge(scene, answers, reference)) {
     send(pipe, 'k', fault.kind);
     send(pipe, 'd', fault.detail);

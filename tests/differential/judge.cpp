@@ -442,13 +442,21 @@ double Distance::operator()(const JointValues& a, const JointValues& b) const {
   return worst;
 }
 
-std::optional<std::pair<double, double>> off_at_end(const Scene& scene, const Answer& answer,
-                                                    const ReferenceMotion& reference) {
+std::optional<std::pair<double, double>> greatest_off(const Scene& scene, const Answer& answer,
+                                                      const Answer& way,
+                                                      const ReferenceMotion& reference) {
   if (!reference.complete || !answer.answered) return std::nullopt;
   Distance distance(scene);
+  for (const JointValues& y : way.states) distance.note(y);
   for (const JointValues& y : reference.others) distance.note(y);
-  const JointValues& truth = reference.others.back();
-  return std::pair{distance(answer.states.back(), truth), distance(reference.states.back(), truth)};
+  std::pair<double, double> greatest{0, 0};
+  for (std::size_t i = 0; i < reference.others.size(); ++i) {
+    const JointValues* const y = state_at(answer, reference.times[i]);
+    const JointValues& truth = reference.others[i];
+    if (y != nullptr) greatest.first = std::max(greatest.first, distance(*y, truth));
+    greatest.second = std::max(greatest.second, distance(reference.states[i], truth));
+  }
+  return greatest;
 }
 
 std::vector<Fault> judge(const Scene& scene, const Answers& answers,

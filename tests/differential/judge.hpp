@@ -29,11 +29,12 @@ class Distance {
   std::vector<double> sizes_;
 };
 
-/// The deviation of an answer's end from the independent motion, and its uncertainty. Empty if
+/// The greatest deviation of an answer from the independent motion, and its uncertainty. Empty if
 /// either does not reach the end.
-[[nodiscard]] std::optional<std::pair<double, double>> off_at_end(const Scene& scene,
-                                                                  const Answer& answer,
-                                                                  const ReferenceMotion& reference);
+///
+/// way : the same motion at many times, for the sizes of its parts
+[[nodiscard]] std::optional<std::pair<double, double>> greatest_off(
+    const Scene& scene, const Answer& answer, const Answer& way, const ReferenceMotion& reference);
 
 /// Compares the answers with each other and with the independent motion.
 [[nodiscard]] std::vector<Fault> judge(const Scene& scene, const Answers& answers,
