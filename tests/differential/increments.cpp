@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <variant>
 #include <vector>
 
@@ -30,6 +31,7 @@ class Period {
   Period(const SceneSolver& model, const SceneFile& file, double length, int panels) {
     SolveOptions options = options_of(file);
     options.tolerance = 1e-10;
+    options.max_evaluations = 1e5;
     options.method = Method::automatic;
     options.output_times = {file.t_begin};
     std::vector<double> ends{file.t_begin};
@@ -109,6 +111,16 @@ std::optional<Wanted> wanted(const SceneSensor& sensor, const Period& coarse, co
   return std::nullopt;
 }
 
+/// The distance of two increments; a rotation vector and its longer way around are one rotation.
+double distance(const SceneSensor& sensor, const Vector3<double>& read,
+                const Vector3<double>& right) {
+  const double off = (read - right).norm();
+  const bool rotates = std::holds_alternative<Gyro>(sensor.kind) &&
+                       sensor.increments == SensorIncrements::compensated && right.norm() > 0;
+  if (!rotates) return off;
+  return std::min(off, (read - right + 2 * std::numbers::pi * right.normalized()).norm());
+}
+
 }  // namespace
 
 std::optional<WrongIncrements> wrong_increments(const SceneSolver& model, const SceneFile& file) {
@@ -133,8 +145,9 @@ std::optional<WrongIncrements> wrong_increments(const SceneSolver& model, const 
     if (!integrates(sensor) || sensor.period != some->period) continue;
     const auto right = wanted(sensor, coarse, fine);
     const double size = std::max(right->fine.norm(), sensor.period);
-    const double off = (read - right->fine).norm();
-    if (off <= 1e-9 * size + 3 * (right->fine - right->coarse).norm()) continue;
+    const double off = distance(sensor, read, right->fine);
+    constexpr double rounding = 2e-15;  // rad: of the attitudes at both ends
+    if (off <= 1e-9 * size + 3 * (right->fine - right->coarse).norm() + rounding) continue;
     if (!worst || off / size > worst->off / worst->size) worst = {sensor.name, off, size};
   }
   return worst;
