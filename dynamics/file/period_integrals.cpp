@@ -18,7 +18,8 @@ using Equations = IncrementEquations;
 /// Explicit steps give up for a period as stiff as a hundred of them.
 constexpr Accuracy by_explicit_steps{
     .relative = 1e-13, .absolute_scale = 1e-9, .max_evaluations = 2000};
-constexpr Accuracy by_implicit_steps{.relative = 1e-13, .absolute_scale = 1e-3};
+constexpr Accuracy by_implicit_steps{
+    .relative = 1e-13, .absolute_scale = 1e-3, .max_evaluations = 1e6};
 
 /// The sizes relative to which steps err. Increments begin at 0; their sizes are those that the
 /// first rates lead to in a period, or 1e-3 rad/s and 1 m/s^2. With smaller ones steps would follow
@@ -120,8 +121,14 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
     numbers = integrated(steps);
   } catch (const ComputationFailed&) {
     const auto jacobian = difference_jacobian<Eigen::Dynamic>(field);
-    numbers = integrated(RadauSteps<VectorXd, decltype(field), decltype(jacobian)>(
-        field, jacobian, begin, start, by_implicit_steps, blocks));
+    try {
+      numbers = integrated(RadauSteps<VectorXd, decltype(field), decltype(jacobian)>(
+          field, jacobian, begin, start, by_implicit_steps, blocks));
+    } catch (const ComputationFailed& error) {
+      throw ComputationFailed("the increments of sensor '" +
+                              scene_.sensors[group.sensors.front()].name + "': " + error.what() +
+                              "; take a shorter period");
+    }
   }
   group.end = end;
   group.increments.clear();
