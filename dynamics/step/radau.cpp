@@ -151,7 +151,11 @@ void RadauIntegrator::begin_step(StiffField& field, double goal) {
   start_time_ = on_this_side(t(), goal, jumps_);
   evaluate(field, start_time_, y(), rate_.data());
   if (!finite(rate_)) stop_integration(t(), "the field is not finite");
-  if (step_ == 0) step_ = sizes_.first_step(rate_);
+  if (step_ == 0) {
+    // Where rates are great relative to the sizes of the start, a step must still move time.
+    const double least = 64 * std::numeric_limits<double>::epsilon() * std::abs(t());
+    step_ = std::max(sizes_.first_step(rate_), least);
+  }
   note_jacobian(field);
   const bool at_jump = std::find(jumps_.begin(), jumps_.end(), t()) != jumps_.end();
   if (at_jump) quiet_ = 0;
