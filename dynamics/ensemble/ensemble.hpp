@@ -16,12 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/ensemble/packed_pair.hpp>
 #include <dynamics/ensemble/packed_steps.hpp>
 #include <dynamics/ensemble/workers.hpp>
 #include <dynamics/random.hpp>
-#include <dynamics/solve/adaptive_runs.hpp>
-#include <dynamics/solve/error_measure.hpp>
-#include <dynamics/solve/missed.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <motor/error.hpp>
@@ -66,190 +64,6 @@ struct Ensemble {
 };
 
 namespace detail {
-
-/// Continues until the last step covers t; returns false if a stop was requested.
-template <class Run>
-[[nodiscard]] bool go_on(Run& run, double t, double end, const std::stop_token& stop) {
-  while (!run.covers(t)) {
-    if (stop.stop_requested()) return false;
-    run.step_towards(end);
-  }
-  return true;
-}
-
-/// The growth of rounding in each member, estimated as by RoundingGrowth of solve().
-template <class Scene, class N>
-class RoundingGrowthOfMembers {
- public:
-  using Values = std::array<double, std::size_t(lanes_of<N>)>;
-
-  RoundingGrowthOfMembers(const Scene& scene, double absolute_scale,
-                          PackedIntegrator<Scene, N> unperturbed,
-                          PackedIntegrator<Scene, N> perturbed)
-      : scene_(scene),
-        unperturbed_(std::move(unperturbed)),
-        perturbed_(std::move(perturbed)),
-        distance_(std::size_t(lanes_of<N>), {scene, absolute_scale}) {}
-
-  /// The growth at t; times must be given in order. 0 if the coarse steps fail or a stop is
-  /// requested.
-  [[nodiscard]] Values at(double t, double end, const std::stop_token& stop) {
-    Values grown{};
-    if (gave_up_) return grown;
-    try {
-      if (!go_on(unperturbed_, t, end, stop) || !go_on(perturbed_, t, end, stop)) return grown;
-      const auto a = unperturbed_.at(t);
-      const auto b = perturbed_.at(t);
-      for (std::size_t k = 0; k < grown.size(); ++k) {
-        const double off = distance_[k](scene_.to_vector(a[k]), scene_.to_vector(b[k]));
-        gave_up_ = gave_up_ || !std::isfinite(off);
-        grown[k] = gave_up_ ? 0 : AdaptiveRuns::rounding_of(off);
-      }
-    } catch (...) {  // an exception of a load or a guide here does not affect the answer
-      gave_up_ = true;
-    }
-    return grown;
-  }
-
-  [[nodiscard]] double evaluations() const {
-    return unperturbed_.effort().evaluations + perturbed_.effort().evaluations;
-  }
-
- private:
-  const Scene& scene_;
-  PackedIntegrator<Scene, N> unperturbed_;
-  PackedIntegrator<Scene, N> perturbed_;
-  std::vector<ErrorMeasure<Scene>> distance_;
-  bool gave_up_ = false;
-};
-
-/// Integrates members side by side through all output times, each with a finer companion run, as
-/// solve() does for one scene. Null members fill a pack.
-///
-/// Throws : ComputationFailed if one of the members stops; earlier outputs are kept
-template <class N, class Scene>
-void follow(const Scene& scene, const typename PackedIntegrator<Scene, N>::States& starts,
-            const SolveOptions& options, bool estimates_errors, const std::stop_token& stop,
-            const std::array<Trajectory<typename Scene::State>*, lanes_of<N>>& members) {
-  const AdaptiveRuns runs(options);
-  const double end = options.output_times.back();
-  struct Beside {
-    double end_of_a_step;  ///< so that a short run is not one and the same step in all runs
-    PackedIntegrator<Scene, N> steps;
-  };
-  double setting = runs.first();
-  Missed<double> missed{setting};
-  std::array<double, std::size_t(lanes_of<N>)> grown_to{};  // by rounding, in any run
-  CheapSteps cheap;                                         // that estimate the growth
-  double spent = 0;
-  while (true) {
-    const bool last_try = !estimates_errors || runs.last(setting);
-    const auto run = [&](double relative, double digits, double perturbed = 0) {
-      auto from = starts;
-      for (auto& start : from) start = perturbed_by_ulps(scene, start, digits);
-      const Accuracy accuracy{relative, options.absolute_scale, options.max_evaluations, perturbed};
-      PackedIntegrator<Scene, N> made(scene, options.begin, from, accuracy);
-      made.stop_at(options.discontinuities);
-      return made;
-    };
-    auto coarse = run(setting, 0);
-    std::vector<Beside> others;
-    const auto put_beside = [&](double part, double relative, double digits) {
-      others.push_back({options.begin + part * (end - options.begin), run(relative, digits)});
-    };
-    if (estimates_errors) put_beside(1.0 / 2, runs.finer(setting), digits_off(options));
-    if (estimates_errors && last_try) {
-      // If only rounding is left, two runs may agree by chance.
-      put_beside(2.0 / 5, runs.between(setting, 1.0 / 3), -digits_off(options));
-      put_beside(1.0 / 3, runs.between(setting, 2.0 / 3), -digits_off(options));
-    }
-    std::optional<RoundingGrowthOfMembers<Scene, N>> rounding;
-    if (estimates_errors && runs.can_look_for_rounding(setting, missed.error > 0)) {
-      const double accuracy = cheap.beside(runs, setting);
-      rounding.emplace(scene, options.absolute_scale, run(accuracy, 0),
-                       run(accuracy, 0, AdaptiveRuns::shaken_digits));
-    }
-    std::vector<ErrorMeasure<Scene>> distance(members.size(), {scene, options.absolute_scale});
-    for (auto* member : members) {
-      if (!member) continue;
-      *member = {};
-      member->report.method = name(Method::verner98);
-      member->report.tolerance = options.tolerance;
-      member->report.status = RunStatus::cancelled;
-      if (!estimates_errors) {
-        member->report.error_estimate = std::numeric_limits<double>::quiet_NaN();
-      }
-    }
-    double worst = 0;
-    double grown_most = 0;
-    bool rounds_too_much = false;
-    bool too_coarse = false;
-    std::size_t output = 0;
-    for (const double t : options.output_times) {
-      if (!go_on(coarse, t, end, stop)) return;
-      const auto states = coarse.at(t);
-      std::array<double, std::size_t(lanes_of<N>)> off{};
-      for (auto& [end_of_a_step, steps] : others) {
-        const bool before = (t < end_of_a_step) == (end > options.begin);
-        if (!go_on(steps, t, before ? end_of_a_step : end, stop)) return;
-        const auto beside = steps.at(t);
-        for (std::size_t k = 0; k < members.size(); ++k) {
-          if (!members[k]) continue;
-          const auto y = scene.to_vector(states[k]);
-          off[k] = max_or_nan(off[k], distance[k](y, scene.to_vector(beside[k])));
-        }
-      }
-      if (rounding) {
-        const auto grown = rounding->at(t, end, stop);
-        for (std::size_t k = 0; k < grown.size(); ++k) {
-          if (members[k]) grown_to[k] = max_or_nan(grown_to[k], grown[k]);
-        }
-      }
-      grown_most = *std::max_element(grown_to.begin(), grown_to.end());
-      rounds_too_much = runs.may_round_too_much(grown_most);
-      for (std::size_t k = 0; estimates_errors && k < members.size(); ++k) {
-        if (!members[k]) continue;
-        const double grown_rounding = max_or_nan(coarse.rounding_level(), grown_to[k]);
-        double& estimate = members[k]->report.error_estimate;
-        estimate =
-            max_or_nan(estimate, error_of_pair(off[k], runs.finer_by(setting), runs.rounding(),
-                                               coarse.effort().steps, grown_rounding));
-        worst = max_or_nan(worst, estimate);
-      }
-      missed.note(output, worst);
-      too_coarse = !last_try && (worst > options.tolerance || rounds_too_much);
-      if (too_coarse) break;
-      ++output;
-      for (std::size_t k = 0; k < members.size(); ++k) {
-        if (!members[k]) continue;
-        members[k]->times.push_back(t);
-        members[k]->states.push_back(states[k]);
-      }
-    }
-    spent += coarse.effort().evaluations;
-    for (const Beside& other : others) spent += other.steps.effort().evaluations;
-    if (rounding) spent += rounding->evaluations();
-    if (rounds_too_much && !last_try && cheap.refine(grown_most, setting)) {
-      grown_to = {};
-      continue;
-    }
-    if (too_coarse) {
-      const bool stays = rounds_too_much || missed.stays(runs, setting);
-      if (missed.error == 0) missed = {setting, output, worst};
-      setting = stays ? runs.finest() : runs.tightened(setting, options.tolerance / (3 * worst));
-      continue;
-    }
-    for (auto* member : members) {
-      if (!member) continue;
-      RunReport& report = member->report;
-      report.status = RunStatus::complete;
-      report.effort = coarse.effort();
-      report.all_evaluations = spent;
-      report.tolerance_kept = report.error_estimate <= options.tolerance;
-    }
-    return;
-  }
-}
 
 /// The members of a group, all of one scene.
 template <class Scene, class N>
@@ -353,7 +167,9 @@ void run_group(Group group, const Make& make, std::size_t index, const SolveOpti
   const auto all_together = [&] {
     try {
       return group.together([&](const auto& scene, const auto& starts) {
-        follow<N>(scene, starts, options, sampling.estimates_errors, stop, made);
+        PackedPair<N, std::remove_cvref_t<decltype(scene)>>(
+            scene, starts, {options, sampling.estimates_errors, stop}, made)
+            .follow();
       });
     } catch (const std::exception&) {
       return false;  // a single rerun reports the reason
@@ -364,8 +180,9 @@ void run_group(Group group, const Make& make, std::size_t index, const SolveOpti
       if (!made[k]) continue;
       try {
         group.alone(k, [&](const auto& scene, const auto& starts) {
-          follow<double>(scene, starts, options, sampling.estimates_errors, stop,
-                         std::array{made[k]});
+          PackedPair<double, std::remove_cvref_t<decltype(scene)>>(
+              scene, starts, {options, sampling.estimates_errors, stop}, std::array{made[k]})
+              .follow();
         });
       } catch (const std::exception& error) {
         fail(*made[k], error);

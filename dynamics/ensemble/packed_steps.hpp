@@ -59,6 +59,18 @@ class PackedIntegrator {
   /// Sets the times at which the scene's guide or loads are discontinuous.
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
 
+  /// The greatest size so far of each block of a member's state.
+  [[nodiscard]] std::vector<double> sizes(std::size_t k) const {
+    const Vector of_components = steps_.sizes();
+    std::vector<double> sizes;
+    int begin = 0;
+    for (const int block : detail::blocks_of(*scene_)) {
+      sizes.push_back(of_components[begin].lane(static_cast<int>(k)));
+      begin += block;
+    }
+    return sizes;
+  }
+
   /// The effort of all members together, which share their steps.
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
@@ -94,7 +106,7 @@ class PackedIntegrator<Scene, double> {
 
   PackedIntegrator(const Scene& scene, double t, const States& states,
                    const Accuracy& accuracy = {})
-      : steps_(scene, t, states[0], accuracy) {}
+      : scene_(&scene), steps_(scene, t, states[0], accuracy) {}
   PackedIntegrator(Scene&&, double, const States&, const Accuracy& = {}) = delete;
 
   States to(double end) { return {steps_.to(end)}; }
@@ -102,10 +114,21 @@ class PackedIntegrator<Scene, double> {
   [[nodiscard]] bool covers(double time) const { return steps_.covers(time); }
   [[nodiscard]] States at(double time) { return {steps_.at(time)}; }
   void stop_at(const std::vector<double>& jumps) { steps_.stop_at(jumps); }
+  [[nodiscard]] std::vector<double> sizes(std::size_t /*k*/) const {
+    const auto of_components = steps_.sizes();
+    std::vector<double> sizes;
+    int begin = 0;
+    for (const int block : detail::blocks_of(*scene_)) {
+      sizes.push_back(of_components[begin]);
+      begin += block;
+    }
+    return sizes;
+  }
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
 
  private:
+  const Scene* scene_;
   Integrator<Scene> steps_;
 };
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/solve/error_rules.hpp>
+#include <dynamics/solve/report.hpp>
 #include <dynamics/step/integrator.hpp>
 #include <motor/api.hpp>
 
@@ -17,23 +19,19 @@ namespace kreisel {
 
 namespace detail {
 
-/// The ratio of the errors of the two runs of a pair.
-inline constexpr double times_finer = 30;
-
 /// The greater of two errors; keeps a NaN, which std::max may drop.
 [[nodiscard]] inline double max_or_nan(double a, double b) { return b <= a || a != a ? a : b; }
 
 /// The global error of a run, from its difference `off` to a run with `finer_by` times less error.
 ///
-/// The finer run's own error is part of the difference, hence 1 - 1/finer_by. The factor 1.5 covers
-/// runs that are not so much finer, as where stability limits explicit steps. Rounding is added,
+/// The finer run's own error is part of the difference, hence 1 - 1/finer_by. Rounding is added,
 /// because two runs dominated by it agree by chance. Without growth it is a random walk, `rounding`
 /// units of 2^-53 a step; the estimate `noise` of the steps counts if it is greater.
-[[nodiscard]] inline double error_of_pair(double off, double finer_by, double rounding,
-                                          double steps, double noise = 0) {
-  const double caution = 1.5 / (1 - 1 / finer_by);
+[[nodiscard]] inline ErrorParts error_of_pair(double off, double finer_by, double rounding,
+                                              double steps, double noise = 0) {
   constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-  return caution * off + std::max(rounding * unit_roundoff * std::sqrt(steps), noise);
+  return {rules::caution / (1 - 1 / finer_by) * off,
+          std::max(rounding * unit_roundoff * std::sqrt(steps), noise)};
 }
 
 /// The state with its components changed by so many units in the last digit.

@@ -26,6 +26,15 @@ enum class RunStatus {
   failed      ///< RunReport::message gives time and reason
 };
 
+/// The sources of a run's error, each measured by its own means (docs/site/errors.md). Errors of logs
+/// and of models are not among them: a scene's program reports these beside.
+struct ErrorParts {
+  double truncation = 0;  ///< of the steps, by a second run of another accuracy
+  double rounding = 0;    ///< and its growth, by perturbed runs
+
+  [[nodiscard]] double sum() const { return truncation + rounding; }
+};
+
 /// The cost of a run and the error of its result.
 ///
 /// error_estimate is the GLOBAL error, the greatest over the output times and the parts of the
@@ -37,6 +46,7 @@ struct RunReport {
   std::string message;
   double tolerance = 0;
   double error_estimate = 0;
+  ErrorParts error_parts = {};  ///< error_estimate is their sum
   bool tolerance_kept =
       false;  ///< error_estimate <= tolerance; else nothing better could be reached
   IntegrationStatistics effort;  ///< of the trajectory returned
@@ -47,6 +57,13 @@ struct RunReport {
   /// relative to it. Parts have their own units and the order of the scene's blocks. Empty for
   /// closed forms.
   std::vector<double> sizes = {};
+
+  /// Takes a greater error for the estimate; keeps a NaN.
+  void raise(const ErrorParts& error) {
+    if (error.sum() <= error_estimate || error_estimate != error_estimate) return;
+    error_estimate = error.sum();
+    error_parts = error;
+  }
 };
 
 /// Prints a line for each of method, status, steps, evaluations, error, tolerance and, if there is one,

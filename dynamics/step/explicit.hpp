@@ -77,6 +77,13 @@ class ExplicitRungeKutta {
   ///          of the field, from two stages at the same time, against the method's stability limit
   [[nodiscard]] bool stiff() const { return short_steps_ >= 20; }
 
+  /// The greatest size so far of the block of each component.
+  [[nodiscard]] Vector sizes() const {
+    Vector sizes = y();
+    sizes_.put(sizes);
+    return sizes;
+  }
+
   /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
   void set_sizes(std::span<const double> sizes) { sizes_.set(sizes); }
 

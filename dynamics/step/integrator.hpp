@@ -98,6 +98,8 @@ class Integrator {
 
   [[nodiscard]] double t() const { return steps_.t(); }
   [[nodiscard]] State state() const { return scene_->from_vector(steps_.y()); }
+  /// The greatest size so far of the block of each component.
+  [[nodiscard]] auto sizes() const { return steps_.sizes(); }
   [[nodiscard]] const IntegrationStatistics& effort() const { return steps_.effort(); }
   [[nodiscard]] double rounding_level() const { return steps_.rounding_level(); }
 

@@ -107,7 +107,8 @@ class PruningEffect {
       const Vector& x = fine.states[i];
       off = max_or_nan(off, distance(x + coarse.deviations[i], x + fine.deviations[i]));
     }
-    return caution * fine.worst + 2 * off + error_of_pair(0, times_finer, rounding, fine.steps);
+    return caution * fine.worst + 2 * off +
+           error_of_pair(0, rules::times_finer, rounding, fine.steps).sum();
   }
 
   [[nodiscard]] double evaluations() const { return evaluations_; }

@@ -73,13 +73,13 @@ std::vector<TermLine> equation_terms(const Result& result, bool kept) {
 
 /// The parts of the error, each at its maximum. The error of the exact run beside an approximation
 /// is in the sum alone.
-struct ErrorParts {
+struct ErrorSources {
   double integration = 0;
   double log = 0;
   double model = 0;
 };
 
-ErrorParts error_parts(const Result& result) {
+ErrorSources error_sources(const Result& result) {
   const double model = result.model.model_error();
   return {std::max(0.0, report(result).error_estimate - model), result.log_error.worst, model};
 }
@@ -255,8 +255,10 @@ ordered_json summary(const Result& result) {
     invariants.push_back(
         {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
   }
-  const ErrorParts parts = error_parts(result);
+  const ErrorSources parts = error_sources(result);
   const ordered_json error{{"integration", json(parts.integration)},
+                           {"truncation", json(r.error_parts.truncation)},
+                           {"rounding", json(r.error_parts.rounding)},
                            {"log", json(parts.log)},
                            {"model", json(parts.model)}};
   const auto whole = [](double count) { return static_cast<long long>(count); };
@@ -319,7 +321,7 @@ void print_summary(const Result& result) {
       "estimate), {:.3g} s\n",
       r.effort.steps, r.effort.rejected, r.effort.evaluations, r.all_evaluations, r.run_time);
   const bool logged = !result.log_error.joints.empty();
-  const ErrorParts parts = error_parts(result);
+  const ErrorSources parts = error_sources(result);
   fmt::print("error     {:.1e} estimated, {:.1e} asked for{}{}\n", whole_error(result), r.tolerance,
              logged ? " of the integration" : "", r.tolerance_kept ? "" : ": NOT REACHED");
   if (logged) {

@@ -520,6 +520,8 @@ BOOST_AUTO_TEST_CASE(reports_the_effect_of_log_errors) {
     BOOST_TEST(error.at("model").get<double>() == 0);
     const double sum = error.at("integration").get<double>() + error.at("log").get<double>();
     BOOST_TEST(std::abs(result.at("error_estimate").get<double>() - sum) <= 1e-12 * sum);
+    const double parts = error.at("truncation").get<double>() + error.at("rounding").get<double>();
+    BOOST_TEST(std::abs(error.at("integration").get<double>() - parts) <= 1e-12 * parts);
     const bool interpolated = std::string(keys) == "sigma = 0\n";
     BOOST_TEST((off < 1e-4) != interpolated);
   }

@@ -164,6 +164,7 @@ BOOST_AUTO_TEST_CASE(members_may_have_their_own_scenes) {
       const auto own = make(i, random);
       Integrator truth(own.scene, 0, own.start, {1e-15});
       ErrorMeasure<Scene> distance(options.absolute_scale);
+      distance.note_sizes(report.sizes);
       for (std::size_t k = 0; k < times.size(); ++k) {
         const double error =
             distance(Scene::to_vector(states[k]), Scene::to_vector(truth.to(times[k])));

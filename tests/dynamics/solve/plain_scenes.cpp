@@ -10,6 +10,7 @@
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/load/oblate_gravitation.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/tree/body_system.hpp>
 
@@ -282,6 +283,49 @@ BOOST_AUTO_TEST_CASE(a_remainder_of_rounding_joins_the_last_step) {
   for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
     const auto found = solve(scene, scene.rest(), {.output_times = {60}, .method = method});
     BOOST_TEST(found.report.tolerance_kept, name(method) << ": " << found.report.message);
+  }
+}
+
+// I x'' + d x' + k x = 0 decays at 3e5 1/s and accelerates at first by 1e12 rad/s^2. The time in
+// which so great a rate changes by its own size is below the last digit of the time.
+BOOST_AUTO_TEST_CASE(a_stiff_spring_starts_at_any_time) {
+  auto arm = body({1, 0, 0}, 0, {0, 0, 0}, {0.01, 0.01, 0.005});
+  arm.forces = {{.stiffness = 1e10, .damping = 5890}};
+  const BodySystem scene(RestingFrame<>{}, {arm});
+  auto state = scene.rest();
+  state.coordinates[0] = 1.1;
+  const double decay = 5890 / 0.02;
+  const double frequency = std::sqrt(1e12 - decay * decay);
+  const double t = 1e-6;
+  const double right = 1.1 * std::exp(-decay * t) *
+                       (std::cos(frequency * t) + decay / frequency * std::sin(frequency * t));
+  for (const Method method : {Method::automatic, Method::radau13}) {
+    for (const double begin : {0.0, 0.5, -3.0}) {
+      const SolveOptions options{.begin = begin, .output_times = {begin + t}, .method = method};
+      const auto found = solve(scene, state, options);
+      BOOST_TEST_CONTEXT(name(method) << " from " << begin << ": " << found.report.message) {
+        BOOST_TEST_REQUIRE(found.states.size() == 1);
+        // The time itself is rounded: 4e-16 s of 1e6 rad/s.
+        const double off = std::abs(found.states[0].coordinates[0] - right);
+        BOOST_TEST(off <= 1.1 * found.report.error_estimate + 1e6 * 4.5e-16);
+      }
+    }
+  }
+}
+
+// A body on a planet's gravity, slowly turned by its gradient. Its potential energy is 4e8 J, and one
+// last digit of it 6e-8 J: more than the turning motion's whole energy.
+BOOST_AUTO_TEST_CASE(a_large_energy_rounds_without_error) {
+  auto satellite = body({1, 0, 0}, 28, {0.03, 0, 0}, {21, 8, 24});
+  satellite.joint.kind = JointKind::spherical;
+  OblateGravitation<> planet{.centre = {1.9e7, -1.2e7, 1.4e7}, .gradient = true};
+  planet.pole = Vector3<double>(-1, 1, 1).normalized();
+  satellite.loads.emplace_back(planet);
+  const BodySystem scene(RestingFrame<>{}, {satellite});
+  for (const Method method : {Method::verner98, Method::radau13, Method::gauss16}) {
+    const auto found =
+        solve(scene, scene.rest(), {.t_end = 2, .output_step = 0.1, .method = method});
+    BOOST_TEST(found.report.tolerance_kept, name(method) << ": " << found.report.error_estimate);
   }
 }
 

@@ -21,8 +21,7 @@
 #include <dynamics/rigid/axisymmetric_body.hpp>
 #include <dynamics/rigid/euler_top.hpp>
 #include <dynamics/rigid/fixed_point_body.hpp>
-#include <dynamics/solve/adaptive_runs.hpp>
-#include <dynamics/solve/missed.hpp>
+#include <dynamics/solve/refinement.hpp>
 #include <dynamics/solve/solve.hpp>
 #include <dynamics/step/explicit.hpp>
 #include <motor/attitude.hpp>
@@ -740,11 +739,9 @@ BOOST_AUTO_TEST_CASE(ignores_instability_of_coarse_steps) {
 // Ten times finer steps have a tenth of the error. A much larger or smaller ratio is rounding; two
 // runs may agree by chance. If the error is as large as the motion, nothing is known about it.
 BOOST_AUTO_TEST_CASE(recognises_rounding_by_its_order) {
-  const SolveOptions options{.output_times = {1}, .tolerance = 1e-8};
-  const detail::AdaptiveRuns runs(options);
-  const auto judged = [&](double error, double now) {
-    const detail::Missed<double> missed{.setting = 1e-9, .error = error, .now = now};
-    return std::pair(missed.stays(runs, 1e-10), missed.falls_by_chance(runs, 1e-10));
+  const auto judged = [](double error, double now) {
+    const detail::Missed missed{.accuracy = 1e-9, .error = error, .now = now};
+    return std::pair(missed.stays(1e-10), missed.falls_by_chance(1e-10));
   };
   BOOST_TEST((judged(1e-6, 1e-7) == std::pair(false, false)));
   BOOST_TEST((judged(1e-6, 2e-6) == std::pair(true, false)));

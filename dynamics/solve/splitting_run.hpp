@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include <dynamics/rigid/euler_top.hpp>
-#include <dynamics/solve/fixed_runs.hpp>
+#include <dynamics/solve/levels.hpp>
 #include <dynamics/solve/run.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/checkpoint.hpp>
@@ -62,8 +62,9 @@ class SplittingRun final : public Run {
   SplittingSteps<SymmetricFreeFlow, Weight> steps_;
 };
 
-[[nodiscard]] inline FixedRuns splitting_runs(const EulerTop& top, const SolveOptions& options,
-                                              const EulerTop::State& start) {
+/// The lengths of splitting steps.
+[[nodiscard]] inline StepLengths splitting_lengths(const EulerTop& top, const SolveOptions& options,
+                                                   const EulerTop::State& start) {
   // The rate at which the torque rotates on body axes.
   const Vector3<double>& I = top.moments();
   const bool axial = top.weight_moment().x() == 0 && top.weight_moment().y() == 0;
@@ -71,8 +72,7 @@ class SplittingRun final : public Run {
   const double spin = axial ? 0 : start.angular_velocity.norm();
   const double rate = std::max(nutation, spin) + std::sqrt(top.weight_moment().norm() / I.x());
   // Steps of 2/rate have an error of some 1e-9.
-  return {Method::splitting, 8,
-          2 / rate * std::clamp(std::pow(options.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
+  return {2 / rate * std::clamp(std::pow(options.tolerance / 1e-9, 1.0 / 8), 0.2, 4.0),
           0.02 / rate};
 }
 
