@@ -4,8 +4,8 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <utility>
-#include <vector>
+
+#include <support/quadrature.hpp>
 
 /// Andrews' squeezing mechanism, reduced to the angle of its crank.
 ///
@@ -153,7 +153,7 @@ class Reduced {
     const S k = d.stiffness;
     if (s > 0.25L)
       return k * (start_.stretch - p.stretch) * (start_.stretch + p.stretch) / (2 * s * s);
-    return integral(0, 1, [&](S part) {
+    return integral<S>(0, 1, [&](S part) {
       const Position between = position(beta_0 + part * s * s);
       return -k * between.stretch * between.stretch_rate;
     });
@@ -162,19 +162,9 @@ class Reduced {
   /// ds/dt = beta'/(2 s).
   [[nodiscard]] S slope(S s) const { return speed(position(beta_0 + s * s), s) / 2; }
 
-  /// By Gauss' formula of 10 nodes.
-  template <class F>
-  [[nodiscard]] static S integral(S a, S b, const F& f) {
-    S sum = 0;
-    for (const auto& [x, weight] : nodes) {
-      for (const S sign : {-1, 1}) sum += weight * f((a + b + sign * x * (b - a)) / 2);
-    }
-    return sum * (b - a) / 2;
-  }
-
   /// The time from s = a to b.
   [[nodiscard]] S duration(S a, S b) const {
-    return integral(a, b, [this](S s) { return 1 / slope(s); });
+    return integral<S>(a, b, [this](S s) { return 1 / slope(s); });
   }
 
   [[nodiscard]] Angles<S> angles(S s) const { return position(beta_0 + s * s).angles; }
@@ -184,13 +174,6 @@ class Reduced {
     for (S& rate : rates) rate *= s * speed(p, s);
     return rates;
   }
-
-  static constexpr std::pair<S, S> nodes[] = {
-      {0.148874338981631210884826001129719985L, 0.295524224714752870173892994651338329L},
-      {0.433395394129247190799265943165784162L, 0.269266719309996355091226921569469353L},
-      {0.679409568299024406234327365114873576L, 0.219086362515982043995534934228163192L},
-      {0.865063366688984510732096688423493048L, 0.149451349150580593145863397657697332L},
-      {0.973906528517171720077964012084452053L, 0.0666713443086881375935688098933317929L}};
 
   Data<S> d;
   Position start_ = position(beta_0);
