@@ -2,11 +2,12 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 #include <dynamics/solve/error_measure.hpp>
+
+#include <support/worst.hpp>
 
 namespace kreisel::test {
 
@@ -19,7 +20,7 @@ template <class System, class Run>
   distance.note_sizes(run.report.sizes);
   double worst = 0;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    worst = std::max(distance(system.to_vector(run.states.at(i)), wanted[i]), worst);
+    worst = worst_of(worst, distance(system.to_vector(run.states.at(i)), wanted[i]));
   }
   return worst;
 }
@@ -29,7 +30,19 @@ template <class System, class Run>
 [[nodiscard]] double greatest_gap(const System& system, const Run& run) {
   double worst = 0;
   for (const auto& state : run.states) {
-    for (const auto& gap : system.constraint_gaps(state)) worst = std::max(gap.relative, worst);
+    for (const auto& gap : system.constraint_gaps(state)) {
+      worst = worst_of(worst, gap.relative);
+    }
+  }
+  return worst;
+}
+
+/// The same for the rates of the gaps, in m/s or rad/s.
+template <class System, class Run>
+[[nodiscard]] double greatest_gap_rate(const System& system, const Run& run) {
+  double worst = 0;
+  for (const auto& state : run.states) {
+    for (const auto& gap : system.constraint_gaps(state)) worst = worst_of(worst, gap.rate);
   }
   return worst;
 }

@@ -185,6 +185,18 @@ BOOST_AUTO_TEST_CASE(rods_make_one_angle) {
   }
 }
 
+// A run of 0.2 s on one core. The conditions are lengths of 0.5 m, whose rates have terms of
+// 1 m/s: 1e-13 of both.
+BOOST_AUTO_TEST_CASE(rods_stay_closed_for_100_s) {
+  const auto system = governor(true);
+  const auto start = system.from_vector(state(0, S(tilt_0), height(S(tilt_0))[0], 0, 0));
+  const auto run = solve(system, start, {.output_times = linspace(0, 100, 401)});
+  BOOST_TEST(run.states.size() == 401U);
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(greatest_gap(system, run) <= 1e-13);
+  BOOST_TEST(greatest_gap_rate(system, run) <= 1e-13);
+}
+
 // The dampers stop the slider on the rods in 0.16 ms, while the arms swing in 1 s. The errors are
 // 1.0e-11 and 1.3e-11, 0.43 and 0.48 of the told ones.
 BOOST_AUTO_TEST_CASE(stiff_springs_keep_the_governor) {
