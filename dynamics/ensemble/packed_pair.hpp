@@ -224,9 +224,7 @@ class PackedPair {
     rounds_too_much_ = levels.may_round_too_much(refinement_.grown_to());
     refinement_.note(done_, worst_.sum());
     expected_ = forecast(options_, t, worst_.sum());
-    too_coarse_ = !refinement_.is_last() &&
-                  (worst_.sum() > options_.tolerance ||
-                   expected_ > rules::hopeless * options_.tolerance || rounds_too_much_);
+    too_coarse_ = refinement_.is_too_coarse(worst_.sum(), expected_, rounds_too_much_);
   }
 
   [[nodiscard]] TryResult summary() const {

@@ -151,10 +151,8 @@ void PairedRuns::note_error(const ErrorParts& error, double t) {
   report.raise(error);
   refinement_.note(try_->done, report.error_estimate);
   try_->expected = forecast(options_, t, report.error_estimate);
-  const double enough = refinement_.enough();
-  try_->too_coarse = !refinement_.is_last() &&
-                     (report.error_estimate > enough || try_->expected > rules::hopeless * enough ||
-                      try_->rounds_too_much);
+  try_->too_coarse =
+      refinement_.is_too_coarse(report.error_estimate, try_->expected, try_->rounds_too_much);
 }
 
 /// Records the time as done, and its output if it is one; false if the run ends there.

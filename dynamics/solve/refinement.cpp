@@ -27,11 +27,13 @@ Refinement Refinement::of_lanes(const SolveOptions& options, const Levels& level
   return result;
 }
 
-double Refinement::enough() const {
+bool Refinement::is_too_coarse(double error, double expected, bool rounds_too_much) const {
+  if (is_last()) return false;
   // An error that begins near rounding and comes near the tolerance is rounding that has grown.
   // Three runs agree on it by chance more often than four.
-  const bool surprises = levels_.traits().starts_near_rounding && !is_last() && missed_.error == 0;
-  return surprises ? options_->tolerance / rules::departs : options_->tolerance;
+  const bool surprises = levels_.traits().starts_near_rounding && missed_.error == 0;
+  const double enough = surprises ? options_->tolerance / rules::departs : options_->tolerance;
+  return error > enough || expected > rules::hopeless * enough || rounds_too_much;
 }
 
 void Refinement::begin_try() {

@@ -133,9 +133,6 @@ class KREISEL_API Refinement {
   [[nodiscard]] bool pair_is_perturbed() const { return pair_is_perturbed_; }
   /// The error at this accuracy, from a try with fewer digits.
   [[nodiscard]] const ErrorParts& known() const { return known_; }
-  /// The error above which a try is too coarse.
-  [[nodiscard]] double enough() const;
-
   /// Prepares a try. If only rounding is left, a start that is moved is a sample of its effect.
   void begin_try();
   /// True if RoundingGrowth shall run beside the pair.
@@ -150,6 +147,8 @@ class KREISEL_API Refinement {
   /// Notes the error after so many outputs.
   void note(std::size_t done, double error) { missed_.note(done, error); }
 
+  /// True if a try must end: the error is above the tolerance, or will be, or rounding is.
+  [[nodiscard]] bool is_too_coarse(double error, double expected, bool rounds_too_much) const;
   /// Decides on the result of a try, and sets the accuracy of the next one.
   [[nodiscard]] Next next(const TryResult& tried);
   /// True, after look_for_rounding, if the perturbed run itself causes a third of the error or more
