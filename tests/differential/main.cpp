@@ -1,7 +1,9 @@
 // test.differential: random scene files, solved by several methods of the library and by an
 // independent integrator. A difference is a fault; its scene is shrunk and kept.
 //
-// generate.cpp  scenes over the whole language, weighted towards usual ones
+// generate*     scenes over the whole language, weighted towards usual ones
+// draw.cpp      their numbers, and functions of time
+// toml*         their text as files
 // log.cpp       logs of guides, and the ways to write them down
 // runs.cpp      the library, by the functions of simulate
 // reference*    the independent integrator: no code of dynamics/

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "reference_numbers.hpp"
 #include "reference_tree.hpp"
 
 /// Elements in maximal coordinates: forces on both bodies from their poses on inertial axes.
@@ -7,8 +8,6 @@
 namespace differential::reference {
 
 namespace {
-
-Vec wide(const Vector& v) { return v.cast<Real>(); }
 
 Mat cross_matrix(const Vec& a) {
   Mat result;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "reference_numbers.hpp"
+
 namespace differential::reference {
 
 namespace {
@@ -12,8 +14,6 @@ constexpr Real pi = 3.14159265358979323846264338327950288L;
 constexpr Real equator = 6378137;
 constexpr Real flattening = 1 / 298.257223563L;
 constexpr Real earth_rate = Real(7.292115e-5);  // as double, like the site's
-
-Vec wide(const Vector& v) { return v.cast<Real>(); }
 
 struct Oscillation {
   Vec value;

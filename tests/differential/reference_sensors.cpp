@@ -1,12 +1,7 @@
+#include "reference_numbers.hpp"
 #include "reference_tree.hpp"
 
 namespace differential::reference {
-
-namespace {
-
-Vec wide(const Vector& v) { return v.cast<Real>(); }
-
-}  // namespace
 
 Tree::Frame Tree::at_point(int body, const Vec& at, const State& accelerations) const {
   const Pose& b = poses_[static_cast<std::size_t>(body)];

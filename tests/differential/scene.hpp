@@ -15,10 +15,10 @@
 
 /// A scene of the generator, and its text as a file.
 ///
-/// A new feature of scene files has four places: a member here, its text in to_toml(), a function
-/// of generate.cpp that adds it, and its physics in reference*.cpp. shrink.cpp gets a line that
-/// removes it. A new kind of joint has one place, reference_tree.cpp: the names and the number of
-/// its coordinates are those of the library's list.
+/// A new feature of scene files has four places: a member here, its text in toml*.cpp, a function
+/// of generate*.cpp that adds it, and its physics in reference*.cpp. shrink.cpp gets a line that
+/// removes it. A new kind of joint has one place, reference*.cpp: the names and the number of its
+/// coordinates are those of the library's list.
 
 namespace differential {
 
