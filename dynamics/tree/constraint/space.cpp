@@ -31,7 +31,12 @@ ConstraintSpace& ConstraintMemory::operator*() {
 
 namespace {
 
-/// The joint forces of a unit multiplier: the row of J.
+/// A row of J below this part of its lengths is rounding. The joints alone fulfil its condition, as
+/// with a second hinge on the axis of the first.
+constexpr double rounding_of_row = 1e-13;
+
+/// The joint forces of a unit multiplier: the row of J, or 0 if the condition follows from the
+/// joints.
 void set_direction(const BodyTree& tree, const ConstraintLink& link, const ConstraintRow<>& row,
                    Eigen::Ref<VectorXd> result, BodyWorkspace& w) {
   result.setZero();
@@ -44,6 +49,8 @@ void set_direction(const BodyTree& tree, const ConstraintLink& link, const Const
   add_between(link, row.direction, w);
   sum_inwards(tree, w);
   project(tree, w, result.data());
+  const double size = std::max(row.size, 1.0);
+  if ((result.array().abs() <= rounding_of_row * size).all()) result.setZero();
 }
 
 }  // namespace

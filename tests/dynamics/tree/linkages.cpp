@@ -121,4 +121,30 @@ BOOST_AUTO_TEST_CASE(bricard_stays_closed_for_100_s) {
   BOOST_TEST(greatest_gap_rate(system, run) <= 1e-13);
 }
 
+// The rows of the second hinge are rounding of its points and axis, about 1e-17, and must not lock the
+// door.
+BOOST_DATA_TEST_CASE(door_moves_on_two_hinges, data::xrange(20), seed) {
+  const Vector3<double> axis = Vector3<double>(1, 0.1 * (seed + 1), 0.7 - 0.13 * seed).normalized();
+  BodyDescription door;
+  door.name = "door";
+  door.joint = {.kind = JointKind::revolute, .axis = axis};
+  const Vector3<double> across = axis.unitOrthogonal();
+  door.inertia = InertiaTensor<Body>::about_centre(10, 0.4 * across,
+                                                   Vector3<double>(1, 1.2, 1.3).asDiagonal());
+  constraint::Revolute hinge;
+  hinge.at_first = hinge.at_second = 0.9 * axis;
+  hinge.axis_of_first = hinge.axis_of_second = axis;
+
+  const BodySystem<RotatingFrame<>> one{turntable, {door}, weight};
+  const BodySystem<RotatingFrame<>> two{
+      turntable, {door}, weight, {}, {{"second hinge", "guide", "door", hinge}}};
+  const auto redundant = two.redundant_constraints(two.rest());
+  BOOST_TEST_REQUIRE(redundant.size() == 1U);
+  BOOST_TEST(redundant[0].redundant == 5);
+  const auto wanted = solve(one, one.rest(), {.output_times = {1}, .tolerance = 1e-10});
+  const auto run = solve(two, two.rest(), {.output_times = {1}, .tolerance = 1e-10});
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(std::abs(run.states[0].coordinates[0] - wanted.states[0].coordinates[0]) <= 2e-10);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
