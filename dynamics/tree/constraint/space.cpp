@@ -53,6 +53,27 @@ void set_direction(const BodyTree& tree, const ConstraintLink& link, const Const
   if ((result.array().abs() <= rounding_of_row * size).all()) result.setZero();
 }
 
+/// The greatest mobility of a constraint's conditions of the same kind as condition k, of positions or
+/// of rotations.
+double greatest_mobility(const ConstraintSpace& c, std::size_t k) {
+  const auto turns = [&c](std::size_t i) { return c.rows[i].direction.resultant.isZero(0); };
+  double greatest = 0;
+  for (std::size_t i = 0; i < c.rows.size(); ++i) {
+    if (c.owner[i] != c.owner[k] || turns(i) != turns(k)) continue;
+    greatest = std::max(greatest, c.mass(static_cast<Index>(i), static_cast<Index>(i)));
+  }
+  return greatest;
+}
+
+/// The scale of each condition, the same for all of one constraint and kind. A condition that follows
+/// from the others except for small parts must not weigh as much as they do.
+VectorXd scales(const ConstraintSpace& c) {
+  return VectorXd::NullaryExpr(c.mass.rows(), [&c](Index k) {
+    const double mobility = greatest_mobility(c, static_cast<std::size_t>(k));
+    return mobility > 0 ? 1 / std::sqrt(mobility) : 0;
+  });
+}
+
 }  // namespace
 
 void set_directions(const BodyTree& tree, BodyWorkspace& w) {
@@ -71,7 +92,7 @@ void set_directions(const BodyTree& tree, BodyWorkspace& w) {
 }
 
 void solve_multipliers(const VectorXd& b, VectorXd& x, ConstraintSpace& c) {
-  c.scale = c.mass.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 0; });
+  c.scale = scales(c);
   c.scaled = c.scale.asDiagonal() * c.mass * c.scale.asDiagonal();
   c.factors.compute(c.scaled);
   c.pivot = c.factors.info() == Eigen::Success
@@ -95,14 +116,9 @@ void solve_multipliers(const VectorXd& b, VectorXd& x, ConstraintSpace& c) {
 double independence(const ConstraintSpace& c) {
   // A condition that moves nothing at all follows from the joints.
   constexpr double none = 1e-13;
-  const auto turns = [&c](std::size_t k) { return c.rows[k].direction.resultant.isZero(0); };
   double least = c.pivot;
   for (std::size_t k = 0; k < c.rows.size(); ++k) {
-    double greatest = 0;
-    for (std::size_t i = 0; i < c.rows.size(); ++i) {
-      if (c.owner[i] != c.owner[k] || turns(i) != turns(k)) continue;
-      greatest = std::max(greatest, c.mass(static_cast<Index>(i), static_cast<Index>(i)));
-    }
+    const double greatest = greatest_mobility(c, k);
     const double own = c.mass(static_cast<Index>(k), static_cast<Index>(k));
     if (own > none * greatest) least = std::min(least, own / greatest);
   }

@@ -33,7 +33,7 @@ void set_directions(const BodyTree& tree, BodyWorkspace& w);
 /// squared.
 inline constexpr double redundant_below = 1e-12;
 
-/// Solves  (J M^-1 J^t) x = b  for rows scaled to a diagonal of 1, for the least x if some conditions
+/// Solves  (J M^-1 J^t) x = b  for rows scaled by their mobility, for the least x if some conditions
 /// follow from others.
 void solve_multipliers(const Eigen::VectorXd& b, Eigen::VectorXd& x, ConstraintSpace& c);
 
