@@ -289,7 +289,7 @@ BOOST_AUTO_TEST_CASE(a_remainder_of_rounding_joins_the_last_step) {
 // I x'' + d x' + k x = 0 decays at 3e5 1/s and accelerates at first by 1e12 rad/s^2. The time in
 // which so great a rate changes by its own size is below the last digit of the time.
 BOOST_AUTO_TEST_CASE(a_stiff_spring_starts_at_any_time) {
-  auto arm = body({1, 0, 0}, 0, {0, 0, 0}, {0.01, 0.01, 0.005});
+  auto arm = body({1, 0, 0}, 1, {0, 0, 0}, {0.01, 0.01, 0.005});
   arm.forces = {{.stiffness = 1e10, .damping = 5890}};
   const BodySystem scene(RestingFrame<>{}, {arm});
   auto state = scene.rest();
