@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "generate_parts.hpp"
 
@@ -76,12 +77,19 @@ Scene generate(Random r) {
     scene.outputs = 20;
     return scene;
   }
+  std::optional<Constraint> wanted;
   if (u < 0.2) {
     add_pendulums(r, scene);
   } else if (u < 0.35) {
     add_cardan_gyro(r, scene);
   } else if (u < 0.5) {
     add_resting_bodies(r, scene);
+  } else if (u < 0.53) {
+    wanted = add_plane_chain(r, scene);
+  } else if (u < 0.56) {
+    wanted = add_spatial_chain(r, scene);
+  } else if (u < 0.62) {
+    wanted = add_vehicle(r, scene);
   } else {
     add_bodies(r, scene);
   }
@@ -93,6 +101,10 @@ Scene generate(Random r) {
   add_begin(r, scene);
   add_elements(r, scene);
   loosen_joints(r, scene);
+  for (int tries = 0; wanted && tries < 5; ++tries) {
+    if (add_constraint(r, scene, *wanted)) break;
+  }
+  add_constraints(r, scene);
   return scene;
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "generate_parts.hpp"
 
@@ -10,7 +11,9 @@ namespace {
 bool may_be_loose(const Scene& scene, int index) {
   const Body& b = scene.bodies[static_cast<std::size_t>(index)];
   const bool is_kind = b.kind == JointKind::revolute || b.kind == JointKind::prismatic ||
-                       b.kind == JointKind::spherical || b.kind == JointKind::fixed;
+                       b.kind == JointKind::spherical || b.kind == JointKind::fixed ||
+                       (b.kind == JointKind::universal && !b.orientation &&
+                        std::abs(b.axis.normalized().dot(b.second_axis.normalized())) < 1e-15);
   const bool is_free_of_forces = b.stiffness.empty() && b.damping.empty() && b.force.empty() &&
                                  b.force_in_time.empty() && !b.rotor && !b.drive && !b.hold;
   const bool is_geared =
@@ -22,7 +25,10 @@ bool may_be_loose(const Scene& scene, int index) {
       std::any_of(scene.sensors.begin(), scene.sensors.end(), [index](const Sensor& sensor) {
         return sensor.kind == SensorKind::reaction && sensor.body == index;
       });
-  return is_kind && is_free_of_forces && b.mass > 0 && !is_geared && !is_read;
+  // In a free joint the inertia about each axis must be positive.
+  const bool resists = b.mass > 0 && std::all_of(b.inertia.begin(), b.inertia.begin() + 3,
+                                                 [](double moment) { return moment > 0; });
+  return is_kind && is_free_of_forces && resists && !is_geared && !is_read;
 }
 
 }  // namespace

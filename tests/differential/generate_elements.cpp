@@ -49,6 +49,16 @@ Element mount(Random& r) {
   return result;
 }
 
+/// The length of a rope on a winch, without jumps: a broken line or smooth.
+Signal winch(Random& r, double length) {
+  const auto along = [&r] { return Vector(sign(r) * Vector::UnitX()); };
+  Signal s = any_signal(r, 0.3, along);
+  if (s.jumps.times.empty()) s.series.constant = Vector(length, 0, 0);
+  for (Vector& v : s.jumps.values) v.x() += length;
+  s.jumps.is_broken_line = !s.jumps.times.empty();
+  return s;
+}
+
 /// A rope that is slack or taut at the start.
 Element rope(Random& r) {
   Element result{.kind = ElementKind::rope};
@@ -57,6 +67,7 @@ Element rope(Random& r) {
   result.stiffness = stiffness(r);
   result.length = plain(r, 0.1, 2);
   if (r.chance(0.4)) result.damping = r.pick({0.1, 1.0, 10.0});
+  if (r.chance(0.4)) result.length_in_time = winch(r, result.length);
   return result;
 }
 

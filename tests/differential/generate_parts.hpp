@@ -65,4 +65,26 @@ void add_elements(Random& r, Scene& scene);
 /// Makes some joints constraints.
 void loosen_joints(Random& r, Scene& scene);
 
+// generate_closed.cpp
+
+/// Adds a constraint of the given kind, bodies and axis, with points and rates that fulfil it. False
+/// if it leaves no motion, or the start is near a singular position.
+bool add_constraint(Random& r, Scene& scene, Constraint c);
+void add_constraints(Random& r, Scene& scene);
+
+// generate_mechanisms.cpp
+
+void add_free_body(Random& r, Scene& scene);
+
+// Each adds bodies, and returns the constraint that they wait for.
+
+/// Two or three hinges with parallel axes.
+[[nodiscard]] Constraint add_plane_chain(Random& r, Scene& scene);
+
+/// Two or three joints of several kinds.
+[[nodiscard]] Constraint add_spatial_chain(Random& r, Scene& scene);
+
+/// A free body that will roll on the guide or on a body, or glide on a blade.
+[[nodiscard]] Constraint add_vehicle(Random& r, Scene& scene);
+
 }  // namespace differential

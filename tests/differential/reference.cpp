@@ -199,6 +199,28 @@ JointValues start_values(const Scene& scene) {
   return tree.values(Real(scene.t_begin), start);
 }
 
+std::vector<StartPose> start_poses(const Scene& scene) {
+  std::vector<StartPose> result;
+  for (const auto& [R, x] : Tree(scene).start_poses()) {
+    result.push_back({R.cast<double>(), x.cast<double>()});
+  }
+  return result;
+}
+
+JointValues fulfilled_values(const Scene& scene) {
+  Tree tree(scene);
+  State y = tree.start();
+  tree.stay_within(Real(scene.t_begin));
+  tree.project(Real(scene.t_begin), y);
+  return tree.values(Real(scene.t_begin), y);
+}
+
+Eigen::VectorXd condition_values(const Scene& scene) {
+  Tree tree(scene);
+  tree.stay_within(Real(scene.t_begin));
+  return tree.condition_values();
+}
+
 std::vector<double> start_reactions(const Scene& scene) {
   Tree tree(scene);
   const State start = tree.start();

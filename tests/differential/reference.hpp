@@ -44,6 +44,21 @@ struct ReferenceMotion {
 /// Readings of sensors at the start, in the order of Tree::readings().
 [[nodiscard]] std::vector<double> start_readings(const Scene& scene);
 
+/// The pose of a body in the guide: attitude and position of its origin.
+struct StartPose {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Vector x = Vector::Zero();
+};
+
+[[nodiscard]] std::vector<StartPose> start_poses(const Scene& scene);
+
+/// The values of all joints at the start, with the nearest rates that fulfil the constraints.
+[[nodiscard]] JointValues fulfilled_values(const Scene& scene);
+
+/// The singular values of all conditions at the start, in decreasing order, with a 0 for each
+/// condition that follows from others.
+[[nodiscard]] Eigen::VectorXd condition_values(const Scene& scene);
+
 /// True if the last element of a scene has a force at the start, with room to move.
 [[nodiscard]] bool last_element_works(const Scene& scene);
 

@@ -35,8 +35,8 @@ Mat to_angular_velocity(const Vec& theta) {
   return sum;
 }
 
-Real pull(const Element& e, Real length) {
-  if (e.table.empty()) return Real(e.stiffness) * (length - Real(e.length));
+Real pull(const Element& e, Real length, Real unloaded) {
+  if (e.table.empty()) return Real(e.stiffness) * (length - unloaded);
   std::size_t piece = 1;
   while (piece + 1 < e.table.size() && length > Real(e.table[piece].first)) ++piece;
   const auto [from, low] = e.table[piece - 1];
@@ -63,8 +63,11 @@ Vec Tree::spring_force(const Element& e) const {
   const Real length = reach.norm();
   if (length == 0) return Vec::Zero();
   const Vec v = b.v + b.w.cross(arm_b) - a.v - a.w.cross(arm_a);
-  const Real tension = pull(e, length) + Real(e.damping) * reach.dot(v) / length;
-  const bool is_slack = e.kind == ElementKind::rope && (length <= Real(e.length) || tension <= 0);
+  const Course winch = course_of(e.length_in_time, now_, within_);
+  const Real unloaded = e.length_in_time.empty() ? Real(e.length) : winch.value.x();
+  const Real rate = reach.dot(v) / length - winch.rate.x();
+  const Real tension = pull(e, length, unloaded) + Real(e.damping) * rate;
+  const bool is_slack = e.kind == ElementKind::rope && (length <= unloaded || tension <= 0);
   return is_slack ? Vec(Vec::Zero()) : Vec(-tension * reach / length);
 }
 

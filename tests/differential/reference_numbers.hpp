@@ -67,6 +67,12 @@ template <class T>
          kind == JointKind::planar || kind == JointKind::screw;
 }
 
+/// The number of conditions of a constraint.
+[[nodiscard]] inline int rows_of(ConstraintKind kind) {
+  static constexpr int rows[] = {3, 5, 4, 6, 5, 1, 1, 3, 1};
+  return rows[static_cast<int>(kind)];
+}
+
 [[nodiscard]] inline int angle_count(JointKind kind) {
   if (kind == JointKind::universal) return 2;
   return is_hinge(kind) ? 1 : 0;

@@ -15,40 +15,45 @@ Vec Tree::turned_off(int body, const Relative& r) const {
   return parent(body).R * (2 * q.vec());
 }
 
-void Tree::add_translation(int body, const Relative& r, const Motion& guide, const Vec& n) {
+void Tree::add_translation(const Relative& r, const Motion& guide, const Vec& n) {
   const auto N = static_cast<Eigen::Index>(6 * poses_.size());
   const Eigen::Index row = N + rows_;
-  const Pose& b = poses_[static_cast<std::size_t>(body)];
-  const Pose& p = parent(body);
-  const int index = parents_[static_cast<std::size_t>(body)];
+  const Pose b = pose_of(r.body);
+  const Pose p = pose_of(r.base);
   const auto put = [&](int to, const Vec& force, const Vec& torque) {
     matrix_.block<1, 3>(row, 6 * to) += force.transpose();
     matrix_.block<1, 3>(row, 6 * to + 3) += torque.transpose();
   };
-  put(body, n, r.arm.cross(n));
+  if (r.body >= 0) {
+    put(r.body, n, r.arm.cross(n));
+  } else {
+    right_[row] -= n.dot(guide.dw.cross(r.arm));
+  }
   right_[row] +=
       n.dot(p.w.cross(p.w.cross(r.reach)) + 2 * p.w.cross(r.v) - b.w.cross(b.w.cross(r.arm)));
-  if (index >= 0) {
-    put(index, -n, -r.reach.cross(n));
+  if (r.base >= 0) {
+    put(r.base, -n, -r.reach.cross(n));
   } else {
     right_[row] += n.dot(guide.dw.cross(r.reach));
   }
   const auto at_row = static_cast<std::size_t>(rows_);
-  off_place_[at_row] += n.dot(r.place - p.R * parts_[static_cast<std::size_t>(body)].start_place);
+  off_place_[at_row] += n.dot(r.off);
   off_velocity_[at_row] += n.dot(r.v);
   rows_ += 1;
 }
 
-void Tree::add_rotation(int body, const Relative& r, const Motion& guide, const Vec& n, Real extra,
-                        Real off, Real speed) {
+void Tree::add_rotation(const Relative& r, const Motion& guide, const Vec& n, Real extra, Real off,
+                        Real speed) {
   const auto N = static_cast<Eigen::Index>(6 * poses_.size());
   const Eigen::Index row = N + rows_;
-  const int index = parents_[static_cast<std::size_t>(body)];
-  matrix_.block<1, 3>(row, 6 * body + 3) += n.transpose();
-  const Pose& p = parent(body);
-  right_[row] += n.dot(p.w.cross(poses_[static_cast<std::size_t>(body)].w)) - extra;
-  if (index >= 0) {
-    matrix_.block<1, 3>(row, 6 * index + 3) -= n.transpose();
+  if (r.body >= 0) {
+    matrix_.block<1, 3>(row, 6 * r.body + 3) += n.transpose();
+  } else {
+    right_[row] -= n.dot(guide.dw);
+  }
+  right_[row] += n.dot(pose_of(r.base).w.cross(pose_of(r.body).w)) - extra;
+  if (r.base >= 0) {
+    matrix_.block<1, 3>(row, 6 * r.base + 3) -= n.transpose();
   } else {
     right_[row] += n.dot(guide.dw);
   }
@@ -75,36 +80,36 @@ void Tree::add_rows(int body, const Relative& r, const Motion& guide) {
   const bool slides_along =
       kind == JointKind::prismatic || kind == JointKind::cylindrical || kind == JointKind::screw;
   if (!part.held && kind == JointKind::planar) {
-    add_translation(body, r, guide, r.axis);
+    add_translation(r, guide, r.axis);
   } else if (!part.held && slides_along) {
-    add_translation(body, r, guide, first);
-    add_translation(body, r, guide, second);
+    add_translation(r, guide, first);
+    add_translation(r, guide, second);
   } else {
-    for (int i = 0; i < 3; ++i) add_translation(body, r, guide, Vec::Unit(i));
+    for (int i = 0; i < 3; ++i) add_translation(r, guide, Vec::Unit(i));
   }
   if (stiff) {
     const Vec off = turned_off(body, r);
-    for (int i = 0; i < 3; ++i) add_rotation(body, r, guide, Vec::Unit(i), 0, off[i], 0);
+    for (int i = 0; i < 3; ++i) add_rotation(r, guide, Vec::Unit(i), 0, off[i], 0);
   } else if (is_hinge(kind)) {
     const Vec image = parent(body).R * (r.turn * part.axis);
     const Vec off = r.axis.cross(image);
-    add_rotation(body, r, guide, first, 0, off.dot(first), 0);
-    add_rotation(body, r, guide, second, 0, off.dot(second), 0);
+    add_rotation(r, guide, first, 0, off.dot(first), 0);
+    add_rotation(r, guide, second, 0, off.dot(second), 0);
     if (part.driven) {
       const auto [speed, acceleration] = drive(body);
-      add_rotation(body, r, guide, r.axis, -acceleration, 0, speed);
+      add_rotation(r, guide, r.axis, -acceleration, 0, speed);
     }
     if (kind == JointKind::screw) {
       // One row: the advance less the pitch times the angle.
       const Real turned = nearest_turn(angles_of(body, r).first, r.near);
-      add_translation(body, r, guide, r.axis);
+      add_translation(r, guide, r.axis);
       rows_ -= 1;
-      add_rotation(body, r, guide, -part.pitch * r.axis, 0, -part.pitch * turned, 0);
+      add_rotation(r, guide, -part.pitch * r.axis, 0, -part.pitch * turned, 0);
     }
   } else if (kind == JointKind::universal) {
     const Vec n = r.axis.cross(r.second_axis);
     const Real off = part.axis.dot(part.second_axis) - r.axis.dot(r.second_axis);
-    add_rotation(body, r, guide, n, r.w.dot(r.axis.cross(r.w.cross(r.second_axis))), off, 0);
+    add_rotation(r, guide, n, r.w.dot(r.axis.cross(r.w.cross(r.second_axis))), off, 0);
   }
 }
 
@@ -125,6 +130,7 @@ void Tree::assemble(const Motion& guide) {
     const int body = static_cast<int>(i);
     add_rows(body, relative(body), guide);
   }
+  add_constraint_rows(guide);
   const auto N = static_cast<Eigen::Index>(6 * poses_.size());
   matrix_.topRightCorner(N, rows_) = matrix_.bottomLeftCorner(rows_, N).transpose();
 }

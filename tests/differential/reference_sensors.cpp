@@ -25,6 +25,8 @@ std::vector<double> Tree::readings(Real t, const State& y) {
   rates(t, y, rate);
   const Motion guide = guide_.at(t, y, rate);
   const State accelerations = solution_.head(static_cast<Eigen::Index>(6 * poses_.size()));
+  const State multipliers = solution_.tail(rows_);
+  assemble(guide);
   std::vector<double> result;
   const auto put = [&result](const auto& numbers) {
     for (Eigen::Index i = 0; i < numbers.size(); ++i) {
@@ -59,8 +61,10 @@ std::vector<double> Tree::readings(Real t, const State& y) {
       }
       case SensorKind::attitude: put(Quat(Mat(seen.R.transpose() * own.R)).coeffs()); break;
       case SensorKind::reaction: {
-        if (sensor.element >= 0) {
-          const auto [force, torque] = element_reading(sensor, y);
+        if (sensor.element >= 0 || sensor.constraint >= 0) {
+          const auto [force, torque] = sensor.element >= 0
+                                           ? element_reading(sensor, y)
+                                           : constraint_reading(sensor, multipliers);
           put(Vec(axes * force));
           put(Vec(axes * torque));
           break;

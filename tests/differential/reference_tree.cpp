@@ -80,6 +80,10 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
     parts_.push_back(part);
     parents_.push_back(body.parent);
   }
+  for (const Constraint& constraint : scene.constraints) {
+    holds_.push_back({Mat::Identity(), rows, rows_of(constraint.kind)});
+    rows += holds_.back().rows;
+  }
   matrix_.resize(6 * n + rows, 6 * n + rows);
   right_.resize(6 * n + rows);
   off_place_.resize(static_cast<std::size_t>(rows));
@@ -96,6 +100,7 @@ State Tree::start() {
   guide_.start(y);
   std::vector<Pose> poses(scene_.bodies.size());
   for (int i = 0; i < static_cast<int>(scene_.bodies.size()); ++i) start_body(i, y, poses);
+  start_constraints(y);
   return y;
 }
 
@@ -207,10 +212,13 @@ Tree::Relative Tree::relative(int body) const {
   const int index = parents_[static_cast<std::size_t>(body)];
   const Vec from = index < 0 ? Vec(Vec::Zero()) : parts_[static_cast<std::size_t>(index)].centre;
   Relative r;
+  r.body = body;
+  r.base = index;
   r.arm = -(b.R * part.centre);
   const Vec origin = b.x + r.arm;
   r.reach = origin - p.x;
   r.place = r.reach - p.R * (part.position - from);
+  r.off = r.place - p.R * part.start_place;
   r.v = b.v + b.w.cross(r.arm) - p.v - p.w.cross(r.reach);
   r.w = b.w - p.w;
   r.turn = p.R.transpose() * b.R * part.zero.transpose();
@@ -237,30 +245,38 @@ std::pair<Vec, Vec> Tree::plane_of(int body, const Relative& r) const {
   return {first, r.axis.cross(first)};
 }
 
-// Eigen's blocks are slow in long double, and most factors are 0 here.
+// Eigen's blocks are slow in long double, and most factors are 0 here. Columns without a pivot belong
+// to conditions that follow from others; their multipliers are 0.
 void Tree::solve() {
+  const Real least = scene_.constraints.empty() ? 0 : 1e-11L;
   const Eigen::Index n = matrix_.rows();
+  pivots_.clear();
   for (Eigen::Index k = 0; k < n; ++k) {
+    const auto row = static_cast<Eigen::Index>(pivots_.size());
     Eigen::Index pivot = 0;
-    matrix_.col(k).tail(n - k).cwiseAbs().maxCoeff(&pivot);
+    const Real size = matrix_.col(k).tail(n - row).cwiseAbs().maxCoeff(&pivot);
+    if (size < least) continue;
+    pivots_.push_back(k);
     if (pivot != 0) {
-      matrix_.row(k).swap(matrix_.row(k + pivot));
-      std::swap(right_[k], right_[k + pivot]);
+      matrix_.row(row).swap(matrix_.row(row + pivot));
+      std::swap(right_[row], right_[row + pivot]);
     }
-    for (Eigen::Index i = k + 1; i < n; ++i) {
-      const Real factor = matrix_(i, k) / matrix_(k, k);
+    for (Eigen::Index i = row + 1; i < n; ++i) {
+      const Real factor = matrix_(i, k) / matrix_(row, k);
       if (factor == 0) continue;
-      const Real* const from = &matrix_(k, 0);
+      const Real* const from = &matrix_(row, 0);
       Real* const to = &matrix_(i, 0);
       for (Eigen::Index j = k + 1; j < n; ++j) to[j] -= factor * from[j];
-      right_[i] -= factor * right_[k];
+      right_[i] -= factor * right_[row];
     }
   }
-  solution_.resize(n);
-  for (Eigen::Index k = n; k-- > 0;) {
-    Real sum = right_[k];
-    for (Eigen::Index j = k + 1; j < n; ++j) sum -= matrix_(k, j) * solution_[j];
-    solution_[k] = sum / matrix_(k, k);
+  solution_.setZero(n);
+  for (std::size_t i = pivots_.size(); i-- > 0;) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index k = pivots_[i];
+    Real sum = right_[row];
+    for (Eigen::Index j = k + 1; j < n; ++j) sum -= matrix_(row, j) * solution_[j];
+    solution_[k] = sum / matrix_(row, k);
   }
 }
 

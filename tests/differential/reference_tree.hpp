@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,11 @@ class Tree {
   /// True if an element has a force at the start, with room to move. A spring's ends are apart, and
   /// a mount is rotated by less than 2 rad.
   [[nodiscard]] bool element_works(const Element& element);
+  /// Poses of all bodies in the guide at the start: attitude, and position of the origin.
+  [[nodiscard]] std::vector<std::pair<Mat, Vec>> start_poses();
+  /// The singular values of all conditions at the start, each condition with the length 1;
+  /// 0 for each one that follows from others.
+  [[nodiscard]] Eigen::VectorXd condition_values();
   /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
 
@@ -73,17 +79,28 @@ class Tree {
     Vec w = Vec::Zero();  ///< on inertial axes
   };
 
-  /// A body against its parent, on inertial axes.
+  /// A body against its parent or another body, on inertial axes. `base` is the other one, -1 for the
+  /// guide. The origin stands for the point of the body that a constraint takes.
   struct Relative {
+    int body = 0;
+    int base = -1;
     Vec arm;    ///< the body's origin from its centre of mass
     Vec reach;  ///< the same point from the parent's centre of mass
     Vec place;  ///< the body's origin from the joint's point on the parent
+    Vec off;    ///< the same from its place in a locked joint
     Vec v;      ///< seen from the parent
     Vec w;
     Mat turn;  ///< parent's axes from the body's, divided by `zero`
     Vec axis;
     Vec second_axis;
     Real near = 0;  ///< the state's first angle of the joint
+  };
+
+  /// The data of a constraint at the start, and its rows.
+  struct Hold {
+    Mat attitude = Mat::Identity();  ///< the second body's axes on the first's
+    Eigen::Index first_row = 0;
+    Eigen::Index rows = 0;
   };
 
   /// A frame at one time, on inertial axes; its origin against the guide's.
@@ -98,6 +115,8 @@ class Tree {
 
   /// The values of a body as in a free joint to the guide.
   [[nodiscard]] State free_values(int body, const Motion& guide) const;
+  /// The contact of a wheel, and its rate.
+  [[nodiscard]] std::pair<Vec, Vec> contact_of(const Constraint& c) const;
 
   [[nodiscard]] Frame frame(int index, const Motion& guide, const State& accelerations) const;
   [[nodiscard]] Frame at_point(int body, const Vec& at, const State& accelerations) const;
@@ -112,9 +131,28 @@ class Tree {
   /// Speed and acceleration of a driven joint.
   [[nodiscard]] std::pair<Real, Real> drive(int body) const;
   void add_rows(int body, const Relative& r, const Motion& guide);
-  void add_translation(int body, const Relative& r, const Motion& guide, const Vec& n);
-  void add_rotation(int body, const Relative& r, const Motion& guide, const Vec& n, Real extra,
-                    Real off, Real speed);
+  void add_translation(const Relative& r, const Motion& guide, const Vec& n);
+  void add_rotation(const Relative& r, const Motion& guide, const Vec& n, Real extra, Real off,
+                    Real speed);
+  /// A point of the second body against one of the first.
+  [[nodiscard]] Relative between(const Constraint& c) const;
+  void start_constraints(const State& y);
+  void add_constraint_rows(const Motion& guide);
+  void add_joint_rows(const Constraint& c, const Hold& hold, const Motion& guide);
+  void add_parallel(const Relative& r, const Motion& guide, const Vec& axis, const Vec& image);
+  void add_equal_attitude(const Relative& r, const Hold& hold, const Motion& guide);
+  void add_distance(const Constraint& c, const Motion& guide);
+  void add_gear_row(const Constraint& c, const Motion& guide);
+  void add_rolling_rows(const Constraint& c, const Motion& guide);
+  void add_blade_row(const Constraint& c, const Motion& guide);
+  /// The velocities of two bodies at a common point are the same along n.
+  ///
+  /// dpoint, dn : rates of the point, which may move in both bodies, and of the direction
+  void add_contact(const std::array<int, 2>& bodies, const Vec& point, const Vec& dpoint,
+                   const Vec& n, const Vec& dn, const Motion& guide);
+  /// Adds the forces of constraints to the balance of the bodies. `multipliers` are those of all
+  /// conditions, and the matrix is the assembled one.
+  void add_constraint_forces(const State& multipliers);
   void add_forces(Real t, const State& y, const Motion& guide);
   void add_joint_force(Real t, int body, const State& y);
   void add_gravity(int body, Real t, const Motion& guide);
@@ -137,6 +175,8 @@ class Tree {
   void add_along_joint(int body, Real force);
   [[nodiscard]] Real element_energy(const Element& element, const State& y) const;
   /// The six numbers of a sensor on an element.
+  [[nodiscard]] std::pair<Vec, Vec> constraint_reading(const Sensor& sensor,
+                                                       const State& multipliers);
   [[nodiscard]] std::pair<Vec, Vec> element_reading(const Sensor& sensor, const State& y) const;
   void add_drag(const Load& load, int body, const Motion& guide);
   void add_load(Real t, const Load& load, int body, const Motion& guide);
@@ -151,6 +191,7 @@ class Tree {
   Guide guide_;
   std::vector<Part> parts_;
   std::vector<int> parents_;
+  std::vector<Hold> holds_;
   Eigen::Index size_ = 0;
   Real within_ = 0;
   Real now_ = 0;
@@ -160,6 +201,7 @@ class Tree {
   std::vector<Real> first_angles_;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;
   State right_;
+  std::vector<Eigen::Index> pivots_;  ///< columns
   State solution_;
   std::vector<Real> off_place_;  ///< violation of each condition
   std::vector<Real> off_velocity_;

@@ -43,6 +43,8 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
   const Motion guide = guide_.at(t, y, rate);
   const auto n = static_cast<Eigen::Index>(poses_.size());
   const State accelerations = solution_.head(6 * n);
+  const State multipliers = solution_.tail(rows_);
+  assemble(guide);
   // The remaining terms of each body's balance without its joints, about its centre of mass.
   right_.setZero();
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -58,6 +60,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
     }
   }
   add_elements();
+  add_constraint_forces(multipliers);
   std::vector<double> result(static_cast<std::size_t>(6 * n));
   for (Eigen::Index i = n; i-- > 0;) {
     const Relative r = relative(static_cast<int>(i));

@@ -216,9 +216,12 @@ std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& mod
 bool misread(const Scene& scene, const kreisel::SceneFile& file) {
   const bool other_method =
       !scene.method.empty() && file.method != kreisel::method_named(scene.method);
+  const auto loose = std::count_if(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const Body& body) { return body.loose; });
+  const std::size_t constraints = scene.constraints.size() + static_cast<std::size_t>(loose);
   return other_method || file.title != scene.title || file.reactions != scene.reports ||
-         file.element_forces != scene.reports || file.elements.size() != scene.elements.size() ||
-         file.terms != scene.reports;
+         file.constraints.size() != constraints || file.element_forces != scene.reports ||
+         file.elements.size() != scene.elements.size() || file.terms != scene.reports;
 }
 
 /// Terms that the report both keeps and drops.

@@ -43,6 +43,7 @@ std::vector<const Signal*> Scene::signals() const {
       result.insert(result.end(), {&load.force_in_time, &load.field});
     }
   }
+  for (const Element& element : elements) result.push_back(&element.length_in_time);
   return result;
 }
 
@@ -124,6 +125,9 @@ std::string to_toml(const Scene& scene) {
   result += guide(scene) + gravity(scene);
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) result += body(scene, i);
   for (std::size_t i = 0; i < scene.elements.size(); ++i) result += element(scene.elements[i], i);
+  for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
+    result += constraint(scene.constraints[i], i);
+  }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     if (scene.bodies[i].loose) result += constraint(scene.bodies[i], static_cast<int>(i));
   }
@@ -138,7 +142,9 @@ std::string to_toml(const Scene& scene) {
               ? "output_times = " + list(scene.times())
               : "output_step = " + text((scene.t_end - scene.t_begin) / scene.outputs)) +
          "\n" +
-         (scene.reports ? "[report]\nreactions = true\nelements = true\nterms = true\n" : "");
+         (scene.reports ? "[report]\nreactions = true\nelements = true\nconstraints = true\n"
+                          "terms = true\n"
+                        : "");
 }
 
 }  // namespace differential

@@ -192,6 +192,7 @@ struct Element {
   double stiffness = 0;  ///< of a spring, a rope or a gear
   double damping = 0;
   double length = 0;
+  Signal length_in_time = {};  ///< of a rope on a winch, instead of the length
   std::vector<std::pair<double, double>> table = {};  ///< instead of stiffness and length
   double ratio = 1;
   // Numbers of a mount.
@@ -205,6 +206,36 @@ struct Element {
   Vector torque = Vector::Zero();
 };
 
+enum class ConstraintKind {
+  point,
+  revolute,
+  universal,
+  fixed,
+  prismatic,
+  distance,
+  gear,
+  rolling,
+  blade
+};
+
+/// A condition between two bodies or two joints that the start fulfils.
+struct Constraint {
+  ConstraintKind kind = ConstraintKind::point;
+  /// -1: the guide. A gear has the bodies of its joints, rolling the body of the plane first.
+  std::array<int, 2> bodies = {-1, 0};
+  /// A point of the first body, for rolling of the plane, and one of the second.
+  std::array<Vector, 2> at = {Vector::Zero(), Vector::Zero()};
+  Vector axis = Vector::UnitZ();         ///< on the first body; of a wheel or a blade on the second
+  Vector second_axis = Vector::UnitX();  ///< of a universal joint, on the second body
+  double length = 1;
+  double ratio = 1;
+  double offset = 0;
+  double radius = 1;
+  double tube = 0;
+  bool is_ball = false;
+  Vector normal = Vector::UnitZ();  ///< of the plane
+};
+
 enum class SensorKind { gyro, accelerometer, point, attitude, reaction };
 
 /// A frame that a sensor names: the index of a body, or one of these.
@@ -214,7 +245,8 @@ inline constexpr int inertial_frame = -2;
 struct Sensor {
   SensorKind kind = SensorKind::gyro;
   int body = 0;
-  int element = -1;  ///< of a reaction, instead of the body's joint
+  int element = -1;     ///< of a reaction, instead of the body's joint
+  int constraint = -1;  ///< likewise
   Vector at = Vector::Zero();
   bool at_by_name = false;                   ///< as one of the body's points
   std::optional<Eigen::Vector4d> axes = {};  ///< w, x, y, z
@@ -234,6 +266,7 @@ struct Scene {
   std::optional<bool> gradient = {};  ///< as in the file
   std::vector<Body> bodies = {};
   std::vector<Element> elements = {};
+  std::vector<Constraint> constraints = {};
   std::vector<Sensor> sensors = {};
   double t_begin = 0;
   double t_end = 1;

@@ -95,6 +95,15 @@ void drop_element(Scene& scene, std::size_t index) {
   for (Sensor& sensor : scene.sensors) sensor.element -= sensor.element > dropped ? 1 : 0;
 }
 
+/// Removes a constraint and the sensors that read it.
+void drop_constraint(Scene& scene, std::size_t index) {
+  const int dropped = static_cast<int>(index);
+  scene.constraints.erase(scene.constraints.begin() + dropped);
+  std::erase_if(scene.sensors,
+                [dropped](const Sensor& sensor) { return sensor.constraint == dropped; });
+  for (Sensor& sensor : scene.sensors) sensor.constraint -= sensor.constraint > dropped ? 1 : 0;
+}
+
 /// Removes a body that carries no other.
 void drop_body(Scene& scene, std::size_t index) {
   for (const Body& body : scene.bodies) {
@@ -105,6 +114,10 @@ void drop_body(Scene& scene, std::size_t index) {
   for (std::size_t i = scene.elements.size(); i-- > 0;) {
     const auto& ends = scene.elements[i].bodies;
     if (ends[0] == dropped || ends[1] == dropped) drop_element(scene, i);
+  }
+  for (std::size_t i = scene.constraints.size(); i-- > 0;) {
+    const auto& ends = scene.constraints[i].bodies;
+    if (ends[0] == dropped || ends[1] == dropped) drop_constraint(scene, i);
   }
   scene.bodies.erase(scene.bodies.begin() + static_cast<std::ptrdiff_t>(index));
   const auto move_up = [dropped](int& body) { body -= body > dropped ? 1 : 0; };
@@ -117,6 +130,9 @@ void drop_body(Scene& scene, std::size_t index) {
   }
   for (Element& element : scene.elements) {
     for (int& body : element.bodies) move_up(body);
+  }
+  for (Constraint& constraint : scene.constraints) {
+    for (int& body : constraint.bodies) move_up(body);
   }
 }
 
@@ -227,6 +243,10 @@ std::vector<Change> changes_of(const Scene& scene) {
     changes.emplace_back([i](Scene& s) { drop_element(s, i); });
     changes.emplace_back(
         [i](Scene& s) { s.elements[i].axes.reset(), s.elements[i].table.clear(); });
+    changes.emplace_back([i](Scene& s) { s.elements[i].length_in_time = {}; });
+  }
+  for (std::size_t i = 0; i < scene.constraints.size(); ++i) {
+    changes.emplace_back([i](Scene& s) { drop_constraint(s, i); });
   }
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     changes.emplace_back(

@@ -61,6 +61,8 @@ void add_angles(Inline& table, const std::string& key, const std::vector<Angle>&
 [[nodiscard]] std::string element(const Element& e, std::size_t index);
 [[nodiscard]] std::string sensor(const Sensor& sensor, std::size_t index);
 
+[[nodiscard]] std::string constraint(const Constraint& c, std::size_t index);
+
 /// The joint of a loose body as a constraint.
 [[nodiscard]] std::string constraint(const Body& b, int index);
 

@@ -38,7 +38,10 @@ void add_spring(const Element& e, Keys& keys) {
   }
   if (!table.empty()) keys.emplace_back("table", "[" + table + "]");
   if (table.empty()) keys.emplace_back("stiffness", text(e.stiffness));
-  if (e.length != 0 && table.empty()) keys.emplace_back("length", text(e.length));
+  if (!e.length_in_time.empty()) {
+    keys.emplace_back("length", number_signal(e.length_in_time));
+  } else if (e.length != 0 && table.empty())
+    keys.emplace_back("length", text(e.length));
   if (e.damping != 0) keys.emplace_back("damping", text(e.damping));
 }
 
@@ -80,6 +83,8 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
             {"kind", std::string("\"") + kinds[static_cast<int>(sensor.kind)] + "\""}};
   if (sensor.element >= 0) {
     keys.emplace_back("element", fmt::format("\"e{}\"", sensor.element));
+  } else if (sensor.constraint >= 0) {
+    keys.emplace_back("constraint", fmt::format("\"k{}\"", sensor.constraint));
   } else {
     keys.emplace_back(sensor.kind == SensorKind::reaction ? "joint" : "body",
                       fmt::format("\"{}\"", body_name(sensor.body)));
@@ -101,18 +106,6 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
   if (!sensor.increments.empty()) keys.emplace_back("increments", sensor.increments);
   std::string result = "[[sensor]]\n";
   for (const auto& [key, value] : keys) result += key + " = " + value + "\n";
-  return result;
-}
-
-std::string constraint(const Body& b, int index) {
-  const char* const kind = b.kind == JointKind::spherical ? "point" : nullptr;
-  const std::string name = kind ? kind : kreisel::joint_type(b.kind).name;
-  std::string result = fmt::format("[[constraint]]\nname = \"c{}\"\nkind = \"{}\"\n", index, name);
-  result += "between = [\"" + (b.parent < 0 ? "guide" : body_name(b.parent)) + "\", \"" +
-            body_name(index) + "\"]\nat = [" + list(b.position) + ", [0, 0, 0]]\n";
-  if (b.kind == JointKind::revolute || b.kind == JointKind::prismatic) {
-    result += "axis = " + list(b.axis) + "\n";
-  }
   return result;
 }
 
