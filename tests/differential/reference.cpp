@@ -221,6 +221,25 @@ Eigen::VectorXd condition_values(const Scene& scene) {
   return tree.condition_values();
 }
 
+bool has_idle_motion(const Scene& scene) {
+  const std::vector<StartPose> poses = start_poses(scene);
+  Scene tree = scene;
+  tree.constraints.clear();
+  tree.sensors.clear();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Body& body = tree.bodies[i];
+    if (!body.loose) continue;
+    const Eigen::Quaterniond q(poses[i].R);
+    body.kind = JointKind::free;
+    body.parent = guide_frame;
+    body.position.setZero();
+    body.orientation.reset();
+    body.attitude = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
+    body.place = poses[i].x;
+  }
+  return Tree(tree).has_idle_motion();
+}
+
 std::vector<double> start_reactions(const Scene& scene) {
   Tree tree(scene);
   const State start = tree.start();

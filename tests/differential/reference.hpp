@@ -55,6 +55,10 @@ struct StartPose {
 /// The values of all joints at the start, with the nearest rates that fulfil the constraints.
 [[nodiscard]] JointValues fulfilled_values(const Scene& scene);
 
+/// True if some motion in the joints moves no inertia at the start. Constraints do not count, as a
+/// tree must be able to move without them.
+[[nodiscard]] bool has_idle_motion(const Scene& scene);
+
 /// The singular values of all conditions at the start, in decreasing order, with a 0 for each
 /// condition that follows from others.
 [[nodiscard]] Eigen::VectorXd condition_values(const Scene& scene);

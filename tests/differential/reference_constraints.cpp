@@ -1,3 +1,5 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/SVD>
 
 #include <cmath>
@@ -232,13 +234,17 @@ std::vector<std::pair<Mat, Vec>> Tree::start_poses() {
   return result;
 }
 
-Eigen::VectorXd Tree::condition_values() {
+void Tree::assemble_start() {
   const State y = start();
   State none(size_);
   const Motion guide = guide_.at(Real(scene_.t_begin), y, none);
   now_ = Real(scene_.t_begin);
   read(y, guide);
   assemble(guide);
+}
+
+Eigen::VectorXd Tree::condition_values() {
+  assemble_start();
   const auto N = static_cast<Eigen::Index>(6 * poses_.size());
   Eigen::MatrixXd rows = matrix_.bottomLeftCorner(rows_, N).cast<double>();
   rows.rowwise().normalize();
@@ -246,6 +252,20 @@ Eigen::VectorXd Tree::condition_values() {
   const Eigen::VectorXd some = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
   values.head(some.size()) = some;
   return values;
+}
+
+bool Tree::has_idle_motion() {
+  assemble_start();
+  const auto N = static_cast<Eigen::Index>(6 * poses_.size());
+  const Eigen::MatrixXd rows = matrix_.bottomLeftCorner(rows_, N).cast<double>();
+  const Eigen::MatrixXd mass = matrix_.topLeftCorner(N, N).cast<double>();
+  const Eigen::MatrixXd free =
+      rows_ > 0 ? Eigen::MatrixXd(Eigen::FullPivLU<Eigen::MatrixXd>(rows).kernel())
+                : Eigen::MatrixXd(Eigen::MatrixXd::Identity(N, N));
+  const Eigen::MatrixXd on_free = free.transpose() * mass * free;
+  const Eigen::VectorXd moved =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(on_free).eigenvalues();
+  return moved[0] <= 1e-12 * moved[moved.size() - 1];
 }
 
 }  // namespace differential::reference

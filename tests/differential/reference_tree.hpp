@@ -47,6 +47,8 @@ class Tree {
   /// The singular values of all conditions at the start, each condition with the length 1;
   /// 0 for each one that follows from others.
   [[nodiscard]] Eigen::VectorXd condition_values();
+  /// True if some motion that all conditions allow moves no inertia at the start.
+  [[nodiscard]] bool has_idle_motion();
   /// Approximate number of operations of one evaluation.
   [[nodiscard]] double work() const;
 
@@ -158,6 +160,7 @@ class Tree {
   void add_gravity(int body, Real t, const Motion& guide);
   void add_torque(int body, const Vec& torque);
   void add_force(int body, const Relative& r, const Vec& force);
+  void assemble_start();
   /// The guide or a body, relative to whose centre of mass points are given.
   [[nodiscard]] Pose pose_of(int body) const;
   [[nodiscard]] Vec centre_of(int body) const;
