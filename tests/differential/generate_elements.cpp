@@ -66,8 +66,8 @@ Element rope(Random& r) {
   for (double& x : result.at[1]) x += sign(r) * rounded(r.between(0.05, 0.1), 3);
   result.stiffness = stiffness(r);
   result.length = plain(r, 0.1, 2);
-  if (r.chance(0.4)) result.damping = r.pick({0.1, 1.0, 10.0});
-  if (r.chance(0.4)) result.length_in_time = winch(r, result.length);
+  if (r.chance(0.6)) result.damping = r.pick({0.1, 1.0, 10.0});
+  if (r.chance(0.6)) result.length_in_time = winch(r, result.length);
   return result;
 }
 
@@ -97,7 +97,7 @@ void add_elements(Random& r, Scene& scene) {
   if (r.chance(0.7)) return;
   do {
     const double u = r.uniform();
-    Element element = u < 0.3 ? spring(r) : u < 0.45 ? rope(r) : u < 0.75 ? mount(r) : gear(r);
+    Element element = u < 0.3 ? spring(r) : u < 0.55 ? rope(r) : u < 0.75 ? mount(r) : gear(r);
     const std::vector<int> all = joinable(scene, element.kind);
     if (all.size() < 2) return;
     const int first = r.below(static_cast<int>(all.size()));
