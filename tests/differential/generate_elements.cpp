@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "generate_parts.hpp"
 #include "reference.hpp"
 
@@ -54,7 +56,7 @@ Signal winch(Random& r, double length) {
   const auto along = [&r] { return Vector(sign(r) * Vector::UnitX()); };
   Signal s = any_signal(r, 0.3, along);
   if (s.jumps.times.empty()) s.series.constant = Vector(length, 0, 0);
-  for (Vector& v : s.jumps.values) v.x() += length;
+  for (Vector& v : s.jumps.values) v.x() = std::max(v.x() + length, 0.05);
   s.jumps.is_broken_line = !s.jumps.times.empty();
   return s;
 }
