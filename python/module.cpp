@@ -345,6 +345,12 @@ PYBIND11_MODULE(kreisel, m) {
       .def_readonly("tolerance", &Report::tolerance, "requested tolerance")
       .def_readonly("error_estimate", &Report::error_estimate,
                     "of the global error: attitudes in rad, others relative to their size")
+      .def_property_readonly(
+          "truncation", [](const Report& report) { return report.error_parts.truncation; },
+          "part of error_estimate: errors of the steps")
+      .def_property_readonly(
+          "rounding", [](const Report& report) { return report.error_parts.rounding; },
+          "part of error_estimate: rounding and its growth")
       .def_readonly("tolerance_kept", &Report::tolerance_kept, "error_estimate <= tolerance")
       .def_readonly("all_evaluations", &Report::all_evaluations,
                     "including those for the estimate and for attempts that missed the tolerance")

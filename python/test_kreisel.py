@@ -201,6 +201,9 @@ class Reports(unittest.TestCase):
         run = kreisel.Scene.from_text(ROD).solve()
         self.assertEqual(run.errors.shape, run.times.shape)
         self.assertEqual(run.errors.max(), run.report.error_estimate)
+        self.assertGreater(run.report.truncation + run.report.rounding, 0)
+        self.assertAlmostEqual(run.report.truncation + run.report.rounding,
+                               run.report.error_estimate, delta=1e-12 * run.report.error_estimate)
         self.assertTrue((run.errors >= 0).all())
 
     def test_of_an_approximation(self):

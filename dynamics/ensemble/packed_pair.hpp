@@ -174,7 +174,7 @@ class PackedPair {
 
   /// Compares the runs at all times, as far as the try goes; false if a stop was requested.
   [[nodiscard]] bool compare() {
-    for (; done_ < times_.size() && !too_coarse_; ++done_) {
+    for (; done_ < times_.size(); ++done_) {
       const double t = times_[done_];
       if (!go_on(*coarse_, t, end_, with_.stop)) return false;
       const auto states = coarse_->at(t);

@@ -19,7 +19,7 @@ using Equations = IncrementEquations;
 constexpr Accuracy by_explicit_steps{
     .relative = 1e-13, .absolute_scale = 1e-9, .max_evaluations = 2000};
 constexpr Accuracy by_implicit_steps{
-    .relative = 1e-13, .absolute_scale = 1e-3, .max_evaluations = 1e6};
+    .relative = 1e-13, .absolute_scale = 1e-3, .max_evaluations = 1e5};
 
 /// The sizes relative to which steps err. Increments begin at 0; their sizes are those that the
 /// first rates lead to in a period, or 1e-3 rad/s and 1 m/s^2. With smaller ones steps would follow

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-/// The numbers of the error estimate that measurements gave (docs/site/errors.md).
+/// The numbers of the error estimate (docs/site/errors.md).
 
 namespace kreisel::detail::rules {
 

@@ -6,7 +6,7 @@
 
 namespace kreisel::detail {
 
-/// The runs of a method: their order, their finest accuracy, and their rounding. See methods().
+/// The runs of a method: their order, their finest accuracy, and their rounding.
 struct MethodTraits {
   Method method;
   int order;                     ///< of equal steps; 0 for steps that adapt

@@ -46,7 +46,7 @@ struct RunReport {
   std::string message;
   double tolerance = 0;
   double error_estimate = 0;
-  ErrorParts error_parts = {};  ///< error_estimate is their sum
+  ErrorParts error_parts = {};  ///< their sum is error_estimate, without the error of a model
   bool tolerance_kept =
       false;  ///< error_estimate <= tolerance; else nothing better could be reached
   IntegrationStatistics effort;  ///< of the trajectory returned

@@ -65,13 +65,14 @@ double greatest_mobility(const ConstraintSpace& c, std::size_t k) {
   return greatest;
 }
 
-/// The scale of each condition, the same for all of one constraint and kind. A condition that follows
-/// from the others except for small parts must not weigh as much as they do.
-VectorXd scales(const ConstraintSpace& c) {
-  return VectorXd::NullaryExpr(c.mass.rows(), [&c](Index k) {
+/// Sets the scale of each condition, the same for all of one constraint and kind. A condition that
+/// follows from the others except for small parts must not weigh as much as they do.
+void set_scales(ConstraintSpace& c) {
+  c.scale.resize(c.mass.rows());
+  for (Index k = 0; k < c.scale.size(); ++k) {
     const double mobility = greatest_mobility(c, static_cast<std::size_t>(k));
-    return mobility > 0 ? 1 / std::sqrt(mobility) : 0;
-  });
+    c.scale[k] = mobility > 0 ? 1 / std::sqrt(mobility) : 0;
+  }
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ void set_directions(const BodyTree& tree, BodyWorkspace& w) {
 }
 
 void solve_multipliers(const VectorXd& b, VectorXd& x, ConstraintSpace& c) {
-  c.scale = scales(c);
+  set_scales(c);
   c.scaled = c.scale.asDiagonal() * c.mass * c.scale.asDiagonal();
   c.factors.compute(c.scaled);
   c.pivot = c.factors.info() == Eigen::Success

@@ -9,6 +9,7 @@
 #include <dynamics/gimbal/cardan_gyro.hpp>
 #include <dynamics/rigid/axisymmetric_body.hpp>
 #include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/solve/output_times.hpp>
 #include <dynamics/solve/solve.hpp>
 
 #include <support/worst.hpp>
@@ -124,6 +125,27 @@ BOOST_AUTO_TEST_CASE(members_agree_with_single_runs) {
       // steps.
       BOOST_TEST(report.error_estimate > 0);
     }
+  }
+}
+
+// The steps, their sizes and the comparisons between outputs are the same for one output and for a
+// hundred. The pointing axis passes its greatest tilt between them.
+BOOST_AUTO_TEST_CASE(reports_do_not_depend_on_outputs) {
+  SolveOptions one = options;
+  one.output_times = {0.2};
+  SolveOptions many = options;
+  many.output_times = linspace(0, 0.2, 101);
+  const auto few = ensemble({.count = 9}, scattered_gyro, one);
+  const auto all = ensemble({.count = 9}, scattered_gyro, many);
+  for (std::size_t i = 0; i < few.members.size(); ++i) {
+    const RunReport& a = few.members[i].report;
+    const RunReport& b = all.members[i].report;
+    BOOST_TEST(a.sizes == b.sizes, boost::test_tools::per_element());
+    BOOST_TEST(a.error_estimate <= 1.5 * b.error_estimate);
+    BOOST_TEST(b.error_estimate <= 1.5 * a.error_estimate);
+    BOOST_TEST(few.members[i].errors.size() == 1U);
+    BOOST_TEST(all.members[i].errors.size() == 101U);
+    BOOST_TEST(std::abs(a.error_parts.sum() - a.error_estimate) <= 1e-12 * a.error_estimate);
   }
 }
 

@@ -14,6 +14,7 @@
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/guide/normal_gravity.hpp>
 #include <motor/attitude.hpp>
+#include <motor/error.hpp>
 
 #include <support/scene_text.hpp>
 
@@ -395,6 +396,22 @@ BOOST_AUTO_TEST_CASE(samples_are_rows) {
   const SceneFile alone = scene(body("a", hinge) + sensor(joint + "0.3") + "[solve]\nt_end = 1\n");
   const std::vector<double> own{0, 0.3, 0.6, 3 * 0.3, 1};
   BOOST_TEST(alone.output_times == own, boost::test_tools::per_element());
+}
+
+// 3e5 oscillations in a period.
+BOOST_AUTO_TEST_CASE(increments_of_a_hard_spring_end) {
+  const SceneFile file =
+      scene(body("a", hinge + "spring = { stiffness = 1e12 }\ninitial = { angle = 0.1 }") +
+            sensor("kind = \"gyro\"\nbody = \"a\"\nperiod = 1\nincrements = true") + run);
+  const auto model = make_model(file);
+  SensorReadings readings(file);
+  (void)readings.row(*model, 0, start_of(file));
+  const auto why = [](const ComputationFailed& error) {
+    const std::string text = error.what();
+    return text.find("sensor 's'") != std::string::npos &&
+           text.find("take a shorter period") != std::string::npos;
+  };
+  BOOST_CHECK_EXCEPTION((void)readings.row(*model, 1, start_of(file)), ComputationFailed, why);
 }
 
 BOOST_AUTO_TEST_CASE(samples_are_held_between_rows) {
