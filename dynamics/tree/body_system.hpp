@@ -13,6 +13,7 @@
 #include <dynamics/processor.hpp>
 #include <dynamics/rigid/apparent_field.hpp>
 #include <dynamics/tree/constraints.hpp>
+#include <dynamics/tree/disturbance.hpp>
 #include <dynamics/tree/elements.hpp>
 #include <dynamics/tree/evaluation.hpp>
 #include <dynamics/tree/passes.hpp>
@@ -95,7 +96,7 @@ class BodySystem {
                      BodyWorkspace& w) const {
     detail::require(tree_, y, extra.size(), w);
     result.resize(tree_.rates());
-    detail::accelerate(tree_, at(t), y, extra, result.data(), w);
+    detail::accelerate(tree_, at(t, extra.size() ? &extra : nullptr), y, result.data(), w);
   }
 
   /// The vector field  y' = rates(t, y).
@@ -122,14 +123,26 @@ class BodySystem {
   template <class Dual>
   [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
+    return rates(t, y, Disturbance<Dual>());
+  }
+
+  /// As above, under influences from outside. A guide at rest by its type cannot be moved.
+  template <class Dual>
+  [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
+      const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y,
+      const Disturbance<Dual>& outside) const {
+    const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& extra = outside.joint_force;
     using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
     detail::require_dual_loads(tree_);
     BodyWorkspace w = workspace();
     Vector number(y.size());
     for (Eigen::Index i = 0; i < y.size(); ++i) number[i] = y[i].value();
+    Vector force(extra.size());
+    for (Eigen::Index i = 0; i < extra.size(); ++i) force[i] = extra[i].value();
     Vector rate;
     const double now = t.value();
-    rates(now, number, rate, w);
+    detail::require(tree_, number, extra.size(), w);
+    detail::rates(tree_, at(now, extra.size() ? &force : nullptr), number, rate, w);
     Duals result = rate.template cast<Dual>();
     const Dual* v = y.data() + tree_.coordinates();
     const Dual* dv = result.data() + tree_.coordinates();
@@ -147,11 +160,12 @@ class BodySystem {
     }
 
     detail::MotionSpace<Dual> d(tree_);
-    const FrameMotion<Guide, Inertial, Dual> guide = detail::guide_at<Dual>(guide_, t);
+    const FrameMotion<Guide, Inertial, Dual> guide = guide_at(t, outside);
     detail::set_poses_and_motions(tree_, detail::root(guide, gravity_, detail::is_resting<M>),
                                   y.data(), v, dv, d);
     detail::take_off_loads(tree_, t, guide, v, d);
     detail::take_off_elements(tree_, t, v, d);
+    detail::take_off_disturbance(tree_, outside, d);
     detail::add_rotor_forces_at(tree_, v, dv, d);
     detail::sum_inwards(tree_, d);
     Duals taken(tree_.rates());
@@ -160,6 +174,7 @@ class BodySystem {
     detail::set_joint_forces(tree_, y.data(), v, d);
     detail::add_timed_forces(tree_, t, d);
     detail::add_couplings(tree_, y.data(), v, d.joint_force);
+    if (extra.size()) d.joint_force += extra;
 
     Vector left(tree_.rates());
     for (Eigen::Index k = 0; k < Dual().derivatives().size(); ++k) {
@@ -192,6 +207,22 @@ class BodySystem {
   requires(!std::same_as<Dual, double>) [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       double t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y) const {
     return rates(Dual(t), y);
+  }
+
+  /// The motion of the guide in dual numbers, under influences from outside.
+  template <class Dual>
+  [[nodiscard]] FrameMotion<Guide, Inertial, Dual> guide_at(
+      const Dual& t, const Disturbance<Dual>& outside) const {
+    FrameMotion<Guide, Inertial, Dual> now = detail::guide_at<Dual>(guide_, t);
+    if (!outside.moves_guide) return now;
+    Matrix3<Dual>& R = now.X.value.rotation;
+    const Matrix3<Dual> turned = R * skew(outside.guide_turn);
+    R += turned;
+    auto& [turning, slide] = now.dV.value;
+    turning += outside.guide_angular_acceleration;
+    slide += outside.guide_acceleration - outside.guide_rate.cross(now.V.value.moment);
+    now.V.value.resultant += outside.guide_rate;
+    return now;
   }
 
   /// True if series() is available. The guide is then analytic, as are all loads and prescribed
@@ -262,7 +293,7 @@ class BodySystem {
   [[nodiscard]] std::vector<ConstraintReaction> constraint_reactions(double t, const Vector& y,
                                                                      BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
-    detail::accelerate(tree_, at(t), y, {}, w.acceleration.data(), w);
+    detail::accelerate(tree_, at(t), y, w.acceleration.data(), w);
     return detail::constraint_reactions(tree_, w);
   }
 
@@ -361,11 +392,12 @@ class BodySystem {
     return detail::conserved(tree_, at(t), y, w);
   }
 
- private:
-  [[nodiscard]] detail::Surroundings at(double t) const {
-    return {t, guide_(t), detail::is_resting<M>, gravity_};
+  /// Time, guide motion and gravity at t, with a further joint force for each rate; null: none.
+  [[nodiscard]] detail::Surroundings at(double t, const Vector* joint_force = nullptr) const {
+    return {t, guide_(t), detail::is_resting<M>, gravity_, joint_force};
   }
 
+ private:
   [[nodiscard]] auto felt_at_origin() const {
     const auto* on_guide = std::get_if<UniformGravity<Guide>>(&gravity_);
     const auto* at_rest = std::get_if<UniformGravity<Inertial>>(&gravity_);

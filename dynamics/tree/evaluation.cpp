@@ -133,7 +133,7 @@ inline void prescribe(const BodyTree& tree, const Eigen::VectorXd& y, const doub
 }
 
 void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
-                const Eigen::VectorXd& extra, double* result, BodyWorkspace& w) {
+                double* result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   const double* const driven = ask_drives(tree, now.t, w);
   set_poses_and_motions(tree, root(now), y.data(), v, driven, w);
@@ -143,7 +143,7 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
     add_timed_forces(tree, now.t, w);
     apply_elements(tree, now.t, y.data(), v, w);
   }
-  if (extra.size()) w.joint_force += extra;
+  if (now.joint_force != nullptr) w.joint_force += *now.joint_force;
   ask_spin_up(tree, now.t, w);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
   eliminate_and_solve(tree, w.joint_force.data(), result, w);
@@ -155,7 +155,7 @@ void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd&
   result.resize(y.size());
   const auto evaluate = [&](const Eigen::VectorXd& state) {
     set_coordinate_rates(tree, state.data(), rates_of(tree, state), result.data());
-    accelerate(tree, now, state, {}, result.data() + tree.coordinates(), w);
+    accelerate(tree, now, state, result.data() + tree.coordinates(), w);
   };
   evaluate(y);
   if (tree.constraints().empty()) return;
@@ -174,6 +174,16 @@ void respond(const BodyTree& tree, const Eigen::VectorXd& joint_force, BodyWorks
   respond(tree, joint_force.data(), w.acceleration.data(), w);
 }
 
+/// Sets the joint forces of springs, dampers, functions of time, couplings and from outside.
+inline void set_all_joint_forces(const BodyTree& tree, const Surroundings& now,
+                                 const Eigen::VectorXd& y, BodyWorkspace& w) {
+  const double* v = rates_of(tree, y);
+  set_joint_forces(tree, y.data(), v, w);
+  add_timed_forces(tree, now.t, w);
+  add_couplings(tree, y.data(), v, w.joint_force);
+  if (now.joint_force != nullptr) w.joint_force += *now.joint_force;
+}
+
 /// As joint_forces(). held : the constraints' forces, from the multipliers in w, are among the
 /// forces on the bodies
 void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
@@ -189,9 +199,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   sum_inwards(tree, w);
   project(tree, w, result.data());
   project_rotors(tree, given, w, result.data());
-  set_joint_forces(tree, y.data(), v, w);
-  add_timed_forces(tree, now.t, w);
-  add_couplings(tree, y.data(), v, w.joint_force);
+  set_all_joint_forces(tree, now, y, w);
   result -= w.joint_force;
 }
 
@@ -208,7 +216,7 @@ void mass_matrix(const BodyTree& tree, const Eigen::VectorXd& y, Eigen::MatrixXd
 
 void reactions(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                JointReactions& result, BodyWorkspace& w) {
-  accelerate(tree, now, y, {}, w.acceleration.data(), w);
+  accelerate(tree, now, y, w.acceleration.data(), w);
   joint_forces(tree, now, y, w.acceleration, !tree.constraints().empty(), result.drive, w);
   for (const Link& link : tree.links()) {
     if (!link.moved_by_forces()) continue;
@@ -277,9 +285,7 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   const double* const undriven = tree.constraints().empty() ? nullptr : still;
   answer(tree, weight, still, undriven, nullptr, y, w);
   note(&ReactionParts::gravity);
-  set_joint_forces(tree, y.data(), v, w);
-  add_timed_forces(tree, now.t, w);
-  add_couplings(tree, y.data(), v, w.joint_force);
+  set_all_joint_forces(tree, now, y, w);
   answer(tree, {}, still, undriven, &now, y, w);
   note(&ReactionParts::forces);
 }
@@ -304,7 +310,7 @@ LoadContext<> situation(const BodyTree& tree, const Surroundings& now, const Eig
 ForceParts<Body> terms(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                        int body, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
-  accelerate(tree, now, y, {}, w.acceleration.data(), w);
+  accelerate(tree, now, y, w.acceleration.data(), w);
   set_motions(tree, root(now), v, w.acceleration.data(), w);
   set_places(tree, v, w);
   set_rotor_places(tree, y.data(), v, w);

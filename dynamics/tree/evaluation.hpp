@@ -19,12 +19,14 @@
 
 namespace kreisel::detail {
 
-/// Time, guide motion and gravity of a tree at one moment.
+/// Time, guide motion, gravity and forces from outside of a tree at one moment.
 struct Surroundings {
   double t;
   GuideNow<> guide;
   bool guide_rests;
   const Gravity& gravity;
+  /// A further joint force for each rate; null: none.
+  const Eigen::VectorXd* joint_force = nullptr;
 };
 
 /// Refuses a gravity that is not finite.
@@ -60,7 +62,7 @@ KREISEL_API void require_dual_loads(const BodyTree& tree);
 
 /// The accelerations of the joints into `result`; leaves poses, motions and factors in w.
 KREISEL_API void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
-                            const Eigen::VectorXd& extra, double* result, BodyWorkspace& w);
+                            double* result, BodyWorkspace& w);
 
 KREISEL_API void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                        Eigen::VectorXd& result, BodyWorkspace& w);

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include <dynamics/model/dual_numbers.hpp>
+#include <dynamics/tree/disturbance.hpp>
 #include <dynamics/tree/rotors.hpp>
 
 /// Positions of the bodies of a tree, and the external loads on them.
@@ -55,6 +56,15 @@ template <class S>
           {{transposed_product(R, V.resultant), transposed_product(R, V.moment)}},
           guide,
           {lifted<S>(tree.body(body).inertia.value)}};
+}
+
+/// Subtracts forces from outside from the forces in w, which the joints transmit.
+template <class S>
+void take_off_disturbance(const BodyTree& tree, const Disturbance<S>& outside, MotionSpace<S>& w) {
+  for (const auto& [body, P] : outside.on_bodies) {
+    const std::size_t link = tree.link(body);
+    w.force[link] -= Motor<S>{w.pose[link].R * P.resultant, w.pose[link].R * P.moment};
+  }
 }
 
 /// Subtracts the loads from the forces in w, which the joints transmit.
