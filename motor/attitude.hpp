@@ -42,13 +42,13 @@ struct YawPitchRoll {
   [[nodiscard]] static YawPitchRoll of(const Matrix3<S>& R) {
     using std::atan2;
     using std::cos;
-    using std::hypot;
     using std::sin;
+    using std::sqrt;
     const S yaw = atan2(R(1, 0), R(0, 0));
     // Roll of the rotation that remains after this yaw is removed. It is consistent with the yaw
     // also at pitch = pi/2, where only their sum or difference is determined.
     const S cy = cos(yaw), sy = sin(yaw);
-    return {yaw, atan2(-R(2, 0), hypot(R(0, 0), R(1, 0))),
+    return {yaw, atan2(-R(2, 0), S(sqrt(R(0, 0) * R(0, 0) + R(1, 0) * R(1, 0)))),
             atan2(sy * R(0, 2) - cy * R(1, 2), cy * R(1, 1) - sy * R(0, 1))};
   }
 };

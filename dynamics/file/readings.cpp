@@ -31,7 +31,7 @@ class TrueNumbers {
   void operator()(const Gyro& sensor) const { append(sensor(system_)); }
   void operator()(const Accelerometer& sensor) const { append(sensor(system_)); }
   void operator()(const PointSensor& sensor) const {
-    const PointReading point = sensor(system_);
+    const PointReading<> point = sensor(system_);
     append(point.position);
     append(point.velocity);
     append(point.acceleration);
@@ -53,6 +53,9 @@ class TrueNumbers {
   void operator()(const AzimuthSensor& sensor) const { numbers_.push_back(sensor(system_)); }
   void operator()(const ReactionSensor& sensor) const { append(sensor(system_)); }
   void operator()(const ElementSensor& sensor) const { append(sensor(system_)); }
+  void operator()(const scene_sensor::Outputs& outputs) const {
+    append(system_.outputs[outputs.controller]);
+  }
 
  private:
   void append(const Motor<>& force) const {

@@ -31,7 +31,7 @@ inline void add_constraints(const BodyTree& tree, BodyWorkspace& w,
 SystemKinematics kinematics(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                             const BodyLoad* gravitation, BodyWorkspace& w) {
   SystemKinematics result{
-      now.t, now.guide, now.guide, {field(now.gravity, now.guide), gravitation}};
+      {now.t, now.guide, now.guide, {field(now.gravity, now.guide), gravitation}}};
   reactions(tree, now, y, result.reactions, w);
   const double* const v = y.data() + tree.coordinates();
   const double* const dv = w.acceleration.data();

@@ -17,21 +17,27 @@ class BodySystem;
 ///
 /// Frame  : relative to the guide, on the GUIDE's axes; x, v and a are those of the body's origin
 /// Units  : metre, rad/s, m/s, rad/s^2, m/s^2
-struct BodyKinematics {
-  Matrix3<double> R = Matrix3<double>::Identity();  ///< body to guide axes
-  Vector3<double> x = Vector3<double>::Zero();
-  Vector3<double> w = Vector3<double>::Zero();
-  Vector3<double> v = Vector3<double>::Zero();
-  Vector3<double> dw = Vector3<double>::Zero();
-  Vector3<double> a = Vector3<double>::Zero();
+template <class S>
+struct BodyKinematicsOn {
+  Matrix3<S> R = Matrix3<S>::Identity();  ///< body to guide axes
+  Vector3<S> x = Vector3<S>::Zero();
+  Vector3<S> w = Vector3<S>::Zero();
+  Vector3<S> v = Vector3<S>::Zero();
+  Vector3<S> dw = Vector3<S>::Zero();
+  Vector3<S> a = Vector3<S>::Zero();
 };
+
+using BodyKinematics = BodyKinematicsOn<double>;
 
 /// The gravitation on a system: a uniform field, and a field that depends on the position, which is
 /// a load on the bodies.
-struct GravityField {
-  Vector3<double> uniform = Vector3<double>::Zero();  ///< m/s^2, guide axes
-  const BodyLoad* load = nullptr;                     ///< per kg, for a point mass; null: none
+template <class S>
+struct GravityFieldOn {
+  Vector3<S> uniform = Vector3<S>::Zero();  ///< m/s^2, guide axes
+  const BodyLoad* load = nullptr;           ///< per kg, for a point mass; null: none
 };
+
+using GravityField = GravityFieldOn<double>;
 
 /// The force of an element or a constraint at one moment.
 ///
@@ -44,25 +50,31 @@ struct ElementLoad {
   Motor<> force = {};
 };
 
-/// The motion of all bodies of a system and the forces of its joints and elements at one moment.
-/// Sensors read it, and their readings are integrated from it.
+/// The motion of all bodies of a system at one moment, in double or dual numbers.
 ///
 /// `guide` and `gravity` belong together: the guide's motion may be relative to a frame in free
 /// fall, and gravity is then the difference from that fall. `inertial_guide` is the motion of the
 /// same guide relative to the inertial frame.
-struct SystemKinematics {
-  double t = 0;
-  FrameMotion<Guide, Inertial> guide = {};
-  FrameMotion<Guide, Inertial> inertial_guide = {};
-  GravityField gravity = {};
-  std::vector<BodyKinematics> bodies = {};
-  JointReactions reactions = {};
-  std::vector<ElementLoad> elements = {};  ///< and, after them, of the constraints
-  Eigen::VectorXd rates = {};  ///< y' of the state: of all coordinates, then of the rates
+template <class S>
+struct MotionOfBodies {
+  S t = S(0);
+  FrameMotion<Guide, Inertial, S> guide = {};
+  FrameMotion<Guide, Inertial, S> inertial_guide = {};
+  GravityFieldOn<S> gravity = {};
+  std::vector<BodyKinematicsOn<S>> bodies = {};
 
-  [[nodiscard]] const BodyKinematics& body(int i) const {
+  [[nodiscard]] const BodyKinematicsOn<S>& body(int i) const {
     return bodies[static_cast<std::size_t>(i)];
   }
+};
+
+/// The motion of all bodies of a system and the forces of its joints and elements at one moment.
+/// Sensors read it, and their readings are integrated from it.
+struct SystemKinematics : MotionOfBodies<double> {
+  JointReactions reactions = {};
+  std::vector<ElementLoad> elements = {};  ///< and, after them, of the constraints
+  Eigen::VectorXd rates = {};  ///< y' of the state: of coordinates, rates, memory of controllers
+  std::vector<Eigen::VectorXd> outputs = {};  ///< joint forces of each controller, N m or N
 };
 
 namespace detail {
@@ -91,8 +103,7 @@ template <class M>
                                           const Eigen::VectorXd& y, BodyWorkspace& w,
                                           const BodyLoad* gravitation = nullptr) {
   detail::require(system.tree(), y, 0, w);
-  const detail::Surroundings now{t, system.guide()(t), detail::is_resting<M>, system.gravity()};
-  return detail::kinematics(system.tree(), now, y, gravitation, w);
+  return detail::kinematics(system.tree(), system.at(t), y, gravitation, w);
 }
 
 }  // namespace kreisel

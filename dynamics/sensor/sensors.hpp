@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <dynamics/sensor/kinematics.hpp>
+#include <dynamics/sensor/relative_point.hpp>
 #include <motor/api.hpp>
 
 /// Instruments on the bodies of a system. A sensor is a function of its system's kinematics, which
@@ -15,29 +16,17 @@
 
 namespace kreisel {
 
-/// The frame to which a reading is relative, or on whose axes it is given: the guide, the inertial
-/// frame or a body.
-struct SensorFrame {
-  enum class Kind { guide, inertial, body };
-
-  Kind kind = Kind::guide;
-  int body = 0;  ///< index, for kind body
-
-  [[nodiscard]] static SensorFrame guide() { return {Kind::guide}; }
-  [[nodiscard]] static SensorFrame inertial() { return {Kind::inertial}; }
-  [[nodiscard]] static SensorFrame of_body(int body) { return {Kind::body, body}; }
-};
-
 /// A gyro: the angular velocity relative to the inertial frame,  u' + u.
 ///
 /// Frame  : the sensor's axes
 /// Units  : rad/s
 /// Error  : <= 4u (|u'| + |u|)                       (tests/dynamics/sensor/sensors)
-struct KREISEL_API Gyro {
+struct Gyro {
   int body = 0;
   Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
 
-  [[nodiscard]] Vector3<double> operator()(const SystemKinematics& system) const;
+  template <class S>
+  [[nodiscard]] Vector3<S> operator()(const MotionOfBodies<S>& system) const;
 };
 
 /// An accelerometer: the specific force at a point, which is its acceleration relative to the
@@ -52,21 +41,13 @@ struct KREISEL_API Gyro {
 /// Frame  : the sensor's axes
 /// Units  : metre (at), m/s^2
 /// Error  : 8u of the sum of the terms' sizes, and the error of the system's accelerations
-struct KREISEL_API Accelerometer {
+struct Accelerometer {
   int body = 0;
   Vector3<double> at = Vector3<double>::Zero();
   Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
 
-  [[nodiscard]] Vector3<double> operator()(const SystemKinematics& system) const;
-};
-
-/// Position, velocity and acceleration of a point.
-///
-/// Units  : metre, m/s, m/s^2
-struct PointReading {
-  Vector3<double> position;
-  Vector3<double> velocity;
-  Vector3<double> acceleration;
+  template <class S>
+  [[nodiscard]] Vector3<S> operator()(const MotionOfBodies<S>& system) const;
 };
 
 /// The motion of a body's point relative to the frame `against`: its position from the frame's
@@ -77,24 +58,26 @@ struct PointReading {
 ///
 /// Frame  : on the axes of `axes`, from the origin of `against`
 /// Error  : 8u of the sum of the terms' sizes, and the error of the system's accelerations
-struct KREISEL_API PointSensor {
+struct PointSensor {
   int body = 0;
   Vector3<double> at = Vector3<double>::Zero();
   SensorFrame against = SensorFrame::guide();
   SensorFrame axes = SensorFrame::guide();
 
-  [[nodiscard]] PointReading operator()(const SystemKinematics& system) const;
+  template <class S>
+  [[nodiscard]] PointReading<S> operator()(const MotionOfBodies<S>& system) const;
 };
 
 /// The attitude of a body relative to a frame: the rotation matrix from the body's axes to the
 /// frame's.
 ///
 /// Error  : <= 8u in each entry
-struct KREISEL_API AttitudeSensor {
+struct AttitudeSensor {
   int body = 0;
   SensorFrame against = SensorFrame::guide();
 
-  [[nodiscard]] Matrix3<double> operator()(const SystemKinematics& system) const;
+  template <class S>
+  [[nodiscard]] Matrix3<S> operator()(const MotionOfBodies<S>& system) const;
 };
 
 /// The direction of the plane in which a point of a pendulum swings.
@@ -152,5 +135,38 @@ struct KREISEL_API ElementSensor {
 
   [[nodiscard]] Motor<> operator()(const SystemKinematics& system) const;
 };
+
+template <class S>
+Vector3<S> Gyro::operator()(const MotionOfBodies<S>& system) const {
+  const BodyKinematicsOn<S>& b = system.body(body);
+  const Vector3<S> w = b.w + system.guide.V.value.resultant;
+  return detail::on_sensor_axes(axes, b.R, w);
+}
+
+template <class S>
+Vector3<S> Accelerometer::operator()(const MotionOfBodies<S>& system) const {
+  const BodyKinematicsOn<S>& b = system.body(body);
+  const Vector3<S> a =
+      detail::seen_from_inertial(detail::seen_from_guide(b, at), system.guide).acceleration;
+  return detail::on_sensor_axes(axes, b.R, Vector3<S>(a - detail::gravitation(system, body, at)));
+}
+
+template <class S>
+PointReading<S> PointSensor::operator()(const MotionOfBodies<S>& system) const {
+  PointReading<S> p = detail::seen_from_guide(system.body(body), at);
+  if (against.kind == SensorFrame::Kind::inertial) {
+    p = detail::seen_from_inertial(p, system.inertial_guide);
+  }
+  if (against.kind == SensorFrame::Kind::body) {
+    p = detail::seen_from_body(p, system.body(against.body));
+  }
+  const Matrix3<S> turn = detail::from_guide(axes, system);
+  return {turn * p.position, turn * p.velocity, turn * p.acceleration};
+}
+
+template <class S>
+Matrix3<S> AttitudeSensor::operator()(const MotionOfBodies<S>& system) const {
+  return detail::from_guide(against, system) * system.body(body).R;
+}
 
 }  // namespace kreisel

@@ -412,7 +412,7 @@ BOOST_AUTO_TEST_CASE(read_what_the_poses_do) {
         const auto [r, dr, ddr] = derivatives<Vec>(seen);
         const SensorFrame& on = frames[static_cast<std::size_t>(s.uniform(0, 6))];
         const Mat turned = poses.frame(on, 0).R.transpose() * poses.frame(against, 0).R;
-        const PointReading found = PointSensor{i, at, against, on}(now);
+        const PointReading<> found = PointSensor{i, at, against, on}(now);
         worst = test::worst_of(worst, relative(found.position, turned * r, 10));
         worst = test::worst_of(worst, relative(found.velocity, turned * dr, 100));
         worst = test::worst_of(worst, relative(found.acceleration, turned * ddr, 3000));
