@@ -86,6 +86,18 @@ concept HasPerturbation = requires(const S& scene) {
   scene.perturbed_by_ulps();
 };
 
+/// Parts of the state jump, as the memory of sampled controllers:
+///
+///   has_samples()            : true if any part does
+///   sample_times(begin, end) : the times in (begin, end] at which they jump, in order
+///   sample(t, y)             : makes the jump, if t is such a time
+template <class S>
+concept HasSamples = requires(const S& scene, double t, typename S::Vector& y) {
+  { scene.has_samples() } -> std::convertible_to<bool>;
+  { scene.sample_times(t, t) } -> std::convertible_to<std::vector<double>>;
+  scene.sample(t, y);
+};
+
 /// terms(): the terms of the equations of motion, kept and dropped.
 template <class S>
 concept HasTerms = requires(const S& scene) {
@@ -108,7 +120,7 @@ struct SceneHook {
 
 /// The optional hooks of a scene, each marked if the library recognises it.
 template <Scene S>
-[[nodiscard]] constexpr std::array<SceneHook, 8> check_scene() {
+[[nodiscard]] constexpr std::array<SceneHook, 9> check_scene() {
   return {{
       {"rates(t, y) of dual numbers", HasDualRates<S>, "radau13, linearize()",
        "radau13 takes a Jacobian by differences, linearize() is refused"},
@@ -119,6 +131,8 @@ template <Scene S>
       {"may_be_stiff()", HasStiffness<S>, "Method::automatic", "the field is tested for stiffness"},
       {"perturbed_by_ulps()", HasPerturbation<S>, "RunReport::error_estimate",
        "rounding of parameters is not part of the error"},
+      {"sample_times(begin, end), sample(t, y)", HasSamples<S>, "solve()",
+       "the state is continuous"},
       {"terms()", HasTerms<S>, "terms(), simulate", "terms(scene) is refused"},
       {"tree()", HasTree<S>, "linearize(), equilibria",
        "names of directions come from the scene's own `names`"},
@@ -126,7 +140,7 @@ template <Scene S>
 }
 
 /// One line a hook: "yes" or "no ", its name, what uses it or what happens without.
-inline std::ostream& operator<<(std::ostream& out, const std::array<SceneHook, 8>& hooks) {
+inline std::ostream& operator<<(std::ostream& out, const std::array<SceneHook, 9>& hooks) {
   for (const SceneHook& hook : hooks) {
     out << (hook.recognised ? "yes  " : "no   ") << hook.name << ": "
         << (hook.recognised ? hook.used_by : hook.without) << '\n';

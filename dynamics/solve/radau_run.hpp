@@ -20,7 +20,7 @@ class RadauRun final : public SteppedRun {
  public:
   RadauRun(const SteppedScene& scene, bool other, const SolveOptions& options,
            const Eigen::VectorXd& start, const Accuracy& accuracy)
-      : SteppedRun(scene.blocks(), options),
+      : SteppedRun(scene, options),
         field_(scene.stiff_field(other)),
         steps_(radau_coefficients<7>(), options.begin, start, accuracy, scene.blocks()),
         from_(options.begin) {
@@ -28,6 +28,7 @@ class RadauRun final : public SteppedRun {
   }
 
   void step_towards(double end, double output) override {
+    take_samples(steps_);
     from_ = steps_.t();
     steps_.step_towards(*field_, end, output);
   }
@@ -40,6 +41,7 @@ class RadauRun final : public SteppedRun {
 
   /// As RadauIntegrator::try_first_step.
   [[nodiscard]] bool try_first_step(double h, double end, double output) override {
+    take_samples(steps_);
     return steps_.try_first_step(*field_, h, end, output);
   }
   [[nodiscard]] double allowed() const { return steps_.allowed(); }

@@ -57,13 +57,15 @@ class Run {
   virtual void pass(Checkpoint& checkpoint) = 0;
 };
 
+class SteppedScene;
+
 /// An integration with steps of its own length. States within the last step can be read.
+///
+/// Samples at the end of a step are taken at the begin of the next one. A run begins with a state
+/// after the samples at its begin.
 class SteppedRun : public Run {
  public:
-  SteppedRun(std::vector<int> blocks, const SolveOptions& options)
-      : blocks_(std::move(blocks)),
-        sizes_(blocks_.size(), options.absolute_scale),
-        stop_(options.stop) {}
+  inline SteppedRun(const SteppedScene& scene, const SolveOptions& options);
 
   void on_the_way(double t, double end, double* y) override {
     while (!covers(t)) {
@@ -72,6 +74,10 @@ class SteppedRun : public Run {
       step_towards(end, t);
     }
     read(t, y);
+    if (has_samples_ && t == this->t() && t != sampled_at()) {
+      const Eigen::VectorXd after = sampled_state();
+      std::copy_n(after.data(), after.size(), y);
+    }
   }
 
   /// Takes one step towards `end`; `output` is the next time at which the state is read.
@@ -104,9 +110,24 @@ class SteppedRun : public Run {
   /// Takes over the sizes of blocks before this run began; errors are relative to them.
   virtual void know_sizes(std::span<const double> sizes) = 0;
 
+  /// The time of the last samples, or of the begin.
+  [[nodiscard]] virtual double sampled_at() const { return sampled_at_; }
+
+  /// The state with the samples at its time taken.
+  [[nodiscard]] inline Eigen::VectorXd sampled_state() const;
+
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
-  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_); }
+  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_, sampled_at_); }
+
+ protected:
+  /// Takes the samples at the present time, once, before a step.
+  template <class Steps>
+  void take_samples(Steps& steps) {
+    if (!has_samples_ || t() == sampled_at_) return;
+    steps.jump_to(vector_of<std::decay_t<decltype(steps.y())>>(sampled_state()));
+    sampled_at_ = t();
+  }
 
  private:
   void note_sizes() {
@@ -120,6 +141,9 @@ class SteppedRun : public Run {
     }
   }
 
+  const SteppedScene& scene_;
+  bool has_samples_;
+  double sampled_at_;
   std::vector<int> blocks_;
   std::vector<double> sizes_;
   std::stop_token stop_;
@@ -162,6 +186,15 @@ class SteppedScene {
   [[nodiscard]] virtual bool has_other() const = 0;
   [[nodiscard]] virtual bool knows_series() const = 0;
 
+  /// True if parts of the state jump at samples.
+  [[nodiscard]] virtual bool has_samples() const = 0;
+
+  /// The times of samples in (begin, end], in order.
+  [[nodiscard]] virtual std::vector<double> sample_times(double begin, double end) const = 0;
+
+  /// The state after the samples at t; the same if there are none.
+  [[nodiscard]] virtual Eigen::VectorXd sampled(double t, std::span<const double> y) const = 0;
+
   /// True if a part of the scene may make it stiff, or if the scene does not declare this.
   [[nodiscard]] virtual bool may_be_stiff() const = 0;
 
@@ -188,6 +221,25 @@ class SteppedScene {
                                                        const EqualLength& length,
                                                        bool other) const = 0;
 };
+
+inline SteppedRun::SteppedRun(const SteppedScene& scene, const SolveOptions& options)
+    : scene_(scene),
+      has_samples_(scene.has_samples()),
+      sampled_at_(options.begin),
+      blocks_(scene.blocks()),
+      sizes_(blocks_.size(), options.absolute_scale),
+      stop_(options.stop) {}
+
+inline Eigen::VectorXd SteppedRun::sampled_state() const {
+  if (has_samples_ && t() != sampled_at()) return scene_.sampled(t(), state());
+  return vector_of<Eigen::VectorXd>(state());
+}
+
+/// The options with the times of samples among the discontinuities.
+///
+/// Throws : InvalidInput for a run backwards in time
+KREISEL_API [[nodiscard]] SolveOptions with_samples(const SteppedScene& scene,
+                                                    SolveOptions options);
 
 /// Throws : InvalidInput if the options do not fit this scene and this start
 KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start,

@@ -29,16 +29,18 @@ void write(double* y, const Vector& from) {
 template <class Steps>
 class RunOfSteps final : public SteppedRun {
  public:
-  RunOfSteps(std::vector<int> blocks, const SolveOptions& options, Steps steps)
-      : SteppedRun(std::move(blocks), options), steps_(std::move(steps)) {}
+  RunOfSteps(const SteppedScene& scene, const SolveOptions& options, Steps steps)
+      : SteppedRun(scene, options), steps_(std::move(steps)) {}
 
   void step_towards(double end, double /*output*/) override {
+    take_samples(steps_);
     from_ = steps_.t();
     steps_.step_towards(end);
   }
 
   [[nodiscard]] bool try_first_step(double h, double end, double /*output*/) override {
     if constexpr (requires { steps_.try_first_step(h, end); }) {
+      take_samples(steps_);
       from_ = steps_.t();
       return steps_.try_first_step(h, end);
     } else {
@@ -55,6 +57,7 @@ class RunOfSteps final : public SteppedRun {
   }
 
   void follow(const SteppedRun& leader) override {
+    take_samples(steps_);
     from_ = steps_.t();
     steps_.follow(static_cast<const RunOfSteps&>(leader).steps_);
   }
@@ -113,7 +116,7 @@ template <class Vector, class Field>
   using Steps = ExplicitRungeKutta<Vector, Field>;
   Steps steps(std::move(field), options.begin, vector_of<Vector>(start), accuracy, scene.blocks());
   steps.stop_at(options.discontinuities);
-  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options, std::move(steps));
+  return std::make_unique<RunOfSteps<Steps>>(scene, options, std::move(steps));
 }
 
 template <class Vector, class Field>
@@ -137,7 +140,7 @@ template <class Vector, class Series>
   using Steps = TaylorSteps<Vector, Series>;
   Steps steps(std::move(series), options.begin, vector_of<Vector>(start), accuracy, scene.blocks());
   steps.stop_at(options.discontinuities);
-  return std::make_unique<RunOfSteps<Steps>>(scene.blocks(), options, std::move(steps));
+  return std::make_unique<RunOfSteps<Steps>>(scene, options, std::move(steps));
 }
 
 }  // namespace kreisel::detail

@@ -75,6 +75,25 @@ class SceneRuns final : public SteppedScene {
       return HasSeries<Scene>;
     }
   }
+  [[nodiscard]] bool has_samples() const override {
+    if constexpr (HasSamples<Scene>) {
+      return scene_.has_samples();
+    } else {
+      return false;
+    }
+  }
+  [[nodiscard]] std::vector<double> sample_times(double begin, double end) const override {
+    if constexpr (HasSamples<Scene>) {
+      return scene_.sample_times(begin, end);
+    } else {
+      return {};
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd sampled(double t, std::span<const double> y) const override {
+    Own state = vector_of<Own>(y);
+    if constexpr (HasSamples<Scene>) scene_.sample(t, state);
+    return vector_of<Eigen::VectorXd>(state);
+  }
   [[nodiscard]] bool may_be_stiff() const override {
     if constexpr (HasStiffness<Scene>) {
       return scene_.may_be_stiff();

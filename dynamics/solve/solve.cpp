@@ -222,6 +222,20 @@ class ByMethod {
 
 }  // namespace
 
+SolveOptions with_samples(const SteppedScene& scene, SolveOptions options) {
+  if (!scene.has_samples()) return options;
+  const double end = options.output_times.back();
+  if (end < options.begin) {
+    refuse_task(
+        "the run goes backwards in time, but a sampled controller does not: take an end "
+        "after t = ",
+        options.begin, " s");
+  }
+  const std::vector<double> times = scene.sample_times(options.begin, end);
+  options.discontinuities.insert(options.discontinuities.end(), times.begin(), times.end());
+  return options;
+}
+
 Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::VectorXd& given,
                                   const SolveOptions& options, const OnComponents& on_output) try {
   const Eigen::VectorXd start = start_of_steps(scene, given, options.absolute_scale);

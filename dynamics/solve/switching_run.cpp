@@ -34,7 +34,7 @@ std::complex<double> dominant_eigenvalue(const SteppedScene& scene, bool other, 
 
 SwitchingRun::SwitchingRun(const SteppedScene& scene, bool other, const SolveOptions& options,
                            Method first, const Eigen::VectorXd& start, const Accuracy& accuracy)
-    : SteppedRun(scene.blocks(), options),
+    : SteppedRun(scene, options),
       scene_(scene),
       other_(other),
       accuracy_(accuracy),
@@ -133,7 +133,7 @@ std::unique_ptr<RadauRun> SwitchingRun::radau_run(const Eigen::VectorXd& y,
 
 Eigen::VectorXd SwitchingRun::present() {
   here_.begin = run_->t();
-  return vector_of<Eigen::VectorXd>(run_->state());
+  return run_->sampled_state();
 }
 
 void SwitchingRun::change_to(Method method) {

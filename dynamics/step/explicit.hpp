@@ -89,7 +89,13 @@ class ExplicitRungeKutta {
 
   /// Times at which the field is discontinuous (start of a thrust, jerk of a guide), in any order.
   /// Steps end there exactly and evaluate the field only on their own side.
-  void stop_at(std::vector<Scalar> jumps) { jumps_ = std::move(jumps); }
+  void stop_at(std::vector<Scalar> jumps) { jumps_ = detail::sorted(std::move(jumps)); }
+
+  /// Continues from another state at the present time.
+  void jump_to(const Vector& y) {
+    state_ = {y, zero(y)};
+    sizes_.note(y);
+  }
 
   /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(const Scalar& end) {

@@ -157,7 +157,7 @@ void RadauIntegrator::begin_step(StiffField& field, double goal) {
     step_ = std::max(sizes_.first_step(rate_), least);
   }
   note_jacobian(field);
-  const bool at_jump = std::find(jumps_.begin(), jumps_.end(), t()) != jumps_.end();
+  const bool at_jump = std::binary_search(jumps_.begin(), jumps_.end(), t());
   if (at_jump) quiet_ = 0;
   if (steps_to_spectrum_ == 0 || at_jump || step_ > 2 * looked_at_) note_spectrum();
   steps_to_spectrum_ = std::max(steps_to_spectrum_ - 1, 0);
@@ -271,6 +271,12 @@ Eigen::VectorXd RadauIntegrator::at(StiffField& field, double time) {
   while (shorter.t() != time) shorter.step_towards(field, time, time);
   effort_ = shorter.effort_;
   return shorter.y();
+}
+
+void RadauIntegrator::jump_to(const Eigen::VectorXd& y) {
+  state_ = {y, Eigen::VectorXd::Zero(y.size())};
+  h_before_ = 0;  // the stages are not a guess for the next step
+  sizes_.note(y);
 }
 
 void RadauIntegrator::back_to(StiffField& field, double time) {

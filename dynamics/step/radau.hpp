@@ -125,7 +125,10 @@ class KREISEL_API RadauIntegrator {
   /// Takes over the block sizes of an earlier integration, relative to which errors are measured.
   void set_sizes(std::span<const double> sizes) { sizes_.set(sizes); }
 
-  void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
+  void stop_at(std::vector<double> jumps) { jumps_ = sorted(std::move(jumps)); }
+
+  /// Continues from another state at the present time.
+  void jump_to(const Eigen::VectorXd& y);
 
   /// One step towards `end`, not beyond `end`.
   ///
@@ -328,6 +331,11 @@ class RadauSteps {
 
   /// Times at which the field is discontinuous, in any order. Steps end there exactly.
   void stop_at(std::vector<double> jumps) { steps_.stop_at(std::move(jumps)); }
+  /// Continues from another state at the present time.
+  void jump_to(const Vector& y) {
+    steps_.jump_to(detail::vector_of<Eigen::VectorXd>(y));
+    y_ = y;
+  }
 
   /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(double end) {

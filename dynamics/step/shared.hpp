@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -78,15 +79,23 @@ inline void require_step(double step) {
   }
 }
 
-/// `end`, or the first discontinuity between t and `end`.
+/// `end`, or the first discontinuity between t and `end`. Jumps are in order.
 template <class S>
 [[nodiscard]] S next_stop(const S& t, const S& end, const std::vector<S>& jumps) {
-  S next = end;
-  for (const S& jump : jumps) {
-    const bool on_the_way = t < end ? t < jump && jump < next : next < jump && jump < t;
-    if (on_the_way) next = jump;
+  if (jumps.empty()) return end;
+  if (t < end) {
+    const auto after = std::upper_bound(jumps.begin(), jumps.end(), t);
+    return after != jumps.end() && *after < end ? *after : end;
   }
-  return next;
+  const auto here = std::lower_bound(jumps.begin(), jumps.end(), t);
+  return here != jumps.begin() && *std::prev(here) > end ? *std::prev(here) : end;
+}
+
+/// Times in order.
+template <class S>
+[[nodiscard]] std::vector<S> sorted(std::vector<S> times) {
+  std::sort(times.begin(), times.end());
+  return times;
 }
 
 /// True if a step of length h is the last one of the distance `left`, up to 256 roundings of h.
@@ -136,7 +145,7 @@ template <class To, class From>
 template <class S>
 [[nodiscard]] S on_this_side(const S& t, const S& side, const std::vector<S>& jumps) {
   using std::nextafter;
-  const bool jumps_here = std::find(jumps.begin(), jumps.end(), t) != jumps.end();
+  const bool jumps_here = std::binary_search(jumps.begin(), jumps.end(), t);
   return jumps_here ? S(nextafter(t, side)) : t;
 }
 

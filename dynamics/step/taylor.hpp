@@ -77,7 +77,13 @@ class TaylorSteps {
   void set_sizes(std::span<const double> sizes) { sizes_.set(sizes); }
 
   /// Times at which the field is discontinuous, in any order. Steps end there exactly.
-  void stop_at(std::vector<double> jumps) { jumps_ = std::move(jumps); }
+  void stop_at(std::vector<double> jumps) { jumps_ = detail::sorted(std::move(jumps)); }
+
+  /// Continues from another state at the present time.
+  void jump_to(const Vector& y) {
+    state_ = {y, Vector::Zero(y.size())};
+    sizes_.note(y);
+  }
 
   /// Integrates to `end` exactly, forwards or backwards.
   const Vector& advance_to(double end) {
