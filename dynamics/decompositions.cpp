@@ -2,6 +2,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include <cmath>
 #include <complex>
@@ -101,6 +102,10 @@ std::optional<Eigen::MatrixXcd> inverse(const Eigen::MatrixXcd& A) {
 Eigen::VectorXcd solution(const Eigen::MatrixXcd& A, const Eigen::VectorXcd& b) {
   if (A.size() == 0) return Eigen::VectorXcd::Zero(A.cols());
   return A.fullPivLu().solve(b);
+}
+
+Eigen::MatrixXd exponential(const Eigen::MatrixXd& A) {
+  return A.size() == 0 ? A : Eigen::MatrixXd(A.exp());
 }
 
 ShortestSolution shortest_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,

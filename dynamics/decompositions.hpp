@@ -62,6 +62,11 @@ KREISEL_API [[nodiscard]] std::optional<Eigen::MatrixXcd> inverse(const Eigen::M
 KREISEL_API [[nodiscard]] Eigen::VectorXcd solution(const Eigen::MatrixXcd& A,
                                                     const Eigen::VectorXcd& b);
 
+/// The exponential of a square matrix, by scaling and squaring of a Pade approximant.
+///
+/// Error : some 1e-15 |A| of its norm if A is normal
+KREISEL_API [[nodiscard]] Eigen::MatrixXd exponential(const Eigen::MatrixXd& A);
+
 /// The shortest of all x that minimise  |A x - b|.
 struct ShortestSolution {
   Eigen::VectorXd x;

@@ -58,9 +58,8 @@ MatrixXd FreeDirections::unit_moves(int dimension) const {
 
 namespace detail {
 
-FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& given) {
+FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& given, int rates) {
   const auto dimension = static_cast<int>(slopes.cols());
-  const int rates = dimension / 2;
   const Index conditions = slopes.rows() / 2;
   const auto open = [&given](int begin, int end) {
     std::vector<int> components;
@@ -71,7 +70,7 @@ FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& g
   };
   FreeDirections free;
   free.dependent = pivots(slopes.topRows(conditions), open(0, rates));
-  const std::vector<int> of_rates = pivots(slopes.bottomRows(conditions), open(rates, dimension));
+  const std::vector<int> of_rates = pivots(slopes.bottomRows(conditions), open(rates, 2 * rates));
   free.dependent.insert(free.dependent.end(), of_rates.begin(), of_rates.end());
   std::sort(free.dependent.begin(), free.dependent.end());
   for (int i = 0; i < dimension; ++i) {

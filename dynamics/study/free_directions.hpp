@@ -40,10 +40,10 @@ namespace detail {
 /// for the conditions on positions, then among their rates. Components that are given, as those of
 /// drives, stay independent.
 ///
-/// slopes : derivatives of the gaps of all conditions, then of their rates, along eta; the first
-///          half of eta are the coordinates
+/// slopes : derivatives of the gaps of all conditions, then of their rates, along eta
+/// rates  : the number of rates. Coordinates come first in eta, as many as rates.
 [[nodiscard]] KREISEL_API FreeDirections free_directions(const Eigen::MatrixXd& slopes,
-                                                         const std::vector<int>& given);
+                                                         const std::vector<int>& given, int rates);
 
 /// A matrix of `count` columns with the given ones at these positions; the others are 0.
 [[nodiscard]] KREISEL_API Eigen::MatrixXd with_columns(const Eigen::MatrixXd& given,

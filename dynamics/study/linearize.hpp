@@ -124,8 +124,14 @@ template <class Scene>
 
 template <class Scene>
 [[nodiscard]] std::vector<std::string> names_of(const Scene& scene, const Tangent& tangent) {
-  if constexpr (requires { scene.tree(); }) return direction_names(scene.tree());
   std::vector<std::string> names;
+  if constexpr (requires { scene.tree(); }) {
+    names = direction_names(scene.tree());
+    if constexpr (requires { scene.memory_names(); }) {
+      for (std::string& name : scene.memory_names()) names.push_back(std::move(name));
+    }
+    return names;
+  }
   const int components = tangent.dimension() + static_cast<int>(tangent.quaternions().size());
   auto next = tangent.quaternions().begin();
   for (int i = 0; i < components; ++i) {
@@ -181,8 +187,8 @@ template <class Scene>
                                              const Eigen::MatrixXd& E) {
   if constexpr (requires { scene.constraint_slopes(y, E); }) {
     if (is_constrained(scene)) {
-      return free_directions(scene.constraint_slopes(y, E),
-                             RuledDirections::of(scene.tree()).given);
+      return free_directions(scene.constraint_slopes(y, E), RuledDirections::of(scene.tree()).given,
+                             scene.tree().rates());
     }
   }
   return {};

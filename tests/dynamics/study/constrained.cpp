@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(given_components_stay_independent) {
   Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(2, 4);
   slopes(0, 0) = slopes(1, 2) = 5;
   slopes(0, 1) = slopes(1, 3) = -1;
-  const auto free = detail::free_directions(slopes, {0, 2});
+  const auto free = detail::free_directions(slopes, {0, 2}, 2);
   BOOST_TEST(free.dependent == (std::vector<int>{1, 3}), boost::test_tools::per_element());
   BOOST_TEST(free.complete(Eigen::Vector4d(1, 0, 2, 0)).isApprox(Eigen::Vector4d(1, 5, 2, 10)));
 }

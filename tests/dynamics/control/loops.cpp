@@ -1,0 +1,413 @@
+// Closed loops against matrix exponentials, recursions and closed forms of their own.
+
+#include <Eigen/LU>
+#include <boost/test/unit_test.hpp>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <dynamics/control/controlled_system.hpp>
+#include <dynamics/guide/resting.hpp>
+#include <dynamics/guide/rotating.hpp>
+#include <dynamics/solve/solve.hpp>
+#include <dynamics/study/linearize.hpp>
+#include <dynamics/study/sampled_transition.hpp>
+#include <motor/error.hpp>
+
+#include <support/told_error.hpp>
+#include <support/worst.hpp>
+
+using namespace kreisel;
+using namespace kreisel::test;
+
+namespace {
+
+using Real = long double;
+using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+constexpr double moment = 0.5;
+constexpr double angle_0 = 0.3;
+
+BodyDescription arm() {
+  BodyDescription body;
+  body.name = "arm";
+  body.joint = {.kind = JointKind::revolute, .axis = {0, 0, 1}};
+  const Matrix3<double> tensor = Vector3<double>(1, 1, moment).asDiagonal();
+  body.inertia = InertiaTensor<Body>::about_centre(2, {0, 0, 0}, tensor);
+  return body;
+}
+
+Controller servo(const ControlLaw& law, double period = 0) {
+  Controller controller;
+  controller.name = "servo";
+  controller.reads = {{JointSensor{0, 0, false}}};
+  controller.drives = {"arm"};
+  controller.law = law;
+  controller.period = period;
+  return controller;
+}
+
+ControlledSystem<RestingFrame<>> arm_with(const Controller& controller) {
+  return {BodySystem<RestingFrame<>>({}, {arm()}), {controller}};
+}
+
+template <class System>
+auto released(const System& system, double tolerance, double end = 5) {
+  const auto start =
+      system.start({Eigen::VectorXd::Constant(1, angle_0), Eigen::VectorXd::Zero(1)});
+  return solve(system, start, {.t_end = end, .output_step = end / 10, .tolerance = tolerance});
+}
+
+/// The greatest error of the arm's angle.
+template <class Run, class Angle>
+double worst_angle(const Run& run, const Angle& angle) {
+  double worst = 0;
+  for (std::size_t i = 0; i < run.times.size(); ++i) {
+    worst = worst_of(worst, std::abs(run.states[i].coordinates[0] - double(angle(run.times[i]))));
+  }
+  return worst;
+}
+
+constexpr PidLaw pid{3, 0.7, 0.4, 0.05};
+
+/// The state matrix of arm and pid: angle, rate, integral, filter.
+RealMatrix loop_matrix() {
+  const Real J = moment, P = pid.proportional, I = pid.integral, D = pid.derivative;
+  const Real tau = pid.filter;
+  RealMatrix A(4, 4);
+  A << 0, 1, 0, 0,                                 //
+      -(P + D / tau) / J, 0, I / J, -D / tau / J,  //
+      -1, 0, 0, 0,                                 //
+      -1 / tau, 0, 0, -1 / tau;
+  return A;
+}
+
+/// The angles of an arm whose torque is held, from one sample to the next.
+///
+/// output : the torque for the k-th sample of the angle
+template <class Output>
+std::vector<Real> angles_between(Real period, int count, const Output& output) {
+  std::vector<Real> angles;
+  Real q = Real(angle_0), v = 0;
+  for (int k = 0; k < count; ++k) {
+    angles.push_back(q);
+    const Real a = output(k, q) / Real(moment);
+    q += v * period + a * period * period / 2;
+    v += a * period;
+  }
+  angles.push_back(q);
+  return angles;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(continuous_pid_is_its_matrix_exponential) {
+  const RealMatrix A = loop_matrix();
+  const auto angle = [&A](double t) {
+    return (RealMatrix(A * Real(t)).exp() * RealVector(RealVector::Unit(4, 0)))(0) * Real(angle_0);
+  };
+  for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
+    const auto run = released(arm_with(servo(pid)), tolerance);
+    BOOST_TEST(run.report.tolerance_kept);
+    const double error = worst_angle(run, angle);
+    BOOST_TEST(error <= std::max(run.report.error_estimate * angle_0, 2e-15));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sampled_pid_is_its_recursion) {
+  const double T = 0.1;
+  const Real a = std::exp(-Real(T) / Real(pid.filter));
+  Real s = 0, d = 0, before = 0;
+  const auto expected = angles_between(Real(T), 50, [&](int, Real q) {
+    const Real e = -q;
+    s += Real(T) * e;
+    d = a * d + (1 - a) * (e - before) / Real(T);
+    before = e;
+    return Real(pid.proportional) * e + Real(pid.integral) * s + Real(pid.derivative) * d;
+  });
+  for (const double tolerance : {1e-6, 1e-12}) {
+    const auto run = released(arm_with(servo(pid, T)), tolerance);
+    BOOST_TEST(run.report.tolerance_kept);
+    // Each sample lies within a rounding of its multiple of the period.
+    BOOST_TEST(worst_angle(run, [&](double t) { return expected[size_t(std::lround(t / T))]; }) <=
+               std::max(run.report.error_estimate * angle_0, 4e-15));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(delayed_outputs_follow_their_samples) {
+  const Real T = 0.1L;
+  for (const double delay : {0.1, 0.2, 0.04, 0.25}) {
+    Controller controller = servo(PidLaw{1.5}, 0.1);
+    controller.delay = delay;
+    // Outputs change at k T + rest, `whole` periods after their sample.
+    const int whole = int(std::floor(delay / 0.1 + 1e-9));
+    const Real rest = Real(delay) - whole * T;
+    std::vector<Real> outputs;
+    std::vector<Real> angles;
+    Real q = Real(angle_0), v = 0, held = 0;
+    const auto move = [&](Real h) {
+      const Real acceleration = held / Real(moment);
+      q += v * h + acceleration * h * h / 2;
+      v += acceleration * h;
+    };
+    const auto due = [&](int k) { return k - whole < 0 ? Real(0) : outputs[size_t(k - whole)]; };
+    for (int k = 0; k <= 50; ++k) {
+      angles.push_back(q);
+      outputs.push_back(-Real(1.5) * q);
+      if (rest < 1e-9L) held = due(k);
+      move(rest < 1e-9L ? T : rest);
+      if (rest < 1e-9L) continue;
+      held = due(k);
+      move(T - rest);
+    }
+    const auto run = released(arm_with(controller), 1e-12);
+    BOOST_TEST_CONTEXT("delay " << delay) {
+      BOOST_TEST(worst_angle(run, [&](double t) { return angles[size_t(std::lround(t / 0.1))]; }) <=
+                 std::max(run.report.error_estimate * angle_0, 1e-13));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(saturated_samples_do_not_wind_up) {
+  Controller controller = servo(PidLaw{3, 0.7}, 0.1);
+  controller.limit = {0.25};
+  Real s = 0;
+  const auto expected = angles_between(0.1L, 50, [&](int, Real q) {
+    const Real e = -q;
+    const Real u = 3 * e + 0.7L * (s + 0.1L * e);
+    const bool winds = (u > 0.25L && e > 0) || (u < -0.25L && e < 0);
+    if (!winds) s += 0.1L * e;
+    return std::clamp(3 * e + 0.7L * s, -0.25L, 0.25L);
+  });
+  const auto run = released(arm_with(controller), 1e-11);
+  BOOST_TEST(worst_angle(run, [&](double t) { return expected[size_t(std::lround(t / 0.1))]; }) <=
+             std::max(run.report.error_estimate * angle_0, 1e-13));
+}
+
+// From rest beyond the limit: constant acceleration until the torque falls below the limit, then an
+// oscillation, and the same with the other sign.
+BOOST_AUTO_TEST_CASE(saturated_spring_is_in_pieces_closed) {
+  Controller controller = servo(PidLaw{2});
+  controller.limit = {0.2};
+  const Real k = 2, limit = 0.2L, J = moment, edge = limit / k, w = std::sqrt(k / J);
+  const Real b = limit / J;
+  const Real t_1 = std::sqrt(2 * (Real(angle_0) - edge) / b);
+  const Real v_1 = -b * t_1;
+  const Real phase = std::atan2(-v_1 / w, edge);  // q = r cos(w t + phase)
+  const Real r = std::hypot(edge, v_1 / w);
+  const Real t_2 = (Real(M_PIl) - 2 * phase) / w;
+  const auto quarter = [&](Real t) -> Real {  // up to the next rest, at -angle_0
+    if (t <= t_1) return Real(angle_0) - b * t * t / 2;
+    if (t <= t_1 + t_2) return r * std::cos(w * (t - t_1) + phase);
+    const Real left = 2 * t_1 + t_2 - t;
+    return -(Real(angle_0) - b * left * left / 2);
+  };
+  const Real half = 2 * t_1 + t_2;
+  const auto angle = [&](double t) -> Real {
+    const auto turns = std::floor(Real(t) / half);
+    const Real part = quarter(Real(t) - turns * half);
+    return std::fmod(turns, 2) == 0 ? part : -part;
+  };
+  for (const double tolerance : {1e-6, 1e-10}) {
+    const auto run = released(arm_with(controller), tolerance);
+    BOOST_TEST(run.report.tolerance_kept);
+    BOOST_TEST(worst_angle(run, angle) <= run.report.error_estimate * angle_0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(reference_steps_are_met) {
+  Controller controller = servo(StateSpaceLaw{{}, {}, {}, Eigen::MatrixXd::Constant(1, 1, 2)});
+  controller.law = StateSpaceLaw{Eigen::MatrixXd(0, 0), Eigen::MatrixXd(0, 1),
+                                 Eigen::MatrixXd(1, 0), Eigen::MatrixXd::Constant(1, 1, 2)};
+  controller.reference = {Signal<double>::steps({{1.25, 0.5}})};
+  const auto system = arm_with(controller);
+  const auto start = system.start({Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)});
+  const auto run =
+      solve(system, start,
+            {.t_end = 5, .output_step = 0.5, .discontinuities = {1.25}, .tolerance = 1e-11});
+  const Real w = std::sqrt(Real(2) / Real(moment));
+  const double error = worst_angle(run, [&](double t) -> Real {
+    return t < 1.25 ? 0 : Real(0.5) * (1 - std::cos(w * (Real(t) - 1.25L)));
+  });
+  BOOST_TEST(error <= std::max(run.report.error_estimate * 0.5, 4e-15));
+}
+
+// A torque that depends on the specific force of an accelerometer through a filter:
+// x' = -2 x - l a, J a = 0.4 x. The algebra has no loop, because x does not change at once.
+BOOST_AUTO_TEST_CASE(readings_of_accelerations_close_loops) {
+  const double lever = 0.7;
+  Controller controller =
+      servo(StateSpaceLaw{Eigen::MatrixXd::Constant(1, 1, -2), Eigen::MatrixXd::Constant(1, 1, 1),
+                          Eigen::MatrixXd::Constant(1, 1, 0.4), Eigen::MatrixXd::Zero(1, 1),
+                          Eigen::VectorXd::Constant(1, 0.9)});
+  controller.reads = {{Accelerometer{0, {lever, 0, 0}}, 1}};
+  const auto run = released(arm_with(controller), 1e-12);
+  const Real rate = -2 - Real(lever) * 0.4L / Real(moment);  // x = 0.9 exp(rate t)
+  const Real c = 0.4L * 0.9L / Real(moment);
+  const double error = worst_angle(run, [&](double t) -> Real {
+    return Real(angle_0) + c * (std::expm1(rate * Real(t)) / rate - Real(t)) / rate;
+  });
+  BOOST_TEST(error <= std::max(run.report.error_estimate, 4e-15));
+  controller.law = PidLaw{1};
+  BOOST_CHECK_THROW((void)arm_with(controller), InvalidInput);
+}
+
+// The same loop by gyro and attitude angles, on a guide that turns: the readings are inertial and
+// relative.
+BOOST_AUTO_TEST_CASE(instruments_and_joints_close_one_loop) {
+  const RotatingFrame<> guide{Vector3<double>(0, 0, 0.3)};
+  const BodySystem<RotatingFrame<>> bodies(guide, {arm()});
+  Controller by_joint = servo(PidLaw{});
+  by_joint.reads = {{JointSensor{0, 0, false}}, {JointSensor{0, 0, true}}};
+  by_joint.law = StateSpaceLaw{Eigen::MatrixXd(0, 0), Eigen::MatrixXd(0, 2), Eigen::MatrixXd(1, 0),
+                               Eigen::RowVector2d(2, 0.3)};
+  Controller by_instruments = by_joint;
+  by_instruments.reads = {{AttitudeAngles{AttitudeSensor{0}}, 0}, {Gyro{0}, 2}};
+  by_instruments.reference = {Signal<double>(0.0), Signal<double>(0.3)};
+  const ControlledSystem<RotatingFrame<>> one(bodies, {by_joint});
+  const ControlledSystem<RotatingFrame<>> other(bodies, {by_instruments});
+  const auto a = released(one, 1e-11);
+  const auto b = released(other, 1e-11);
+  for (std::size_t i = 0; i < a.states.size(); ++i) {
+    BOOST_TEST(std::abs(a.states[i].coordinates[0] - b.states[i].coordinates[0]) < 1e-11);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(closed_loop_matrix_is_exact) {
+  const auto system = arm_with(servo(pid));
+  const auto linear = linearize<Guide, Body>(system, 0, Eigen::VectorXd(Eigen::VectorXd::Zero(4)));
+  BOOST_TEST((linear.A - loop_matrix().cast<double>()).cwiseAbs().maxCoeff() < 1e-14);
+  BOOST_TEST(linear.names[2] == "servo state 1");
+}
+
+// Angle, rate and held torque after a period, and after two periods of a delay.
+BOOST_AUTO_TEST_CASE(sampled_transition_is_exact) {
+  const double T = 0.1;
+  for (const bool delays : {false, true}) {
+    Controller controller = servo(PidLaw{1.5}, T);
+    if (delays) controller.delay = T;
+    const auto system = arm_with(controller);
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(system.memory() + 2);
+    const auto transition = sampled_transition(system, 0, rest);
+    RealMatrix expected = RealMatrix::Zero(rest.size(), rest.size());
+    const Real h = Real(T), J = moment;
+    expected.topLeftCorner(2, 2) << 1, h, 0, 1;
+    expected.block(0, rest.size() - 1, 2, 1) << h * h / 2 / J, h / J;
+    expected.row(2) = -1.5L * expected.row(0);
+    if (delays) expected(3, 2) = 1;
+    BOOST_TEST(transition.period == T);
+    BOOST_TEST((transition.matrix - expected.cast<double>()).cwiseAbs().maxCoeff() < 4e-16);
+  }
+}
+
+// Linear equations of a loop with gyro, attitude and point readings, by differences of the field.
+BOOST_AUTO_TEST_CASE(dual_numbers_follow_all_readings) {
+  BodyDescription top;
+  top.name = "top";
+  top.joint = {.kind = JointKind::spherical};
+  const Matrix3<double> tensor = Vector3<double>(0.5, 0.6, 0.8).asDiagonal();
+  top.inertia = InertiaTensor<Body>::about_origin(1.3, {0.1, 0, 0.2}, tensor);
+  BodyDescription wheel = arm();
+  wheel.name = "wheel";
+  wheel.parent = "top";
+  const RotatingFrame<> guide{Vector3<double>(0.1, -0.2, 0.3), Vector3<double>(0.5, 0.2, 9.8)};
+  const BodySystem<RotatingFrame<>> bodies(guide, {top, wheel});
+  Controller controller;
+  controller.name = "wheel speed";
+  controller.reads = {{Gyro{0}, 1},
+                      {PointSensor{0, {0.1, 0.2, 0.3}, SensorFrame::inertial()}, 4},
+                      {AttitudeSensor{0}, 2},
+                      {AttitudeAngles{AttitudeSensor{1}}, 1},
+                      {Accelerometer{1, {0, 0.1, 0}}, 0}};
+  controller.drives = {"wheel"};
+  controller.law = StateSpaceLaw{Eigen::MatrixXd::Constant(1, 1, -0.3),
+                                 Eigen::RowVectorXd::LinSpaced(5, 0.2, 1.1),
+                                 Eigen::MatrixXd::Constant(1, 1, 0.7), Eigen::MatrixXd::Zero(1, 5)};
+  const ControlledSystem<RotatingFrame<>> system(bodies, {controller});
+  Eigen::VectorXd y(10);
+  y << 0.5, -0.1, 0.3, std::sqrt(1 - 0.35), 0.4, 0.2, -0.3, 0.5, 0.8, 0.6;
+  const auto d = detail::derivatives(system, 0.2, y, Eigen::MatrixXd::Identity(10, 10));
+  constexpr double h = 1e-4;
+  for (int k = 0; k < 10; ++k) {
+    const auto at = [&](double step) {
+      Eigen::VectorXd moved = y;
+      moved[k] += step;
+      return system.rates(0.2, moved);
+    };
+    // Differences of fourth order err by h^4 and by 1e-16/h.
+    const Eigen::VectorXd slope = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+    BOOST_TEST((slope - d.along.col(k)).cwiseAbs().maxCoeff() < 1e-10);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(samples_continue_from_a_checkpoint) {
+  Controller controller = servo(pid, 0.1);
+  controller.delay = 0.13;
+  const auto system = arm_with(controller);
+  const auto start =
+      system.start({Eigen::VectorXd::Constant(1, angle_0), Eigen::VectorXd::Zero(1)});
+  for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
+    SolveOptions options{.t_end = 3, .output_step = 0.25, .tolerance = 1e-9, .method = method};
+    std::vector<std::vector<double>> checkpoints;
+    options.offer_checkpoint = [&](const auto& here) { checkpoints.push_back(here()); };
+    const auto whole = solve(system, start, options);
+    BOOST_TEST_REQUIRE(checkpoints.size() > 4U);
+    options.offer_checkpoint = nullptr;
+    options.checkpoint = checkpoints[4];
+    const auto rest = solve(system, start, options);
+    BOOST_TEST(whole.states.back().coordinates[0] == rest.states.back().coordinates[0]);
+    BOOST_TEST((whole.states.back().memory - rest.states.back().memory).isZero(0));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(callable_laws_control) {
+  CallableLaw law{1, [](double, const Eigen::VectorXd& e, const Eigen::VectorXd& x,
+                        Eigen::VectorXd& u, Eigen::VectorXd& dx) {
+                    u[0] = 3 * e[0] + 0.7 * x[0];
+                    dx[0] = e[0];
+                  }};
+  const auto by_callable = released(arm_with(servo(law)), 1e-11);
+  const auto by_pid = released(arm_with(servo(PidLaw{3, 0.7})), 1e-11);
+  BOOST_TEST(std::abs(by_callable.states.back().coordinates[0] -
+                      by_pid.states.back().coordinates[0]) < 1e-11);
+  const auto system = arm_with(servo(law));
+  BOOST_CHECK_THROW(
+      (void)(linearize<Guide, Body>(system, 0, Eigen::VectorXd(Eigen::VectorXd::Zero(3)))),
+      InvalidInput);
+}
+
+BOOST_AUTO_TEST_CASE(wrong_controllers_are_refused) {
+  const auto refused = [](const auto& change, const std::string& part) {
+    Controller controller = servo(pid);
+    change(controller);
+    try {
+      (void)arm_with(controller);
+      BOOST_TEST(false, "accepted: " << part);
+    } catch (const InvalidInput& error) {
+      const std::string text = error.what();
+      BOOST_TEST(text.find(part) != std::string::npos, text);
+    }
+  };
+  refused([](Controller& c) { c.name = ""; }, "no name");
+  refused([](Controller& c) { c.reads.clear(); }, "reads nothing");
+  refused([](Controller& c) { c.drives = {"leg"}; }, "no such body");
+  refused([](Controller& c) { c.drives = {"arm", "arm"}; }, "twice");
+  refused([](Controller& c) { c.reads[0].sensor = JointSensor{0, 1, false}; }, "component 1 of 1");
+  refused([](Controller& c) { c.reads[0].sensor = JointSensor{3, 0, false}; }, "body 3");
+  refused([](Controller& c) { c.limit = {0}; }, "above 0");
+  refused([](Controller& c) { c.limit = {1, 2}; }, "2 limits");
+  refused([](Controller& c) { c.reference = {1.0, 2.0}; }, "2 references");
+  refused([](Controller& c) { c.delay = 1; }, "needs a period");
+  refused([](Controller& c) { c.period = NAN; }, "period");
+  refused([](Controller& c) { c.law = PidLaw{1, 0, 1, 0}; }, "needs a filter");
+  refused([](Controller& c) { c.law = PidLaw{INFINITY}; }, "not finite");
+  refused([](Controller& c) { c.law = StateSpaceLaw{}; }, "C must have");
+  refused([](Controller& c) { c.law = CallableLaw{}; }, "empty function");
+  const auto system = arm_with(servo(pid, 0.1));
+  const auto start = system.start({Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)});
+  BOOST_CHECK_THROW((void)solve(system, start, {.t_end = -1}), InvalidInput);
+}
