@@ -198,7 +198,7 @@ class Search {
       const auto r = detail::reduced(system_, system_.begin(), y, tangent_, detail::InTime::no);
       const std::vector<int> free = searched(r.free);
       if (free.empty()) return std::nullopt;
-      const VectorXd a = r.v.tail(directions_.rates)(free);
+      const VectorXd a = r.v.segment(directions_.rates, directions_.rates)(free);
       const double size = a.cwiseAbs().maxCoeff();
       if (!std::isfinite(size)) return std::nullopt;
       if (i == 0) {
@@ -209,7 +209,7 @@ class Search {
         step *= std::clamp(before / size, 0.3, 5.0);
       }
       before = size;
-      const MatrixXd J = r.A.bottomRows(directions_.rates)(free, free);
+      const MatrixXd J = r.A.middleRows(directions_.rates, directions_.rates)(free, free);
       const MatrixXd M = MatrixXd::Identity(J.rows(), J.cols()) / step - J;
       VectorXd move = detail::shortest_solution(M, a, 1e-15).x;
       move *= std::min(1.0, 1 / move.cwiseAbs().maxCoeff());
@@ -255,7 +255,7 @@ class Search {
   /// The accelerations of the coordinates that are searched.
   [[nodiscard]] VectorXd accelerations(const VectorXd& y) const {
     const VectorXd rate = tangent_.inverse(y) * system_.rates(system_.begin(), y);
-    return rate.tail(directions_.rates)(searched({}));
+    return rate.segment(directions_.rates, directions_.rates)(searched({}));
   }
 
   /// True if all states between two equilibria are equilibria.
@@ -283,7 +283,7 @@ class Search {
   /// Counts the directions in which the equilibrium is not isolated.
   void note_neutral(const Linearization& there, Equilibrium& equilibrium) const {
     const std::vector<int> free = searched(there.free);
-    const MatrixXd J = there.A.bottomRows(directions_.rates)(free, free);
+    const MatrixXd J = there.A.middleRows(directions_.rates, directions_.rates)(free, free);
     if (J.size() == 0) return;
     const auto [values, U, V] = detail::singular_values(J);
     for (Eigen::Index k = 0; k < values.size(); ++k) {

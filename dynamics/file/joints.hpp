@@ -11,10 +11,11 @@
 
 namespace kreisel {
 
-/// Coordinates and rates of all joints, in the order of BodySystem.
+/// Coordinates and rates of all joints, in the order of BodySystem, and the memory of controllers.
 struct JointState {
   Eigen::VectorXd coordinates;
   Eigen::VectorXd rates;
+  Eigen::VectorXd memory = {};  ///< as ControlledSystem has it; at a start also empty: the default
 };
 
 /// The scene file and the logs of its guides.

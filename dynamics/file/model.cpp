@@ -31,7 +31,9 @@ void check_field(const SceneFile& scene, const SceneSolver& model) {
 }  // namespace
 
 std::unique_ptr<SceneSolver> make_model(const SceneFile& scene) {
-  auto exact = scene.rests() ? make_resting_model(scene) : make_moving_model(scene);
+  auto exact = !scene.controllers.empty() ? make_controlled_model(scene)
+               : scene.rests()            ? make_resting_model(scene)
+                                          : make_moving_model(scene);
   check_field(scene, *exact);
   return make_approximation(scene, std::move(exact));
 }

@@ -47,6 +47,13 @@ class SceneSolver {
   /// The motion of all bodies, the reactions of their joints, and the rates of the state by the
   /// exact equations.
   [[nodiscard]] virtual SystemKinematics kinematics(double t, const JointState& state) const = 0;
+  /// The times in (begin, end] at which controllers are sampled, and the state after samples.
+  [[nodiscard]] virtual std::vector<double> sample_times(double /*begin*/, double /*end*/) const {
+    return {};
+  }
+  [[nodiscard]] virtual JointState sampled(double /*t*/, const JointState& state) const {
+    return state;
+  }
   /// The pose of a body relative to the guide.
   [[nodiscard]] virtual Pose<double> pose(double t, const JointState& state, int body) const = 0;
 };
@@ -62,8 +69,9 @@ class SceneSolver {
 /// Throws : InvalidInput. A failure during the run is in RunReport::status and message
 [[nodiscard]] Trajectory<JointState> run_scene(const SceneFile& scene);
 
-/// The two functions that make_model() chooses from, compiled separately.
+/// The functions that make_model() chooses from, compiled separately.
 [[nodiscard]] std::unique_ptr<SceneSolver> make_resting_model(const SceneFile& scene);
 [[nodiscard]] std::unique_ptr<SceneSolver> make_moving_model(const SceneFile& scene);
+[[nodiscard]] std::unique_ptr<SceneSolver> make_controlled_model(const SceneFile& scene);
 
 }  // namespace kreisel

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include <dynamics/control/controlled_system.hpp>
 #include <dynamics/file/model.hpp>
 #include <dynamics/file/scene_system.hpp>
 #include <dynamics/solve/solve.hpp>
@@ -10,30 +11,34 @@
 
 namespace kreisel {
 
+/// The bodies of a scene on a guide.
 template <class M>
+[[nodiscard]] BodySystem<M> bodies_on_guide(M guide, const SceneBodies& scene) {
+  return {std::move(guide), scene.bodies, scene.gravity, scene.elements, scene.constraints};
+}
+
+/// System : BodySystem or ControlledSystem
+template <class System>
 class ModelOnGuide final : public SceneSolver {
-  using System = BodySystem<M>;
   using State = typename System::State;
+  static constexpr bool is_controlled = HasSamples<System>;
 
  public:
-  ModelOnGuide(M guide, SceneBodies scene)
-      : system_(std::move(guide), std::move(scene.bodies), scene.gravity, std::move(scene.elements),
-                scene.constraints),
-        gravitation_(std::move(scene.gravitation)),
+  /// gravitation : as SceneBodies has it
+  ModelOnGuide(System system, std::optional<BodyLoad> gravitation)
+      : system_(std::move(system)),
+        gravitation_(std::move(gravitation)),
         workspace_(system_.workspace()) {}
 
   [[nodiscard]] Trajectory<JointState> solve(const SolveOptions& options, const JointState& start,
                                              const OnOutput& on_output) const override {
-    const State begin{start.coordinates, start.rates};
-    auto run = kreisel::solve(system_, begin, options, [&](double t, const State& state) {
+    auto run = kreisel::solve(system_, begin_of(start), options, [&](double t, const State& state) {
       if (!on_output) return OutputAction::proceed;
-      return on_output(t, {state.coordinates, state.rates});
+      return on_output(t, joint_state(state));
     });
     Trajectory<JointState> result{
         std::move(run.times), {}, std::move(run.report), std::move(run.errors)};
-    for (State& state : run.states) {
-      result.states.push_back({std::move(state.coordinates), std::move(state.rates)});
-    }
+    for (const State& state : run.states) result.states.push_back(joint_state(state));
     return result;
   }
 
@@ -69,16 +74,38 @@ class ModelOnGuide final : public SceneSolver {
 
   [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
       double t, const JointState& state) const override {
-    std::vector<std::pair<std::string, double>> result;
-    for (const auto& [name, value] : system_.conserved(t, {state.coordinates, state.rates})) {
-      result.emplace_back(name, value);
+    if constexpr (is_controlled) {
+      return {};
+    } else {
+      return system_.conserved(t, {state.coordinates, state.rates});
     }
-    return result;
   }
 
   [[nodiscard]] SystemKinematics kinematics(double t, const JointState& state) const override {
-    return kreisel::kinematics(system_, t, vector(state), workspace_,
-                               gravitation_ ? &*gravitation_ : nullptr);
+    if constexpr (is_controlled) {
+      return system_.kinematics(t, vector(state), workspace_);
+    } else {
+      return kreisel::kinematics(system_, t, vector(state), workspace_,
+                                 gravitation_ ? &*gravitation_ : nullptr);
+    }
+  }
+
+  [[nodiscard]] std::vector<double> sample_times(double begin, double end) const override {
+    if constexpr (is_controlled) {
+      return system_.sample_times(begin, end);
+    } else {
+      return {};
+    }
+  }
+
+  [[nodiscard]] JointState sampled(double t, const JointState& state) const override {
+    if constexpr (is_controlled) {
+      Eigen::VectorXd y = vector(state);
+      system_.sample(t, y);
+      return joint_state(system_.from_vector(y));
+    } else {
+      return state;
+    }
   }
 
   [[nodiscard]] Pose<double> pose(double t, const JointState& state, int body) const override {
@@ -86,13 +113,31 @@ class ModelOnGuide final : public SceneSolver {
   }
 
  private:
-  [[nodiscard]] static Eigen::VectorXd vector(const JointState& state) {
-    return System::to_vector({state.coordinates, state.rates});
+  [[nodiscard]] State begin_of(const JointState& start) const {
+    if constexpr (is_controlled) {
+      State state = system_.start({start.coordinates, start.rates});
+      if (start.memory.size() > 0) state.memory = start.memory;
+      return state;
+    } else {
+      return {start.coordinates, start.rates};
+    }
+  }
+
+  [[nodiscard]] static JointState joint_state(const State& state) {
+    if constexpr (is_controlled) {
+      return {state.coordinates, state.rates, state.memory};
+    } else {
+      return {state.coordinates, state.rates};
+    }
+  }
+
+  [[nodiscard]] Eigen::VectorXd vector(const JointState& state) const {
+    return System::to_vector(begin_of(state));
   }
 
   System system_;
   std::optional<BodyLoad> gravitation_;
-  mutable BodyWorkspace workspace_;
+  mutable decltype(std::declval<const System&>().workspace()) workspace_;
 };
 
 }  // namespace kreisel

@@ -4,7 +4,9 @@
 namespace kreisel {
 
 std::unique_ptr<SceneSolver> make_resting_model(const SceneFile& scene) {
-  return std::make_unique<ModelOnGuide<RestingFrame<>>>(RestingFrame<>{}, bodies_in_gravity(scene));
+  const SceneBodies bodies = bodies_in_gravity(scene);
+  return std::make_unique<ModelOnGuide<BodySystem<RestingFrame<>>>>(
+      bodies_on_guide(RestingFrame<>{}, bodies), bodies.gravitation);
 }
 
 }  // namespace kreisel

@@ -84,18 +84,24 @@ Increments PeriodIntegrals::of(std::size_t sensor, const SceneSolver& model, dou
 void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double begin,
                                 const JointState& state, double end) const {
   const Index coordinates = state.coordinates.size();
-  const Index of_motion = coordinates + state.rates.size();
+  const Index of_joints = coordinates + state.rates.size();
+  const Index of_motion = of_joints + state.memory.size();
   VectorXd start(of_motion + Equations::count * static_cast<Index>(group.sensors.size()));
-  start << state.coordinates, state.rates,
+  start << state.coordinates, state.rates, state.memory,
       Equations::start().replicate(static_cast<Index>(group.sensors.size()), 1);
   std::vector<int> blocks = model.tree().blocks();
+  blocks.insert(blocks.end(), static_cast<std::size_t>(state.memory.size()), 1);
+  const std::size_t blocks_of_motion = blocks.size();
   for (std::size_t i = 0; i < group.sensors.size(); ++i) {
     blocks.insert(blocks.end(), Equations::blocks.begin(), Equations::blocks.end());
   }
 
+  const auto state_in = [&](const VectorXd& all) -> JointState {
+    return {all.head(coordinates), all.segment(coordinates, of_joints - coordinates),
+            all.segment(of_joints, of_motion - of_joints)};
+  };
   const auto field = [&](double t, const VectorXd& all, VectorXd& result) {
-    const auto system = model.kinematics(
-        t, {all.head(coordinates), all.segment(coordinates, of_motion - coordinates)});
+    const auto system = model.kinematics(t, state_in(all));
     result.head(of_motion) = system.rates;
     Index at = of_motion;
     for (const std::size_t i : group.sensors) {
@@ -108,9 +114,15 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
   VectorXd first(start.size());
   field(begin, start, first);
   const std::vector<double> sizes =
-      sizes_of(first.tail(start.size() - of_motion), model.tree().blocks().size(), end - begin);
+      sizes_of(first.tail(start.size() - of_motion), blocks_of_motion, end - begin);
   const auto integrated = [&](auto&& steps) -> VectorXd {
     steps.stop_at(scene_.discontinuities);
+    for (const double t : model.sample_times(begin, end)) {
+      VectorXd all = steps.advance_to(t);
+      if (t == end) break;
+      all.segment(of_joints, of_motion - of_joints) = model.sampled(t, state_in(all)).memory;
+      steps.jump_to(all);
+    }
     return steps.advance_to(end);
   };
   VectorXd numbers;

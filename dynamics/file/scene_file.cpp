@@ -8,6 +8,7 @@
 
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/constraint_keys.hpp>
+#include <dynamics/file/controller_keys.hpp>
 #include <dynamics/file/element_keys.hpp>
 #include <dynamics/file/scene_file.hpp>
 #include <dynamics/file/scene_guide.hpp>
@@ -88,6 +89,10 @@ class SceneReader {
     }
     detail::read_constraints(root_, assembles_, mistakes_.none(), scene_);
     scene_.sensors = detail::read_sensors(root_, scene_, mistakes_.none());
+    detail::read_controllers(root_, mistakes_.none(), scene_);
+    for (const Controller& controller : scene_.controllers) {
+      for (const Signal<double>& reference : controller.reference) note(reference);
+    }
     read_report();
     put_discontinuities_in_order();
     add_samples();

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <dynamics/control/controller.hpp>
 #include <dynamics/file/scene_sensor.hpp>
 #include <dynamics/guide/course.hpp>
 #include <dynamics/guide/earth.hpp>
@@ -160,7 +161,9 @@ struct SceneFile {
   std::vector<Element> elements = {};
   std::vector<Constraint> constraints = {};
   std::vector<RedundantConstraint> redundant_constraints = {};  ///< at the start
+  /// Those of the file, then one for the outputs of each controller.
   std::vector<SceneSensor> sensors;
+  std::vector<Controller> controllers = {};
   double t_begin = 0;
   double t_end = 0;  ///< after t_begin
   double tolerance = 1e-10;

@@ -109,6 +109,9 @@ std::vector<SensorPart> parts(const SceneSensor& sensor,
                  [&](const ElementSensor&) { return reaction; },
                  [](const AzimuthSensor&) {
                    return Parts{{"value", {"azimuth"}, {"rad"}}};
+                 },
+                 [](const scene_sensor::Outputs& outputs) {
+                   return Parts{{"value", outputs.drives, outputs.units}};
                  }},
       sensor.kind);
 }

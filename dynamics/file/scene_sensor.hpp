@@ -30,8 +30,15 @@ struct Joint {
   int body = 0;
 };
 
+/// The outputs of a controller.
+struct Outputs {
+  std::size_t controller = 0;
+  std::vector<std::string> drives = {};  ///< driven bodies
+  std::vector<std::string> units = {};   ///< of their joint forces
+};
+
 using Kind = std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor,
-                          ElementSensor, AzimuthSensor>;
+                          ElementSensor, AzimuthSensor, Outputs>;
 
 }  // namespace scene_sensor
 

@@ -29,7 +29,9 @@ std::vector<int> list(const Places& places, bool in) {
   return result;
 }
 
-Directions::Directions(const StudySystem& system) : rates(system.tree().rates()) {
+Directions::Directions(const StudySystem& system)
+    : rates(system.tree().rates()),
+      dimension(2 * rates + static_cast<int>(system.memory_names().size())) {
   auto ruled = RuledDirections::of(system.tree());
   given = set(ruled.given);
   held = set(ruled.held);
@@ -38,7 +40,7 @@ Directions::Directions(const StudySystem& system) : rates(system.tree().rates())
 }
 
 Places Directions::set(const std::vector<int>& directions) const {
-  Places places(2 * static_cast<std::size_t>(rates), false);
+  Places places(static_cast<std::size_t>(dimension), false);
   for (const int i : directions) places[static_cast<std::size_t>(i)] = true;
   return places;
 }
@@ -51,9 +53,10 @@ std::pair<int, int> Directions::group(int direction) const {
 }
 
 Places Directions::cyclic(const Linearization& here, const Linearization& elsewhere) const {
-  Places result(2 * static_cast<std::size_t>(rates), false);
+  Places result(static_cast<std::size_t>(dimension), false);
   const auto counts = [this](const Linearization& linear, int i) {
-    return linear.A.col(i).tail(rates).cwiseAbs().maxCoeff() > 1e-13 * linear.A.norm() ||
+    return linear.A.col(i).tail(dimension - rates).cwiseAbs().maxCoeff() >
+               1e-13 * linear.A.norm() ||
            linear.free.is_dependent(i);
   };
   for (int i = 0; i < rates; ++i) {
@@ -74,7 +77,7 @@ Places Directions::without_roots(const Linearization& linear) const {
   const auto in = [](const Places& places, int i) { return places[static_cast<std::size_t>(i)]; };
   const auto nothing_depends = [&](int i) {
     const auto [first, count] = group(i);
-    for (int row = 0; row < 2 * rates; ++row) {
+    for (int row = 0; row < dimension; ++row) {
       const bool own = count > 1 && row >= first && row < first + count;
       if (!own && !in(out, row) && std::abs(A(row, i)) > zero) return false;
     }
@@ -82,7 +85,7 @@ Places Directions::without_roots(const Linearization& linear) const {
   };
   for (bool more = true; more;) {
     more = false;
-    for (int i = 0; i < 2 * rates; ++i) {
+    for (int i = 0; i < dimension; ++i) {
       if (in(out, i) || in(given, i)) continue;
       const auto [first, count] = group(i);
       bool all = true;
@@ -106,7 +109,7 @@ VectorXd moved(const StudySystem& system, const VectorXd& y, const VectorXd& eta
 }
 
 VectorXd off(const StudySystem& system, const VectorXd& y) {
-  VectorXd eta(2 * system.tree().rates());
+  VectorXd eta(Directions(system).dimension);
   for (Eigen::Index i = 0; i < eta.size(); ++i) {
     eta[i] = 0.1 * std::cos(2.0 * static_cast<double>(i + 1));
   }
@@ -166,7 +169,8 @@ Steady find_steady(const StudySystem& system, const VectorXd& guess, double dura
     // Newton's steps would otherwise halve the angular velocity of a free body down to 0.
     const int w = directions.rates + first;
     Eigen::Index most = 0;
-    const double turns = guess.tail(directions.rates).segment(first, 3).cwiseAbs().maxCoeff(&most);
+    const Eigen::Index at = system.tree().coordinates() + first;
+    const double turns = guess.segment(at, 3).cwiseAbs().maxCoeff(&most);
     const bool free = cyclic[static_cast<std::size_t>(first)] && turns > 0;
     if (free) held[static_cast<std::size_t>(w) + static_cast<std::size_t>(most)] = true;
   }

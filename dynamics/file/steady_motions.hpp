@@ -48,10 +48,10 @@ using Places = std::vector<bool>;
 
 [[nodiscard]] Places joined(Places a, const Places& b);
 
-/// The directions of a state: first coordinates, then rates, then the variables that depend on
-/// them.
+/// The directions of a state: coordinates, as many rates, then the memory of controllers.
 struct Directions {
   int rates;
+  int dimension;
   Places given, held, running;  ///< as RuledDirections has them
   std::vector<int> attitudes;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <dynamics/control/controlled_system.hpp>
 #include <dynamics/file/scene_system.hpp>
 #include <dynamics/file/study_system.hpp>
 #include <dynamics/study/linearize.hpp>
@@ -14,9 +15,9 @@ namespace kreisel {
 
 /// The system of a scene for all guides, also for one at rest: studies evaluate too rarely to gain
 /// by a second type.
-class StudySystem::Bodies : public BodySystem<SceneGuide> {
+class StudySystem::Bodies : public ControlledSystem<SceneGuide> {
  public:
-  using BodySystem::BodySystem;
+  using ControlledSystem::ControlledSystem;
 };
 
 namespace {
@@ -39,17 +40,44 @@ bool at_rest(const Eigen::VectorXd& u) { return u.size() == 0 || u.cwiseAbs().ma
 
 StudySystem::StudySystem(const SceneFile& scene) : begin_(scene.t_begin) {
   SceneBodies in_gravity = bodies_in_gravity(scene);
-  bodies_ = std::make_unique<const Bodies>(make_guide_of_equations(scene),
-                                           std::move(in_gravity.bodies), in_gravity.gravity,
-                                           std::move(in_gravity.elements), scene.constraints);
+  BodySystem<SceneGuide> bodies(make_guide_of_equations(scene), std::move(in_gravity.bodies),
+                                in_gravity.gravity, std::move(in_gravity.elements),
+                                scene.constraints);
+  bodies_ =
+      std::make_unique<const Bodies>(std::move(bodies), scene.controllers, in_gravity.gravitation);
 }
 
 StudySystem::~StudySystem() = default;
 
 const BodyTree& StudySystem::tree() const { return bodies_->tree(); }
 
+std::vector<int> StudySystem::blocks() const { return bodies_->blocks(); }
+
+StudySystem::Vector StudySystem::start_of(const SceneFile& scene) const {
+  const JointState start = kreisel::start_of(scene);
+  return Bodies::to_vector(bodies_->start({start.coordinates, start.rates}));
+}
+
+JointState StudySystem::joints_of(const Vector& y) const {
+  return {y.head(tree().coordinates()), y.segment(tree().coordinates(), tree().rates()),
+          y.tail(bodies_->memory())};
+}
+
+std::vector<std::string> StudySystem::memory_names() const { return bodies_->memory_names(); }
+
+bool StudySystem::has_samples() const { return bodies_->has_samples(); }
+
+SampledTransition StudySystem::sampled_transition(const Vector& y) const {
+  return kreisel::sampled_transition<ControlledSystem<SceneGuide>>(*bodies_, begin_, y);
+}
+
+LinearPlant StudySystem::plant(const Vector& y, std::vector<PlantInput> inputs,
+                               std::vector<PlantOutput> outputs) const {
+  return linear_plant<SceneGuide>(*bodies_, begin_, y, std::move(inputs), std::move(outputs));
+}
+
 StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {
-  return bodies_->rates(t, y);
+  return bodies_->steady_rates(t, y);
 }
 
 StudySystem::Vector StudySystem::assembled(const Vector& y) const { return bodies_->assembled(y); }
@@ -61,7 +89,7 @@ Eigen::MatrixXd StudySystem::constraint_slopes(const Vector& y, const Eigen::Mat
 template <class Dual>
 requires(!std::same_as<Dual, double>)
     StudySystem::Numbers<Dual> StudySystem::rates(const Dual& t, const Numbers<Dual>& y)
-const { return bodies_->rates(t, y); }
+const { return bodies_->steady_rates(t, y); }
 
 using Duals = detail::Duals<detail::directions<StudySystem>>;
 template Eigen::Matrix<Duals, Eigen::Dynamic, 1> StudySystem::rates(
@@ -69,14 +97,20 @@ template Eigen::Matrix<Duals, Eigen::Dynamic, 1> StudySystem::rates(
 
 JointReactions StudySystem::reactions(double t, const Vector& y) const {
   JointReactions result;
-  BodyWorkspace w = bodies_->workspace();
+  auto w = bodies_->workspace();
   bodies_->reactions(t, y, result, w);
   return result;
 }
 
 Eigen::MatrixXd StudySystem::momenta_slope(double t, const Vector& y) const {
-  BodyWorkspace w = bodies_->workspace();
-  return kreisel::momenta_slope<SceneGuide>(*bodies_, t, y, w);
+  const Eigen::Index joints = tree().coordinates() + tree().rates();
+  BodyWorkspace w = bodies_->bodies().workspace();
+  const Eigen::MatrixXd slope =
+      kreisel::momenta_slope<SceneGuide>(bodies_->bodies(), t, y.head(joints), w);
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(slope.rows() + bodies_->memory(), slope.cols() + bodies_->memory());
+  result.topLeftCorner(slope.rows(), slope.cols()) = slope;
+  return result;
 }
 
 PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
@@ -86,13 +120,17 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
     check.beyond = "there is no rotor among the bodies";
     return check;
   }
+  if (!bodies_->loops().empty()) {
+    check.beyond = "precession equations are for scenes without controllers";
+    return check;
+  }
   if (!tree().constraints().empty()) {
     check.beyond = "precession equations are for scenes without constraints";
     return check;
   }
   PrecessionOptions options;
   try {
-    const PrecessionBodies<SceneGuide> model(*bodies_);
+    const PrecessionBodies<SceneGuide> model(bodies_->bodies());
     const auto [place, u] = model.start(begin_, start);
     check.velocities = static_cast<int>(u.size());
     if (rest.size() == 0) {
@@ -129,7 +167,7 @@ PrecessionCheck StudySystem::precession(const Vector& start, const Vector& rest,
 
 std::vector<StudySystem::Vector> StudySystem::technical(const Vector& start,
                                                         const std::vector<double>& times) const {
-  const PrecessionBodies<SceneGuide> model(*bodies_);
+  const PrecessionBodies<SceneGuide> model(bodies_->bodies());
   const auto [place, u] = model.start(begin_, start);
   PrecessionOptions options;
   for (const double t : times) options.output_times.push_back(begin_ + t);

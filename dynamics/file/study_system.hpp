@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/joints.hpp>
 #include <dynamics/file/scene_file.hpp>
+#include <dynamics/study/linear_plant.hpp>
 #include <dynamics/tree/reaction.hpp>
 #include <dynamics/tree/tree.hpp>
 
@@ -48,8 +50,11 @@ struct PrecessionCheck {
   Motion motion;
 };
 
-/// The bodies of a scene on their guide, as a system for studies. BodySystem and the templates that
-/// use it are compiled in system.cpp alone.
+/// The bodies of a scene on their guide, with its controllers, as a system for studies.
+/// ControlledSystem and the templates that use it are compiled in study_system.cpp alone.
+///
+/// A state has coordinates, rates and the memory of the controllers. The field of sampled
+/// controllers is ControlledSystem::steady_rates().
 class StudySystem {
   template <class N>
   using Numbers = Eigen::Matrix<N, Eigen::Dynamic, 1>;
@@ -66,7 +71,22 @@ class StudySystem {
   [[nodiscard]] const BodyTree& tree() const;
   /// The time of the start.
   [[nodiscard]] double begin() const { return begin_; }
-  [[nodiscard]] std::vector<int> blocks() const { return tree().blocks(); }
+  [[nodiscard]] std::vector<int> blocks() const;
+
+  /// The state at the start of the scene, and the joints of a state.
+  [[nodiscard]] Vector start_of(const SceneFile& scene) const;
+  [[nodiscard]] JointState joints_of(const Vector& y) const;
+
+  /// The names of the memory of controllers.
+  [[nodiscard]] std::vector<std::string> memory_names() const;
+
+  /// True if a controller is sampled. The roots are then those of sampled_transition().
+  [[nodiscard]] bool has_samples() const;
+  [[nodiscard]] SampledTransition sampled_transition(const Vector& y) const;
+
+  /// The linear plant about a steady state.
+  [[nodiscard]] LinearPlant plant(const Vector& y, std::vector<PlantInput> inputs,
+                                  std::vector<PlantOutput> outputs) const;
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
 

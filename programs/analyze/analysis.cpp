@@ -11,6 +11,7 @@
 
 #include <dynamics/decompositions.hpp>
 #include <dynamics/file/joints.hpp>
+#include <dynamics/file/plant.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
 #include <dynamics/tree/joint/list.hpp>
@@ -67,6 +68,25 @@ std::string frame_of(const kreisel::StudySystem& system, const VectorXd& state) 
   return "against the parent of each body; '" + carriers + "' turns against the guide";
 }
 
+/// The roots s of a loop with samples, from its multipliers z = exp(s period). Multipliers that are
+/// rounding have no root: they are dead beats.
+std::vector<GyroscopicMode> sampled_modes(const MatrixXd& transition, Linear& linear) {
+  std::vector<GyroscopicMode> modes;
+  for (const kreisel::Mode& multiplier : kreisel::spectrum(transition)) {
+    const double size = std::abs(multiplier.root);
+    if (size <= std::max(multiplier.error, 1e-12)) {
+      ++linear.dead_beats;
+      continue;
+    }
+    GyroscopicMode mode;
+    mode.root = std::log(multiplier.root) / linear.sample_period;
+    mode.error = multiplier.error / size / linear.sample_period;
+    mode.shape = multiplier.shape;
+    modes.push_back(std::move(mode));
+  }
+  return modes;
+}
+
 Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   const kreisel::steady_motion::Linearization there = linearized(system, system.begin(), state);
   const Directions directions(system);
@@ -75,8 +95,10 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   Linear linear;
   linear.names = there.names;
   linear.frame = frame_of(system, state);
+  linear.rates = directions.rates;
   // Modes have kinds by their change with the rotors' momenta, which is for trees alone.
-  linear.has_rotors = !system.tree().rotors().empty() && !there.free.bound();
+  linear.has_rotors =
+      !system.tree().rotors().empty() && !there.free.bound() && !system.has_samples();
   std::vector<int> left_out;
   for (const int i : list(out)) {
     const bool follows = there.free.is_dependent(i);
@@ -88,7 +110,15 @@ Linear linear_about(const kreisel::StudySystem& system, const VectorXd& state) {
   const MatrixXd A = there.A(kept, kept);
   MatrixXd slope = MatrixXd::Zero(A.rows(), A.cols());
   if (linear.has_rotors) slope = system.momenta_slope(system.begin(), state)(kept, kept);
-  for (GyroscopicMode& mode : kreisel::rotor_spectrum(A, slope)) {
+  std::vector<GyroscopicMode> modes;
+  if (system.has_samples()) {
+    const kreisel::SampledTransition transition = system.sampled_transition(state);
+    linear.sample_period = transition.period;
+    modes = sampled_modes(transition.matrix(kept, kept), linear);
+  } else {
+    modes = kreisel::rotor_spectrum(A, slope);
+  }
+  for (GyroscopicMode& mode : modes) {
     if (mode.root.imag() < 0) continue;
     const Eigen::VectorXcd own = mode.shape;
     mode.shape.setZero(there.A.rows());
@@ -130,6 +160,7 @@ bool has_potential(const kreisel::SceneFile& scene) {
       std::holds_alternative<kreisel::UniformGravity<kreisel::Inertial>>(scene.gravity) ||
       (planet != nullptr && !turns_along);
   if (!is_steady(scene) || (stands_still && !scene.rests())) return false;
+  if (!scene.controllers.empty()) return false;
   const bool pushes =
       !std::all_of(scene.elements.begin(), scene.elements.end(),
                    [](const kreisel::Element& element) { return kreisel::has_potential(element); });
@@ -162,7 +193,7 @@ bool is_lowest(const kreisel::StudySystem& system, const Equilibrium& equilibriu
     if (!there.free.is_dependent(i) && !fixed[static_cast<std::size_t>(i)]) free.push_back(i);
   }
   if (free.empty() || equilibrium.degenerate) return false;
-  const MatrixXd J = there.A.bottomRows(directions.rates)(free, free);
+  const MatrixXd J = there.A.middleRows(directions.rates, directions.rates)(free, free);
   const Eigen::VectorXd values = kreisel::eigenvalues(J).real();
   const double zero = 1e-9 * values.cwiseAbs().maxCoeff();
   const auto falls = [zero](double value) { return value < -zero; };
@@ -364,6 +395,41 @@ bool lost_spin(const kreisel::StudySystem& system, const VectorXd& start, const 
   });
 }
 
+/// True if the input is the joint force that the output, of a controller, is.
+bool opens_loop(const kreisel::SceneFile& scene, const kreisel::PlantInput& input,
+                const kreisel::PlantOutput& output) {
+  const auto* const of = std::get_if<kreisel::PlantOutput::OfController>(&output.kind);
+  if (of == nullptr) return false;
+  const kreisel::Controller& controller = scene.controllers[of->controller];
+  return input.name == "joint." + controller.drives[static_cast<std::size_t>(of->component)];
+}
+
+Response response_of(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
+                     const Steady& steady, const ResponseRequest& request) {
+  Response response;
+  response.input = plant_input(scene, request.input);
+  response.output = plant_output(scene, request.output);
+  response.frequencies = request.frequencies;
+  if (!steady.exists()) {
+    throw kreisel::ComputationFailed("--response: no steady motion: " + steady.reason);
+  }
+  const kreisel::LinearPlant plant =
+      system.plant(steady.state, {response.input}, {response.output});
+  const auto at = [&plant](double w) { return plant.response(w)(0, 0); };
+  for (const double w : response.frequencies) response.values.push_back(at(w));
+  response.is_first_harmonic = plant.period > 0;
+  response.bandwidth = bandwidth(at, response.frequencies);
+  if (opens_loop(scene, response.input, response.output)) {
+    // A disturbance d of the joint force makes the controller answer -L/(1 + L) d.
+    const auto loop = [&at](double w) {
+      const std::complex<double> closed = at(w);
+      return -closed / (1.0 + closed);
+    };
+    response.margins = loop_margins(loop, response.frequencies);
+  }
+  return response;
+}
+
 }  // namespace
 
 kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& request) {
@@ -374,11 +440,8 @@ kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& re
 
 Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
                  const Request& request) {
-  const auto [coordinates, rates] = start_of(scene);
-  VectorXd start(coordinates.size() + rates.size());
-  start << coordinates, rates;
-  start = kreisel::detail::on_constraints(system, start);
-  if (rates.size() == 0) throw InvalidInput("nothing in this scene can move");
+  const VectorXd start = kreisel::detail::on_constraints(system, system.start_of(scene));
+  if (system.tree().rates() == 0) throw InvalidInput("nothing in this scene can move");
   Analysis result;
   const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
   const bool logged = scene.guide_follows_log();
@@ -414,6 +477,9 @@ Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& s
     } else {
       result.floquet = multipliers(system, start, *period, with_longer_guide(scene, request).t_end);
     }
+  }
+  if (request.response) {
+    result.response = response_of(system, scene, result.steady, *request.response);
   }
   result.precession = system.precession(start, result.steady.state, scene.t_end);
   return result;

@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 
+#include <complex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <dynamics/file/steady_motions.hpp>
 #include <dynamics/file/study_system.hpp>
+#include <dynamics/study/margins.hpp>
 #include <dynamics/study/spectrum.hpp>
 
 #include "request.hpp"
@@ -22,6 +24,9 @@ struct Linear {
   std::vector<std::string> names;      ///< of the directions
   std::vector<std::string> left_out;   ///< directions that are given or on which nothing depends
   std::vector<std::string> dependent;  ///< directions that follow from the others by constraints
+  int rates = 0;                       ///< number of rates: directions of coordinates come first
+  double sample_period = 0;            ///< s, common to all controllers; 0: none is sampled
+  int dead_beats = 0;                  ///< number of roots that die within it
   std::string frame;                   ///< in which the modes are observed: "against the guide", ..
   bool has_rotors = false;             ///< so that modes have a kind
   Verdict verdict = Verdict::marginal;
@@ -47,6 +52,17 @@ struct Floquet {
   Verdict verdict = Verdict::marginal;
 };
 
+/// The response of an output to an input, at increasing frequencies.
+struct Response {
+  kreisel::PlantInput input;
+  kreisel::PlantOutput output;
+  std::vector<double> frequencies;           ///< rad/s
+  std::vector<std::complex<double>> values;  ///< output per input
+  std::optional<double> bandwidth;
+  std::optional<kreisel::LoopMargins> margins;  ///< of a loop that is open at this joint force
+  bool is_first_harmonic = false;               ///< a controller is sampled
+};
+
 /// An equilibrium and the linear equations about it.
 struct Rest {
   kreisel::steady_motion::Equilibrium equilibrium;
@@ -64,6 +80,7 @@ struct Analysis {
   std::optional<Linear> linear;
   std::optional<Campbell> campbell;
   std::optional<Floquet> floquet;
+  std::optional<Response> response;
   kreisel::PrecessionCheck precession;
   std::vector<std::string> notes;  ///< on the limits of this program
 };

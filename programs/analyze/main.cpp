@@ -14,6 +14,8 @@ int run(const Request& request) {
   const kreisel::StudySystem system(with_longer_guide(scene, request));
   const Analysis analysis = analyze(system, scene, request);
   const Result result{scene, system, analysis};
+  if (request.response_file) write_response(result, *request.response_file);
+  if (request.state_space) write_state_space(result, *request.state_space);
   if (request.plot) draw(result, *request.plot);
   if (request.json) {
     print_json(result);

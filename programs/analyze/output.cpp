@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <dynamics/file/atomic_file.hpp>
+#include <dynamics/file/plant.hpp>
 #include <dynamics/file/printable.hpp>
 
 #include "../shared/joint_tables.hpp"
@@ -33,18 +35,16 @@ double damping_ratio(const std::complex<double>& root) {
 }
 
 /// The direction of the coordinate or rate with the greatest amplitude.
-std::string mostly(const GyroscopicMode& mode, const std::vector<std::string>& names) {
-  const Eigen::Index half = mode.shape.size() / 2;
+std::string mostly(const GyroscopicMode& mode, const std::vector<std::string>& names, int rates) {
   Eigen::Index most = 0;
-  if (mode.shape.head(half).cwiseAbs().maxCoeff(&most) == 0) {
+  if (mode.shape.head(rates).cwiseAbs().maxCoeff(&most) == 0) {
     mode.shape.cwiseAbs().maxCoeff(&most);
   }
   return names[static_cast<std::size_t>(most)];
 }
 
 kreisel::JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
-  const kreisel::BodyTree& tree = result.system.tree();
-  return {state.head(tree.coordinates()), state.tail(tree.rates())};
+  return result.system.joints_of(state);
 }
 
 /// Sizes from a state and from the reactions in this state.
@@ -107,7 +107,7 @@ ordered_json roots_json(const Linear& linear) {
   ordered_json roots = ordered_json::array();
   for (const GyroscopicMode& mode : linear.modes) {
     roots.push_back(json(mode, linear.has_rotors));
-    roots.back()["mostly"] = mostly(mode, linear.names);
+    roots.back()["mostly"] = mostly(mode, linear.names, linear.rates);
   }
   return roots;
 }
@@ -118,6 +118,10 @@ ordered_json json(const Linear& linear) {
                          {"roots", roots_json(linear)},
                          {"left_out", linear.left_out}};
   if (!linear.dependent.empty()) result["dependent"] = linear.dependent;
+  if (linear.sample_period > 0) {
+    result["sample_period"] = linear.sample_period;
+    result["dead_beats"] = linear.dead_beats;
+  }
   return result;
 }
 
@@ -273,7 +277,12 @@ void print(const Linear& linear) {
     const std::complex<double> root = shown(mode);
     fmt::print("  {:16.8g} {:18.10g} {:14.6g} {:12.4g}  {:12} {}\n", root.real(), root.imag(),
                root.imag() / (2 * std::numbers::pi), damping_ratio(root),
-               kind(mode, linear.has_rotors), mostly(mode, linear.names));
+               kind(mode, linear.has_rotors), mostly(mode, linear.names, linear.rates));
+  }
+  if (linear.sample_period > 0) {
+    fmt::print(
+        "  of the sampled loop, from its transition over {:.9g} s; roots that die within it: {}\n",
+        linear.sample_period, linear.dead_beats);
   }
   if (!linear.left_out.empty()) {
     fmt::print("  without roots, given or such that nothing depends on it: {}\n",
@@ -352,12 +361,124 @@ void print(const kreisel::PrecessionCheck& check, double t_end) {
   }
 }
 
+/// The phase in degrees, in (-180, 180].
+double degrees(const std::complex<double>& value) {
+  return std::arg(value) * 180 / std::numbers::pi;
+}
+
+ordered_json json(const Response& response) {
+  ordered_json rows = ordered_json::array();
+  for (std::size_t i = 0; i < response.values.size(); ++i) {
+    rows.push_back({{"frequency", response.frequencies[i]},
+                    {"amplitude", std::abs(response.values[i])},
+                    {"phase", std::arg(response.values[i])}});
+  }
+  ordered_json result{{"input", response.input.name},
+                      {"input_unit", response.input.unit},
+                      {"output", response.output.name},
+                      {"output_unit", response.output.unit},
+                      {"first_harmonic", response.is_first_harmonic},
+                      {"rows", rows}};
+  if (response.bandwidth) result["bandwidth"] = *response.bandwidth;
+  if (response.margins) {
+    const auto crossing = [](const auto& found, const char* name) {
+      if (!found) return ordered_json();
+      return ordered_json{{"frequency", found->frequency}, {name, found->margin}};
+    };
+    result["phase_margin"] = crossing(response.margins->phase, "angle");
+    result["gain_margin"] = crossing(response.margins->gain, "factor");
+  }
+  return result;
+}
+
+void print(const Response& response) {
+  fmt::print("\nresponse of {}, {}, to {}, {}{}\n", kreisel::printable(response.output.name),
+             response.output.unit, kreisel::printable(response.input.name),
+             response.input.unit.empty() ? "reference" : response.input.unit,
+             response.is_first_harmonic ? "; first harmonic" : "");
+  fmt::print("  {:>16} {:>14} {:>16} {:>12}\n", "frequency, rad/s", "Hz", "amplitude",
+             "phase, deg");
+  for (std::size_t i = 0; i < response.values.size(); ++i) {
+    const double w = response.frequencies[i];
+    fmt::print("  {:16.10g} {:14.6g} {:16.10g} {:12.6g}\n", w, w / (2 * std::numbers::pi),
+               std::abs(response.values[i]), degrees(response.values[i]));
+  }
+  if (response.bandwidth) fmt::print("  bandwidth (-3 dB): {:.10g} rad/s\n", *response.bandwidth);
+  if (!response.margins) return;
+  const auto& [phase, gain] = *response.margins;
+  fmt::print("  the loop, opened at this joint force{}:\n",
+             response.is_first_harmonic ? ", by the first harmonic" : "");
+  if (phase) {
+    fmt::print("    phase margin {:.8g} deg at {:.10g} rad/s\n",
+               phase->margin * 180 / std::numbers::pi, phase->frequency);
+  } else {
+    fmt::print("    no phase margin: its gain does not cross 1 in this range\n");
+  }
+  if (gain) {
+    fmt::print("    gain margin {:.8g} at {:.10g} rad/s\n", gain->margin, gain->frequency);
+  } else {
+    fmt::print("    no gain margin: its phase does not cross -180 deg in this range\n");
+  }
+}
+
 }  // namespace
 
 const char* kind(const GyroscopicMode& mode, bool has_rotors) {
   static constexpr const char* kinds[] = {"nutation", "precession", "oscillation"};
   const bool oscillates = mode.root.imag() > mode.error;
   return has_rotors && oscillates ? kinds[static_cast<int>(mode.kind())] : "";
+}
+
+void write_response(const Result& result, const std::filesystem::path& path) {
+  kreisel::AtomicFile file(path);
+  const Response& response = *result.analysis.response;
+  std::string text = "frequency,amplitude,phase\n";
+  for (std::size_t i = 0; i < response.values.size(); ++i) {
+    text += fmt::format("{:.17g},{:.17g},{:.17g}\n", response.frequencies[i],
+                        std::abs(response.values[i]), std::arg(response.values[i]));
+  }
+  file.stream() << text;
+  file.commit();
+}
+
+void write_state_space(const Result& result, const std::filesystem::path& path) {
+  const Steady& steady = result.analysis.steady;
+  if (!steady.exists()) {
+    throw kreisel::ComputationFailed("--state-space: no steady motion: " + steady.reason);
+  }
+  const kreisel::LinearPlant plant =
+      result.system.plant(steady.state, plant_inputs(result.scene), plant_outputs(result.scene));
+  const kreisel::StateSpace matrices = state_space(plant);
+  const auto rows = [](const Eigen::MatrixXd& M) {
+    ordered_json all = ordered_json::array();
+    for (Eigen::Index i = 0; i < M.rows(); ++i) {
+      const Eigen::VectorXd row = M.row(i);
+      all.push_back(std::vector<double>(row.begin(), row.end()));
+    }
+    return all;
+  };
+  const auto named = [](const auto& all) {
+    ordered_json list = ordered_json::array();
+    for (const auto& one : all) list.push_back({{"name", one.name}, {"unit", one.unit}});
+    return list;
+  };
+  ordered_json inputs = ordered_json::array();
+  for (const auto& input : matrices.inputs) {
+    inputs.push_back({{"name", input.name}, {"unit", input.unit}, {"derivative", input.power}});
+  }
+  const ordered_json all{{"title", result.scene.title},
+                         {"frame", result.analysis.linear ? result.analysis.linear->frame : ""},
+                         {"dt", plant.period},
+                         {"states", plant.names},
+                         {"inputs", inputs},
+                         {"outputs", named(plant.outputs)},
+                         {"A", rows(matrices.A)},
+                         {"B", rows(matrices.B)},
+                         {"C", rows(plant.C)},
+                         {"D", rows(matrices.D)}};
+  kreisel::AtomicFile file(path);
+  file.stream() << all.dump(1) << '\n';
+  file.commit();
 }
 
 void print_json(const Result& result) {
@@ -371,6 +492,7 @@ void print_json(const Result& result) {
   if (a.linear) all["linear"] = json(*a.linear);
   if (a.campbell) all["campbell"] = json(*a.campbell);
   if (a.floquet) all["floquet"] = json(*a.floquet, result);
+  if (a.response) all["response"] = json(*a.response);
   all["precession"] = json(a.precession);
   all["notes"] = a.notes;
   fmt::print("{}\n", all.dump(2));
@@ -386,6 +508,7 @@ void print_summary(const Result& result) {
   if (a.linear) print(*a.linear);
   if (a.campbell) print(*a.campbell);
   if (a.floquet) print(*a.floquet, result);
+  if (a.response) print(*a.response);
   print(a.precession, result.scene.t_end);
   for (const std::string& note : a.notes) fmt::print("\nnote: {}\n", note);
 }

@@ -17,6 +17,14 @@ struct Result {
 void print_summary(const Result& result);
 void print_json(const Result& result);
 
+/// Writes the response as a table of frequency, amplitude and phase, in rad/s and radian.
+void write_response(const Result& result, const std::filesystem::path& path);
+
+/// Writes the linear plant about the steady motion as JSON.
+///
+/// Throws : kreisel::ComputationFailed without a steady motion
+void write_state_space(const Result& result, const std::filesystem::path& path);
+
 /// Draws roots, Campbell diagram and multipliers, if there are any, each as SVG and PNG.
 ///
 /// Throws : kreisel::ComputationFailed if gnuplot is not installed or fails

@@ -11,27 +11,56 @@ using kreisel::InvalidInput;
 
 namespace {
 
+/// The ends and the number of a range FROM:TO:N.
+struct Range {
+  double from;
+  double to;
+  int count;
+
+  /// option, example : for messages
+  Range(const std::string& option, const std::string& text, const char* example) {
+    const auto refuse = [&](const std::string& why) {
+      return InvalidInput(fmt::format("{} {}: {}", option, text, why));
+    };
+    const std::size_t first = text.find(':');
+    const std::size_t second = text.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) {
+      throw refuse(fmt::format("wanted FROM:TO:N, as {}", example));
+    }
+    from = command_line::number(option + " from", text.substr(0, first));
+    to = command_line::number(option + " to", text.substr(first + 1, second - first - 1));
+    const double n = command_line::number(option + " n", text.substr(second + 1));
+    if (!(n >= 2 && n <= 100000) || n != std::floor(n)) {
+      throw refuse("N is no whole number from 2 to 100000");
+    }
+    if (from == to) throw refuse("FROM and TO are the same");
+    count = static_cast<int>(n);
+    if (!std::isfinite((to - from) * count)) throw refuse("FROM and TO lie too far apart");
+  }
+};
+
 /// The speeds of "100:3000:30": first, last and number.
 std::vector<double> speeds(const std::string& text) {
-  const auto refuse = [&text](const char* why) {
-    return InvalidInput(fmt::format("--speeds {}: {}", text, why));
-  };
-  const std::size_t first = text.find(':');
-  const std::size_t second = text.find(':', first + 1);
-  if (first == std::string::npos || second == std::string::npos) {
-    throw refuse("wanted FROM:TO:N, as 100:3000:30");
-  }
-  const double from = command_line::number("--speeds from", text.substr(0, first));
-  const double to = command_line::number("--speeds to", text.substr(first + 1, second - first - 1));
-  const double count = command_line::number("--speeds n", text.substr(second + 1));
-  if (!(count >= 2 && count <= 100000) || count != std::floor(count)) {
-    throw refuse("N is no whole number from 2 to 100000");
-  }
-  if (from == to) throw refuse("FROM and TO are the same");
-  const int last = static_cast<int>(count) - 1;
-  if (!std::isfinite((to - from) * last)) throw refuse("FROM and TO lie too far apart");
+  const Range range("--speeds", text, "100:3000:30");
   std::vector<double> result;
-  for (int i = 0; i <= last; ++i) result.push_back(from + (to - from) * i / last);
+  for (int i = 0; i < range.count; ++i) {
+    result.push_back(range.from + (range.to - range.from) * i / (range.count - 1));
+  }
+  return result;
+}
+
+/// The frequencies of "0.1:100:200", equally spaced on a logarithmic scale.
+std::vector<double> frequencies(const std::string& text) {
+  const Range range("--frequencies", text, "0.1:100:200");
+  if (!(range.from > 0 && range.to > range.from)) {
+    throw InvalidInput("--frequencies " + text + ": FROM must be above 0 and below TO");
+  }
+  std::vector<double> result;
+  const double ratio = std::log(range.to / range.from);
+  for (int i = 0; i < range.count; ++i) {
+    result.push_back(range.from * std::exp(ratio * i / (range.count - 1)));
+  }
+  result.back() = range.to;
   return result;
 }
 
@@ -49,6 +78,11 @@ std::optional<Request> read_request(int argc, char** argv) {
   std::string body;
   std::string sweep;
   std::string plot;
+  std::string input;
+  std::string output;
+  std::string range;
+  std::string csv;
+  std::string state_space;
   app.add_option("scene", scene, "the scene file, TOML")->required()->type_name("SCENE.toml");
   app.add_option("--campbell", body, "how the roots go with the speed of this body")
       ->type_name("BODY");
@@ -61,6 +95,21 @@ std::optional<Request> read_request(int argc, char** argv) {
          },
          "s, of the coefficients: Floquet multipliers [that of a harmonic guide of one frequency]")
       ->type_name("NUMBER");
+  app.add_option("--response", input,
+                 "the amplitude and phase that this input causes: joint.BODY, "
+                 "load.BODY.torque.x, CONTROLLER.reference, guide.roll, ..")
+      ->type_name("INPUT");
+  app.add_option("--to", output, "in this output: a column of a joint, a sensor or a controller")
+      ->type_name("OUTPUT");
+  app.add_option("--frequencies", range, "rad/s, equally spaced on a logarithmic scale")
+      ->type_name("FROM:TO:N");
+  app.add_option("--csv", csv, "the response as a table: frequency, amplitude, phase")
+      ->type_name("FILE")
+      ->group("Output");
+  app.add_option("--state-space", state_space,
+                 "the linear plant as JSON: A, B, C, D, names and units")
+      ->type_name("FILE")
+      ->group("Output");
   app.add_flag("--json", request.json, "one JSON object on standard output")->group("Output");
   app.add_option("--plot", plot, "pictures of what is found, SVG and PNG, by gnuplot")
       ->type_name("FOLDER")
@@ -71,6 +120,14 @@ std::optional<Request> read_request(int argc, char** argv) {
   if (body.empty() != sweep.empty()) {
     throw InvalidInput("--campbell BODY and --speeds FROM:TO:N go together");
   }
+  const bool any = !input.empty() || !output.empty() || !range.empty();
+  if (any && (input.empty() || output.empty() || range.empty())) {
+    throw InvalidInput("--response INPUT, --to OUTPUT and --frequencies FROM:TO:N go together");
+  }
+  if (any) request.response = ResponseRequest{input, output, frequencies(range)};
+  if (!csv.empty() && !any) throw InvalidInput("--csv FILE needs --response");
+  if (!csv.empty()) request.response_file = csv;
+  if (!state_space.empty()) request.state_space = state_space;
   if (!body.empty()) request.campbell = Sweep{body, speeds(sweep)};
   return request;
 }

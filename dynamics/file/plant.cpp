@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <dynamics/file/columns.hpp>
+#include <dynamics/file/plant.hpp>
+#include <dynamics/file/quoted.hpp>
+#include <dynamics/file/scene_section.hpp>
+#include <dynamics/file/sensor_numbers.hpp>
+#include <dynamics/tree/joint/list.hpp>
+#include <motor/error.hpp>
+
+namespace kreisel {
+
+namespace {
+
+constexpr const char* axes[] = {"x", "y", "z"};
+
+std::string force_unit(const std::string& rate_unit) { return rate_unit == "m/s" ? "N" : "N m"; }
+
+/// Appends the joint forces of a body. `rate` is the first rate of its joint.
+void append_joint_forces(const BodyDescription& body, int rate, std::vector<PlantInput>& inputs) {
+  const JointType& type = joint_type(body.joint.kind);
+  const bool moves = body.rule == JointRule::forces;
+  const bool is_given = body.rotor && body.rotor->mode != RotorMode::torque;
+  if (!moves || is_given) return;
+  int k = 0;
+  for (const JointQuantity& quantity : type.rates) {
+    for (int i = 0; i < quantity.count(); ++i, ++k) {
+      const std::string number = type.rate_count() > 1 ? "." + std::to_string(k + 1) : "";
+      inputs.push_back({"joint." + body.name + number, force_unit(quantity.unit),
+                        PlantInput::JointForce{rate + k}});
+    }
+  }
+}
+
+void append_loads(const BodyDescription& body, int index, std::vector<PlantInput>& inputs) {
+  if (body.rotor) return;
+  for (int k = 0; k < 6; ++k) {
+    Motor<> unit;
+    (k < 3 ? unit.resultant : unit.moment)[k % 3] = 1;
+    const std::string what = k < 3 ? ".force." : ".torque.";
+    inputs.push_back({"load." + body.name + what + axes[k % 3], k < 3 ? "N" : "N m",
+                      PlantInput::BodyForce{index, unit}});
+  }
+}
+
+void append_references(const SceneFile& scene, std::vector<PlantInput>& inputs) {
+  for (std::size_t c = 0; c < scene.controllers.size(); ++c) {
+    const Controller& controller = scene.controllers[c];
+    const int count = static_cast<int>(controller.reads.size());
+    for (int i = 0; i < count; ++i) {
+      const std::string number = count > 1 ? "." + std::to_string(i + 1) : "";
+      inputs.push_back({controller.name + ".reference" + number, "", PlantInput::Reference{c, i}});
+    }
+  }
+}
+
+void append_guide(std::vector<PlantInput>& inputs) {
+  constexpr const char* angles[] = {"roll", "pitch", "yaw"};
+  for (int k = 0; k < 3; ++k) {
+    inputs.push_back({std::string("guide.") + angles[k], "rad", PlantInput::GuideTurn{k, false}});
+  }
+  for (int k = 0; k < 3; ++k) {
+    inputs.push_back({std::string("guide.angular_velocity.") + axes[k], "rad/s",
+                      PlantInput::GuideTurn{k, true}});
+  }
+  for (int k = 0; k < 3; ++k) {
+    inputs.push_back({std::string("guide.origin_acceleration.") + axes[k], "m/s^2",
+                      PlantInput::GuideAcceleration{k}});
+  }
+}
+
+/// The inputs of a scene; loads on all bodies, or only on those that have loads.
+std::vector<PlantInput> inputs_of(const SceneFile& scene, bool all_loads) {
+  const BodyTree tree(scene.bodies, scene.elements, scene.constraints);
+  std::vector<PlantInput> inputs;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    append_joint_forces(tree.body(i), tree.place(i).v, inputs);
+  }
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    if (all_loads || !tree.body(i).loads.empty()) append_loads(tree.body(i), i, inputs);
+  }
+  append_references(scene, inputs);
+  append_guide(inputs);
+  return inputs;
+}
+
+/// Appends the columns of a sensor that can be read.
+void append_sensor(const SceneSensor& sensor, const std::vector<BodyDescription>& bodies,
+                   std::vector<PlantOutput>& outputs) {
+  const std::vector<std::string> names = columns(sensor, bodies);
+  if (const auto* const of = std::get_if<scene_sensor::Outputs>(&sensor.kind)) {
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      outputs.push_back(
+          {names[k], of->units[k], PlantOutput::OfController{of->controller, static_cast<int>(k)}});
+    }
+    return;
+  }
+  if (!obstacle_to_reading(sensor).empty()) return;
+  const std::vector<SensorNumber> numbers = numbers_of(sensor, bodies);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    outputs.push_back({names[k], numbers[k].unit, numbers[k].reading});
+  }
+}
+
+template <class Named>
+Named named(const std::vector<Named>& all, const std::string& name, const char* what) {
+  std::vector<std::string> names;
+  for (const Named& one : all) {
+    if (one.name == name) return one;
+    names.push_back(one.name);
+  }
+  std::string list;
+  constexpr std::size_t most = 24;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) list += (i > 0 ? ", " : "") + names[i];
+  if (names.size() > most) list += ", ..";
+  throw InvalidInput(detail::in_quotes(name) + " is no " + what +
+                     detail::did_you_mean(name, names) + "; there are " + list);
+}
+
+}  // namespace
+
+std::vector<PlantInput> plant_inputs(const SceneFile& scene) { return inputs_of(scene, false); }
+
+PlantInput plant_input(const SceneFile& scene, const std::string& name) {
+  return named(inputs_of(scene, true), name, "input");
+}
+
+std::vector<PlantOutput> plant_outputs(const SceneFile& scene) {
+  std::vector<PlantOutput> outputs;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    const SceneSensor joint{scene.bodies[static_cast<std::size_t>(i)].name, scene_sensor::Joint{i}};
+    const JointType& type = joint_type(scene.bodies[static_cast<std::size_t>(i)].joint.kind);
+    std::vector<PlantOutput> own;
+    append_sensor(joint, scene.bodies, own);
+    // The coordinates of an attitude are read by an attitude sensor.
+    const auto from = type.has_attitude() ? static_cast<std::size_t>(type.coordinate_count()) : 0;
+    outputs.insert(outputs.end(), own.begin() + static_cast<std::ptrdiff_t>(from), own.end());
+  }
+  for (const SceneSensor& sensor : scene.sensors) append_sensor(sensor, scene.bodies, outputs);
+  return outputs;
+}
+
+PlantOutput plant_output(const SceneFile& scene, const std::string& name) {
+  return named(plant_outputs(scene), name, "output that can be read");
+}
+
+}  // namespace kreisel
