@@ -159,7 +159,7 @@ class ByMethod {
   /// 1e-14. Steps that are too long for a later part of the motion do not converge there.
   [[nodiscard]] Trajectory<double> by_gauss(const SolveOptions& options,
                                             const OnComponents& on_output) {
-    constexpr int most_tries = 5;
+    constexpr int most_tries = 12;
     double once = pace(scene_, options, start_);
     for (int i = 1;; ++i, once /= 4) {
       auto result = in_pairs({options, Method::gauss16, {2 * once, once / 2}}, options, on_output);

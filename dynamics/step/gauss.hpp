@@ -242,6 +242,7 @@ class GaussIRK {
   void solve_stages() {
     guess_stages();
     Vector least = Vector::Constant(y().size(), std::numeric_limits<Scalar>::max());
+    int stalled = 0;
     for (int iteration = 1; iteration <= most_iterations; ++iteration) {
       Vector change = Vector::Zero(y().size());
       for (int i = 0; i < stages; ++i) {
@@ -257,7 +258,8 @@ class GaussIRK {
       if (!detail::finite(stage_)) break;
       // Changes that no longer halve are rounding. A slow start must not be taken for rounding.
       const bool shrinks = (change.array() < least.array() / Scalar(2)).any();
-      if (!shrinks && at_rest(change)) {
+      stalled = shrinks ? 0 : stalled + 1;
+      if (!shrinks && at_rest(change, stalled)) {
         continues_ = true;
         return;
       }
@@ -288,9 +290,13 @@ class GaussIRK {
   }
 
   /// True if no block changes by more than rounding, of its present size or of its greatest size so
-  /// far. The latter matters for a motion that has died out, whose parts cancel.
-  [[nodiscard]] bool at_rest(const Vector& change) const {
-    constexpr Scalar rounding = 64 * std::numeric_limits<Scalar>::epsilon();
+  /// far. The latter matters for a motion that has died out, whose parts cancel. Where forces cancel,
+  /// rounding of the field is greater: changes that have stalled for many iterations are its effect.
+  [[nodiscard]] bool at_rest(const Vector& change, int stalled) const {
+    constexpr int many = 16;
+    constexpr Scalar rounding_of_forces = Scalar(1e-10);
+    const Scalar rounding =
+        stalled < many ? 64 * std::numeric_limits<Scalar>::epsilon() : rounding_of_forces;
     Vector greatest(y().size());
     sizes_.put(greatest);
     int begin = 0;

@@ -193,6 +193,16 @@ BOOST_AUTO_TEST_CASE(take_equal_steps_up_to_the_limit) {
   BOOST_CHECK_THROW(steps.take_steps_of(not_a_number), InvalidInput);
 }
 
+// Great forces that cancel leave their rounding, here as a function that no iteration resolves.
+BOOST_AUTO_TEST_CASE(bear_the_rounding_of_forces) {
+  constexpr double rounding = 1e-12;
+  const auto spring = [](double /*t*/, const State<2>& y) {
+    return State<2>(y[1], -y[0] + rounding * std::sin(1e18 * y[0]));
+  };
+  GaussIRK<State<2>, decltype(spring)> steps(spring, 0, State<2>(1e-4, 0), 0.3, {}, 1e-3);
+  BOOST_TEST(std::abs(steps.advance_to(10)[0] - 1e-4 * std::cos(10)) <= 10 * rounding);
+}
+
 BOOST_AUTO_TEST_CASE(stop_if_the_stages_do_not_converge) {
   GaussIRK wide(circle, 0.0, State<2>(1, 0), 50);
   BOOST_CHECK_THROW(wide.advance_to(50), ComputationFailed);
