@@ -212,8 +212,10 @@ class ApparentSeries {
       : guide_(guide), r_(r), field_(field), inertial_field_(inertial_field) {}
 
   [[nodiscard]] GuideSeries at(double t, double h, int order) {
+    // In a much shorter unit the coefficients underflow, and the factors that shift them overflow.
+    constexpr double farthest = 1e4;  // to the power of most_series_order it is finite
     const double ahead = std::abs(t - begin_) + 1.25 * std::abs(h);
-    if (!(ahead < reach_)) expand(t, h);
+    if (!(ahead < reach_) || std::abs(h) > farthest * unit_) expand(t, h);
     return shifted(series_, (t - begin_) / unit_, h / unit_, order);
   }
 

@@ -145,6 +145,10 @@ BOOST_AUTO_TEST_CASE(gives_the_apparent_field_at_any_time) {
                                {3 * longest, -longest}}) {
       hold(felt, t, h);
     }
+    // After a step between two close jumps, powers of the ratio of both units would overflow.
+    auto after_little = anew();
+    hold(after_little, 0, 0x1p-55);
+    hold(after_little, 0x1p-55, longest);
     for (int i = 1; i <= 20; ++i) {
       auto once = anew();
       hold(once, 0, longest);
