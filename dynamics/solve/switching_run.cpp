@@ -7,6 +7,7 @@
 #include <dynamics/solve/switching_run.hpp>
 #include <dynamics/step/shared.hpp>
 #include <dynamics/step/taylor.hpp>
+#include <dynamics/step/verner.hpp>
 
 namespace kreisel::detail {
 
@@ -167,10 +168,13 @@ void SwitchingRun::choose_method(double end, double output) {
   if (needless_ >= many) change_to(explicit_);
 }
 
-/// Changes from taylor to verner98 if steps three times as long are accepted. In a fast rotation of
-/// a body that is symmetric but for rounding, series amplify rounding; stages do not.
+/// Changes from taylor to verner98 if steps three times as long are stable and accepted. In a fast
+/// rotation of a body that is symmetric but for rounding, series amplify rounding; stages do not. In
+/// a damped motion near its rest a single long step says nothing: the next ones diverge.
 bool SwitchingRun::try_verner98(double end, double output) {
   const Eigen::VectorXd y = present();
+  const double speed = std::abs(dominant_eigenvalue(scene_, other_, run_->t(), y));
+  if (speed * 3 * run_->length() > Verner98::stable) return false;
   auto trial = run_by(Method::verner98, y);
   trial->know_sizes(sizes());
   const double from = run_->t();
