@@ -156,9 +156,9 @@ class KREISEL_API RadauIntegrator {
   void pass(Checkpoint& checkpoint) {
     checkpoint(sizes_, time_, state_, before_.time, before_.state, start_time_, last_stage_time_,
                step_, h_before_, worst_before_, rejected_.end, rejected_.step, rejected_.worst,
-               rate_, stages_.value, tangent_, rounding_level_, added_, effort_, rates_of_field_,
-               fastest_, growth_, steps_to_spectrum_, looked_at_, quiet_, barrier_.length,
-               barrier_.steps, barrier_.patience);
+               rate_, stages_.value, tangent_, rounding_level_, effort_, rates_of_field_, fastest_,
+               growth_, steps_to_spectrum_, looked_at_, quiet_, barrier_.length, barrier_.steps,
+               barrier_.patience);
   }
 
  private:
@@ -196,16 +196,13 @@ class KREISEL_API RadauIntegrator {
   /// The step length, limited so that growing motions are resolved.
   [[nodiscard]] double limited(double step) const;
 
-  /// Motions that a step does not resolve: their greatest rate, and the remaining part of the
-  /// slowest to decay at the next output. 0 if there are none.
-  struct Unresolved {
-    double fastest = 0;
-    double remains = 0;
-  };
+  /// The angle, or the number of time constants, that a step resolves: steps of 2 of order 13 err by
+  /// 1e-10.
+  [[nodiscard]] double resolved_angle() const;
 
-  /// The unresolved motions for a step of length h and an output at the distance `left`. Motions
-  /// that have decayed by then do not count.
-  [[nodiscard]] Unresolved unresolved(double h, double left) const;
+  /// The greatest rate of the motions that a step of length h does not resolve; 0 if there are none.
+  /// Motions that have died at the next output, at the distance `left`, do not count.
+  [[nodiscard]] double fastest_unresolved(double h, double left) const;
 
   /// The estimated error of a step of length h with known stages, in units of allowed_.
   [[nodiscard]] double estimate(double h);
@@ -214,8 +211,28 @@ class KREISEL_API RadauIntegrator {
   /// response decays, it is no error of the step.
   [[nodiscard]] double filtered_estimate(StiffField& field);
 
-  /// As above, without the contribution of rounding, which would never fall to the accuracy.
-  [[nodiscard]] double estimate_beyond_rounding();
+  /// The amplitude at the next output of the unresolved motions in this estimate, without its
+  /// rounding, which would never decrease to the accuracy. In units of allowed_.
+  [[nodiscard]] double living_amplitude(double h, double left);
+
+  /// The error of a step and its limit, both in units of allowed_.
+  struct Verdict {
+    double worst;
+    double most = 1;
+    bool looks_new = false;  ///< unresolved motions were examined
+    double lives = 0;        ///< the greatest rate of those that exceed the limit
+  };
+
+  /// The estimate has a lower order and therefore a higher limit. An unresolved motion smaller than
+  /// that limit is invisible to the estimate. If such a motion persists until the next output, it
+  /// must be as small as the accuracy. So must the estimate where the motion is not smooth.
+  [[nodiscard]] Verdict judge(StiffField& field, double h, double output, bool again);
+
+  /// True if a step is about as long as the rounding of its time. A jump cannot be located better.
+  [[nodiscard]] bool is_shortest(double h) const;
+
+  /// True if the parts of the polynomial of a step of length h do not decrease as those of a smooth motion.
+  [[nodiscard]] bool is_rough(double h) const;
 
   /// Sets the length of the next step from the length h and the error of this one, by Gustafsson's
   /// controller.
@@ -243,8 +260,12 @@ class KREISEL_API RadauIntegrator {
   /// One step of length h; returns true if it is accepted. Sets the length of the next step.
   bool attempt(StiffField& field, double h, double output, bool again);
 
-  /// Adds the rounding of this step to a random walk. Each stage is off by half a last digit, and
-  /// the mean over the stages stays. Motions that are damped within a step carry no rounding on.
+  /// The rounding of a step, squared. Each stage is off by half a last digit, and the mean over the
+  /// stages stays.
+  [[nodiscard]] Eigen::VectorXd rounding_of_step();
+
+  /// Adds the rounding of this step to a random walk. Motions that are damped within a step carry no
+  /// rounding on.
   void note_rounding();
 
   const RadauCoefficients* coefficients_;
@@ -271,7 +292,6 @@ class KREISEL_API RadauIntegrator {
   Eigen::VectorXd change_;
   Eigen::VectorXd from_stages_;
   Eigen::VectorXd error_;
-  Eigen::VectorXd added_;
   Eigen::MatrixXd tangent_;
   Eigen::MatrixXd rates_of_field_;  ///< eigenvalues of the Jacobian, a column each: Re, |Im|
   double fastest_ = 0;              ///< the greatest modulus of them

@@ -1,5 +1,6 @@
 #include <boost/test/unit_test.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -40,6 +41,15 @@ struct Follower {
     using std::cos;
     using std::sin;
     return State<1, S>(-stiffness * (y[0] - cos(t)) - sin(t));
+  }
+};
+
+/// An undamped spring.
+struct Oscillator {
+  double rate;
+  template <class S>
+  State<2, S> operator()(const S& /*t*/, const State<2, S>& y) const {
+    return {y[1], -rate * rate * y[0]};
   }
 };
 
@@ -145,6 +155,66 @@ BOOST_AUTO_TEST_CASE(keep_the_accuracy_at_undeclared_jumps) {
     const double truth = std::cos(3.0) + 0.7 * (1 - std::cos(3 - jump));
     BOOST_TEST(std::abs(steps.advance_to(3.0)[0] - truth) <= 1e-8);
     BOOST_TEST_MESSAGE("jump at " << jump << ": " << steps.effort().evaluations << " evaluations");
+  }
+}
+
+// A small jump within a long step once changed the rate by 6e-7. The error of a shorter step falls
+// with its length alone.
+BOOST_AUTO_TEST_CASE(keep_the_accuracy_at_small_jumps) {
+  for (int i = 0; i < 50; ++i) {
+    const double jump = 0.3 + 0.01 * i;
+    const auto pushed = [jump](const auto& t, const auto& y) {
+      std::decay_t<decltype(y)> rate = y;
+      rate[0] = y[1];
+      rate[1] *= 0;
+      if (t >= jump) rate[1] += 2e-6;
+      return rate;
+    };
+    auto steps = radau<7>(pushed, 0, State<2>(0, 1), {.relative = 1e-9});
+    BOOST_TEST(std::abs(steps.advance_to(1.0)[1] - (1 + 2e-6 * (1 - jump))) <= 1e-8);
+  }
+}
+
+// A wall throws a slow body back. At this accuracy the jump of the force would have to be located
+// within the rounding of time.
+BOOST_AUTO_TEST_CASE(pass_a_jump_that_time_cannot_resolve) {
+  const auto wall = [](const auto& /*t*/, const auto& y) {
+    std::decay_t<decltype(y)> rate = y;
+    rate[0] = y[1];
+    rate[1] *= 0;
+    if (y[0] >= 2.5e-5) rate[1] -= 40;
+    return rate;
+  };
+  auto steps = radau<7>(wall, 0.3, State<2>(0, 1e-4), {.relative = 1e-14});
+  BOOST_TEST(std::abs(steps.advance_to(0.6)[1] + 1e-4) <= 1e-12);
+}
+
+// At its greatest deflection a small oscillation is below the accuracy of the deflection, and has no
+// speed. Later its speed is a thousand times the accuracy of the speed.
+BOOST_AUTO_TEST_CASE(resolve_an_oscillation_without_speed) {
+  constexpr double rate = 1e5;
+  constexpr std::array<int, 2> blocks{1, 1};
+  const Oscillator field{rate};
+  const auto jacobian = forward_jacobian<2>(field);
+  RadauSteps<State<2>, Oscillator, decltype(jacobian)> steps(field, jacobian, 0, State<2>(1e-14, 0),
+                                                             {.relative = 1e-9}, blocks);
+  const State<2> y = steps.advance_to(0.01);
+  BOOST_TEST(std::abs(y[1] + 1e-14 * rate * std::sin(rate * 0.01)) <= 1e-11);
+}
+
+// Limits of the step's length would make the errors of two runs alike, and their difference small.
+BOOST_AUTO_TEST_CASE(take_shorter_steps_at_finer_accuracies) {
+  const auto count = [](double accuracy) {
+    constexpr std::array<int, 2> blocks{1, 1};
+    const Oscillator field{1e5};
+    const auto jacobian = forward_jacobian<2>(field);
+    RadauSteps<State<2>, Oscillator, decltype(jacobian)> steps(
+        field, jacobian, 0, State<2>(1e-10, 0), {.relative = accuracy}, blocks);
+    steps.advance_to(0.01);
+    return steps.effort().steps;
+  };
+  for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+    BOOST_TEST(count(accuracy / 30) >= 1.1 * count(accuracy));
   }
 }
 
