@@ -86,18 +86,16 @@ template <class S>
   return Matrix3<S>::Identity();
 }
 
-/// Gravitation at a point of a body, on guide axes: the load on a mass of 1 kg at the point.
+/// Gravitation at a position in the guide, on guide axes: the load on a mass of 1 kg at rest there.
 template <class S>
-[[nodiscard]] Vector3<S> gravitation(const MotionOfBodies<S>& system, int body,
-                                     const Vector3<double>& at) {
+[[nodiscard]] Vector3<S> gravitation(const MotionOfBodies<S>& system, const Vector3<S>& place) {
   if (system.gravity.load == nullptr) return system.gravity.uniform;
-  const BodyKinematicsOn<S>& b = system.body(body);
-  const Matrix3<S> to_body = b.R.transpose();
+  const Vector3<double> zero = Vector3<double>::Zero();
   const Inertia<> unit =
-      InertiaTensor<Body>::about_centre(1, at, Matrix3<double>::Zero(), Mass::zero_allowed).value;
+      InertiaTensor<Body>::about_centre(1, zero, Matrix3<double>::Zero(), Mass::zero_allowed).value;
   const LoadContext<S> here{
-      system.t, {{b.R, b.x}}, {{to_body * b.w, to_body * b.v}}, system.guide, {lifted<S>(unit)}};
-  return system.gravity.uniform + b.R * (*system.gravity.load)(here).value.resultant;
+      system.t, {{Matrix3<S>::Identity(), place}}, {}, system.guide, {lifted<S>(unit)}};
+  return system.gravity.uniform + (*system.gravity.load)(here).value.resultant;
 }
 
 }  // namespace detail

@@ -1,26 +1,55 @@
 #include <cmath>
+#include <utility>
 
 #include <dynamics/sensor/sensors.hpp>
 
 namespace kreisel {
 
+namespace {
+
+/// Apparent gravity on a mass at rest at a position in the guide, on guide axes.
+Vector3<double> apparent_gravity(const SystemKinematics& system, const Vector3<double>& place) {
+  const Vector3<double> zero = Vector3<double>::Zero();
+  const PointReading<> rest{place, zero, zero};
+  return detail::gravitation(system, place) -
+         detail::seen_from_inertial(rest, system.guide).acceleration;
+}
+
+/// The direction of the plumb line of this length that hangs from a point of the guide, by fixed
+/// point iteration.
+Vector3<double> plumb_line(const SystemKinematics& system, const Vector3<double>& pivot,
+                           double length) {
+  Vector3<double> down = Vector3<double>::Zero();
+  for (int i = 0; i < 50; ++i) {
+    const Vector3<double> before =
+        std::exchange(down, apparent_gravity(system, pivot + length * down).normalized());
+    if ((down - before).norm() <= 1e-15) break;
+  }
+  return down;
+}
+
+}  // namespace
+
 double AzimuthSensor::operator()(const SystemKinematics& system) const {
   using Matrix2 = Eigen::Matrix2d;
-  const Vector3<double> down =
-      (detail::gravitation(system, body, at) - system.guide.origin_acceleration()).normalized();
+  const PointReading<> point = detail::seen_from_guide(system.body(body), at);
+  const Vector3<double> reach = point.position - pivot;
+  const Vector3<double> down = plumb_line(system, pivot, reach.norm());
   const Vector3<double> axis =
       std::abs(down.z()) < 0.9 ? Vector3<double>::UnitZ() : Vector3<double>::UnitX();
   const Vector3<double> first = (axis - down.dot(axis) * down).normalized();
   Eigen::Matrix<double, 2, 3> level;
   level << first.transpose(), down.cross(first).transpose();
 
-  const PointReading<> point = detail::seen_from_guide(system.body(body), at);
-  const double turn = down.dot(system.guide.V.value.resultant);
-  const Matrix2 across = (Matrix2() << 0, -turn, turn, 0).finished();
-  const Eigen::Vector2d p = level * (point.position - pivot);
+  const auto turn_by = [&down](const Vector3<double>& w) {
+    return (Matrix2() << 0, -down.dot(w), down.dot(w), 0).finished();
+  };
+  const Matrix2 turn = turn_by(system.guide.V.value.resultant);
+  const Eigen::Vector2d p = level * reach;
   const Eigen::Vector2d relative = level * point.velocity;
-  const Eigen::Vector2d v = relative + across * p;
-  const Eigen::Vector2d a = level * point.acceleration + across * (relative + v);
+  const Eigen::Vector2d v = relative + turn * p;
+  const Eigen::Vector2d a = level * point.acceleration + turn * (relative + v) +
+                            turn_by(system.guide.dV.value.resultant) * p;
   const Matrix2 pull = a * p.transpose();
   const Matrix2 S = v * v.transpose() - (pull + pull.transpose()) / 2;
   return reference + std::atan2(2 * S(0, 1), S(0, 0) - S(1, 1)) / 2;

@@ -91,11 +91,15 @@ struct AttitudeSensor {
 /// For small swings a = -w^2 p, and S is constant. At turning points the reading is the direction of
 /// p. A pendulum that circles has no plane; its reading is arbitrary.
 ///
-/// Frame  : an angle about the direction of apparent gravity at the guide's origin, which is
-///          clockwise from above: from the guide's z axis, or from x if z is within 26 degrees of
-///          vertical. In [-pi/2, pi/2], plus `reference`
+/// The vertical is the plumb line from the pivot: apparent gravity as far below the pivot as the
+/// point is. It does not change with the swing, and the point at rest is on it. On a guide that turns
+/// at the rate u, apparent gravity at the pivot differs by up to u^2 d/g at the distance d.
+///
+/// Frame  : an angle about the vertical, clockwise from above: from the guide's z axis, or from x if
+///          z is within 26 degrees of vertical. In [-pi/2, pi/2], plus `reference`
 /// Units  : rad
-/// Error  : of a plane swing of any size <= 1e-14 (tests/dynamics/sensor/sensors)
+/// Error  : of a plane swing of any size <= 1e-14; of the direction of the plumb line <= 2e-15 for
+///          u^2 d <= g/2                            (tests/dynamics/sensor/sensors)
 struct KREISEL_API AzimuthSensor {
   int body = 0;
   Vector3<double> at = Vector3<double>::Zero();
@@ -146,9 +150,9 @@ Vector3<S> Gyro::operator()(const MotionOfBodies<S>& system) const {
 template <class S>
 Vector3<S> Accelerometer::operator()(const MotionOfBodies<S>& system) const {
   const BodyKinematicsOn<S>& b = system.body(body);
-  const Vector3<S> a =
-      detail::seen_from_inertial(detail::seen_from_guide(b, at), system.guide).acceleration;
-  return detail::on_sensor_axes(axes, b.R, Vector3<S>(a - detail::gravitation(system, body, at)));
+  const PointReading<S> p = detail::seen_from_guide(b, at);
+  const Vector3<S> a = detail::seen_from_inertial(p, system.guide).acceleration;
+  return detail::on_sensor_axes(axes, b.R, Vector3<S>(a - detail::gravitation(system, p.position)));
 }
 
 template <class S>

@@ -41,6 +41,13 @@ BodyDescription described(const std::string& name, const std::string& parent, co
   return {.name = name, .parent = parent, .joint = joint, .inertia = tensor};
 }
 
+/// A bob of 2 kg in a spherical joint.
+BodyDescription hanging(const Vector& centre = {0, 0, -0.5},
+                        const Vector& moments = {0.3, 0.3, 0.1}) {
+  return described("bob", "guide", {.kind = JointKind::spherical},
+                   InertiaTensor<Body>::about_centre(2, centre, moments.asDiagonal()));
+}
+
 double off(const Vector& found, const Vector& expected) { return (found - expected).norm(); }
 
 }  // namespace
@@ -86,12 +93,8 @@ BOOST_AUTO_TEST_CASE(on_a_pendulum) {
 
 // Swings about a horizontal axis whose plane has the angle -b from x, clockwise from above.
 BOOST_AUTO_TEST_CASE(azimuth_of_a_plane_swing) {
-  const double m = 2, s = 0.5, g = 9.8125;
-  const auto bob = described(
-      "bob", "guide", {.kind = JointKind::spherical},
-      InertiaTensor<Body>::about_centre(m, {0, 0, -s}, Vector(0.3, 0.3, 0.1).asDiagonal()));
   const BodySystem<RestingFrame<>> system{
-      RestingFrame<>{}, {bob}, UniformGravity<Guide>{{0, 0, -g}}};
+      RestingFrame<>{}, {hanging()}, UniformGravity<Guide>{{0, 0, -9.8125}}};
   BodyWorkspace w = system.workspace();
   for (const double b : {0.3, -1.2, 0.0}) {
     const Vector axis(std::sin(b), -std::cos(b), 0);
@@ -102,6 +105,58 @@ BOOST_AUTO_TEST_CASE(azimuth_of_a_plane_swing) {
       const auto now = kinematics(system, 0, y, w);
       BOOST_TEST(std::abs(AzimuthSensor{0, {0, 0, -1}}(now) + b) <= 1e-14);
     }
+  }
+}
+
+// A guide turns unevenly about the vertical through the pivot. The plane keeps its direction in the
+// inertial frame, and turns back in the guide.
+BOOST_AUTO_TEST_CASE(azimuth_on_an_uneven_turntable) {
+  const auto table = posed<Guide, Inertial>([](const auto& t) {
+    using std::cos;
+    using std::sin;
+    using T = std::decay_t<decltype(t)>;
+    const T half = T(0.1) * t + T(0.4) * t * t;
+    return Pose<T>::from(Eigen::Quaternion<T>(T(cos(half)), T(0), T(0), T(sin(half))),
+                         Vector3<T>(T(0), T(0), T(0)));
+  });
+  const BodySystem<std::decay_t<decltype(table)>> system{
+      table, {hanging()}, UniformGravity<Guide>{{0, 0, -9.8125}}};
+  BodyWorkspace w = system.workspace();
+  for (const double t : {0.0, 0.5, 1.0}) {
+    const double turned = 0.2 * t + 0.8 * t * t, rate = 0.2 + 1.6 * t;
+    for (const auto& [angle, speed] : {std::pair(0.7, 0.0), {1e-3, 0.0}, {-0.4, 1.5}, {0.0, 2.0}}) {
+      const Eigen::Quaterniond back(Eigen::AngleAxisd(-turned, z_axis));
+      const Eigen::Quaterniond swung(Eigen::AngleAxisd(angle, -y_axis));
+      Eigen::VectorXd y(7);
+      y << (back * swung).coeffs(), -speed * y_axis - swung.conjugate() * Vector(0, 0, rate);
+      const auto now = kinematics(system, t, y, w);
+      BOOST_TEST(std::abs(AzimuthSensor{0, {0, 0, -1}}(now)-turned) <= 1e-14);
+    }
+  }
+}
+
+// A turntable tilts the plumb line outwards by a with  tan a = u^2 (r + d sin a)/g,  for a pivot at
+// the distance r from its axis. A small bob that is at rest in the guide, beside the plumb line, is
+// at a turning point. The force to the plumb line has the stiffness g/d in all directions but for
+// u^2 sin^2 a, which turns it by at most u^2 sin^2 a d/g.
+BOOST_AUTO_TEST_CASE(azimuth_about_the_plumb_line) {
+  const double u = 0.5, r = 2, d = 1, g = 9.8125, side = 0.01;
+  double tilt = 0;
+  for (int i = 0; i < 20; ++i) tilt = std::atan(u * u * (r + d * std::sin(tilt)) / g);
+  auto bob = hanging({0, 0, -d}, Vector::Constant(1e-9));
+  bob.joint.position = {r, 0, 0};
+  const RotatingFrame<> table{.angular_velocity = {0, 0, u}};
+  const BodySystem<RotatingFrame<>> system{table, {bob}, UniformGravity<Guide>{{0, 0, -g}}};
+  BodyWorkspace w = system.workspace();
+  const Eigen::Quaterniond plumb(Eigen::AngleAxisd(-tilt, y_axis));
+  for (const double b : {0.3, -1.2}) {
+    const Vector axis(std::sin(b), -std::cos(b), 0);
+    const Eigen::Quaterniond q = plumb * Eigen::AngleAxisd(side, axis);
+    Eigen::VectorXd y(7);
+    y << q.coeffs(), Vector::Zero();
+    const auto now = kinematics(system, 0, y, w);
+    const double found = AzimuthSensor{0, {0, 0, -d}, {r, 0, 0}}(now);
+    BOOST_TEST(std::abs(found + b) <= u * u * std::pow(std::sin(tilt), 2) * d / g);
   }
 }
 
