@@ -114,6 +114,17 @@ Link orbit(Random& r) {
   return link;
 }
 
+/// Banks a vehicle without lateral apparent gravity. Its turn and climb are smooth then.
+void coordinate(Random& r, Vehicle& vehicle) {
+  const auto along = [&r] { return Vector(sign(r) * Vector::UnitX()); };
+  vehicle.is_coordinated = true;
+  vehicle.bank = {};
+  if (!vehicle.turn_rate.empty()) vehicle.turn_rate = smooth_signal(r, 0.1, along);
+  if (!vehicle.climb.empty()) vehicle.climb = smooth_signal(r, 1, along);
+  Jumps& jumps = vehicle.acceleration.jumps;
+  jumps.is_broken_line = jumps.is_broken_line || !jumps.times.empty();
+}
+
 /// A ship or an aircraft, away from the poles, where the reference has singular angles.
 Link course(Random& r) {
   Link link{.kind = LinkKind::course};
@@ -134,6 +145,7 @@ Link course(Random& r) {
   if (r.chance(0.4)) vehicle.acceleration = in_steps(0.5, false);
   if (r.chance(0.3)) vehicle.climb = in_steps(1, true);
   if (r.chance(0.3)) vehicle.bank = smooth_signal(r, 0.2, along);
+  if (r.chance(0.3)) coordinate(r, vehicle);
   link.gravity = r.pick<const char*>({"\"normal\"", "\"normal\"", "9.81", "\"none\"", ""});
   return link;
 }
@@ -179,12 +191,6 @@ void add_guide(Random& r, Scene& scene) {
   scene.guide.push_back(any_link(r, true));
   while (scene.guide.size() < 3 && r.chance(0.15)) scene.guide.push_back(any_link(r, false));
   scene.chain_in_chain = scene.guide.size() > 1 && r.chance(0.3);
-  // The reference takes a number on the axes of the whole guide.
-  Link& first = scene.guide.front();
-  const bool is_level = scene.guide.size() == 1 && first.vehicle.bank.empty();
-  if (first.kind == LinkKind::course && !is_level && first.gravity == "9.81") {
-    first.gravity = "\"normal\"";
-  }
 }
 
 void add_gravity_of_log(Random& r, Scene& scene) {

@@ -11,11 +11,51 @@ int frame(Random& r, const Scene& scene) {
   return r.below(static_cast<int>(scene.bodies.size()) + 2) - 2;
 }
 
+bool has_gravity(const Scene& scene) {
+  if (scene.gravity != GravityKind::not_given) return scene.gravity != GravityKind::none;
+  if (scene.guide.empty()) return false;
+  const std::string& own = scene.guide.front().gravity;
+  return !own.empty() && own != "\"none\"";
+}
+
+/// Three numbers for the axes, or one for all of them.
+Vector for_axes(Random& r, double size) {
+  return r.chance(0.3) ? Vector::Constant(size * plain(r, 0.1, 3))
+                       : Vector(size * vector(r, 0.1, 3));
+}
+
+SensorErrors errors(Random& r, const Sensor& sensor) {
+  SensorErrors result;
+  if (r.chance(0.5)) result.misalignment = vector(r, 0.001, 0.3);
+  if (r.chance(0.5)) result.scale = for_axes(r, 0.01);
+  result.is_in_degrees = sensor.kind == SensorKind::gyro && r.chance(0.2);
+  if (r.chance(0.5)) result.bias = for_axes(r, result.is_in_degrees ? 1 : 0.02);
+  if (r.chance(0.3)) result.resolution = r.pick({0.001, 0.1, 1.0});
+  if (r.chance(0.2)) result.range = r.pick({0.5, 2.0, 100.0});
+  if (r.chance(0.6)) return result;
+  if (r.chance(0.6)) result.noise = for_axes(r, 0.01).cwiseAbs();
+  if (r.chance(0.3)) result.drift = for_axes(r, 0.01).cwiseAbs();
+  if (r.chance(0.3)) result.sigma = for_axes(r, 0.01).cwiseAbs();
+  result.time = plain(r, 0.1, 10);
+  result.seed = r.chance(0.5) ? 0 : r.below(1000);
+  return result;
+}
+
 Sensor sensor(Random& r, const Scene& scene) {
   Sensor result;
-  result.kind = r.pick({SensorKind::gyro, SensorKind::accelerometer, SensorKind::accelerometer,
-                        SensorKind::point, SensorKind::attitude, SensorKind::reaction});
   result.body = r.below(static_cast<int>(scene.bodies.size()));
+  result.kind = r.pick({SensorKind::gyro, SensorKind::accelerometer, SensorKind::accelerometer,
+                        SensorKind::point, SensorKind::attitude, SensorKind::reaction,
+                        SensorKind::joint, SensorKind::azimuth});
+  const bool is_fixed =
+      scene.bodies[static_cast<std::size_t>(result.body)].kind == JointKind::fixed;
+  if (result.kind == SensorKind::azimuth && !has_gravity(scene)) result.kind = SensorKind::joint;
+  if (result.kind == SensorKind::joint && is_fixed) result.kind = SensorKind::gyro;
+  if (result.kind == SensorKind::joint) return result;
+  if (result.kind == SensorKind::azimuth) {
+    result.at = vector(r, 0.1, 3);
+    return result;
+  }
   const bool is_point = result.kind == SensorKind::point;
   const bool is_attitude = result.kind == SensorKind::attitude;
   if (!is_attitude && r.chance(0.7)) result.at = vector(r, 0.1, 3);
@@ -34,6 +74,7 @@ Sensor sensor(Random& r, const Scene& scene) {
   }
   const bool is_sampled = !result.increments.empty() || (scene.model.empty() && r.chance(0.1));
   if (is_sampled) result.period = scene.t_end / 8;
+  if (integrates && r.chance(0.3)) result.errors = errors(r, result);
   return result;
 }
 

@@ -135,7 +135,7 @@ std::optional<WrongIncrements> wrong_increments(const SceneSolver& model, const 
   std::optional<WrongIncrements> worst;
   const double* numbers = row.data();
   for (const SceneSensor& sensor : file.sensors) {
-    const Vector3<double> read(numbers);
+    const Vector3<double> read(numbers + (sensor.errors ? 3 : 0));  // without errors
     for (const auto& part : parts(sensor, file.bodies)) numbers += part.components.size();
     if (!integrates(sensor) || sensor.period != some->period) continue;
     const auto right = wanted(sensor, coarse, fine);

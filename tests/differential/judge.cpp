@@ -10,6 +10,8 @@ namespace differential {
 
 namespace {
 
+constexpr double pi = 3.14159265358979323846;
+
 /// Numbers are replaced by #, so that messages of one kind are equal.
 std::string without_numbers(const std::string& text) {
   static const std::regex number("[-+]?[0-9]+(\\.[0-9]*)?(e[-+]?[0-9]+)?");
@@ -53,6 +55,7 @@ class Judge {
     judge_reactions();
     judge_readings();
     judge_increments();
+    if (answers_.wrongly_random) add("sensors: errors do not depend on the seed alone", "");
     for (const Answer& answer : answers_.by_method) {
       judge_failure(answer);
       if (!answer.answered) continue;
@@ -142,13 +145,14 @@ class Judge {
     std::vector<Part> parts;
     std::size_t begin = 0;
     for (const Sensor& sensor : scene_.sensors) {
-      static constexpr int vectors[] = {1, 1, 3, 1, 2};
-      for (int k = 0; k < vectors[static_cast<std::size_t>(sensor.kind)]; ++k) {
-        const bool is_point = sensor.kind == SensorKind::point;
+      const std::vector<int> counts = parts_of(scene_, sensor);
+      const bool is_point = sensor.kind == SensorKind::point;
+      for (std::size_t k = 0; k < counts.size(); ++k) {
         const bool is_force = sensor.kind == SensorKind::accelerometer ||
-                              sensor.kind == SensorKind::reaction || (is_point && k == 2);
-        const Part part{sensor.kind, begin, sensor.kind == SensorKind::attitude ? 4U : 3U,
-                        is_point && k < 2, is_force};
+                              sensor.kind == SensorKind::reaction ||
+                              sensor.kind == SensorKind::azimuth || (is_point && k == 2);
+        const Part part{sensor.kind, begin, std::size_t(counts[k]),
+                        (is_point && k < 2) || sensor.kind == SensorKind::joint, is_force};
         begin += part.count;
         if (sensor.increments.empty()) parts.push_back(part);  // increments are 0 at the start
       }
@@ -175,16 +179,20 @@ class Judge {
           .norm();
     };
     double size = 1;
-    for (const Part& part : parts) size = part.is_place ? size : std::max(size, norm(part));
     for (const Part& part : parts) {
-      if (part.is_force && is_stiff()) continue;
+      const double own = norm(part);
+      if (!part.is_place && std::isfinite(own)) size = std::max(size, own);
+    }
+    for (const Part& part : parts) {
+      if ((part.is_force && is_stiff()) || std::isnan(norm(part))) continue;
       double off = 0;
       double turned = 0;  // the other quaternion of an attitude
       for (std::size_t i = part.begin; i < part.begin + part.count; ++i) {
         off = std::max(off, std::abs(answers_.readings[i] - right[i]));
         turned = std::max(turned, std::abs(answers_.readings[i] + right[i]));
       }
-      if (part.kind == SensorKind::attitude) off = std::min(off, turned);
+      if (part.count == 4) off = std::min(off, turned);
+      if (part.kind == SensorKind::azimuth) off = std::abs(std::remainder(off, pi));
       if (off <= (1e-9 + unknown()) * (size + norm(part))) continue;
       add("a sensor is wrong", fmt::format("number {}, kind {}, by {:.3g} of {:.3g}", part.begin,
                                            static_cast<int>(part.kind), off, norm(part)));

@@ -180,16 +180,23 @@ void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion&
 std::vector<int> blocks(const Scene& scene) {
   std::vector<int> result;
   for (const Body& body : scene.bodies) {
-    const kreisel::JointType& type = kreisel::joint_type(body.free_kind());
-    for (const auto* const quantities : {&type.coordinates, &type.rates}) {
-      for (const auto& quantity : *quantities) {
-        const int count = quantity.count();
-        const bool single = type.has_single_coordinates();
-        result.insert(result.end(), single ? std::size_t(count) : 1, single ? 1 : count);
-      }
-    }
+    const std::vector<int> own = blocks(body.free_kind());
+    result.insert(result.end(), own.begin(), own.end());
   }
   return result;
+}
+
+std::vector<int> parts_of(const Scene& scene, const Sensor& sensor) {
+  switch (sensor.kind) {
+    case SensorKind::gyro:
+    case SensorKind::accelerometer: return std::vector<int>(sensor.errors ? 2 : 1, 3);
+    case SensorKind::point: return {3, 3, 3};
+    case SensorKind::attitude: return {4};
+    case SensorKind::reaction: return {3, 3};
+    case SensorKind::azimuth: return {1};
+    case SensorKind::joint: break;
+  }
+  return blocks(scene.bodies[static_cast<std::size_t>(sensor.body)].free_kind());
 }
 
 JointValues start_values(const Scene& scene) {

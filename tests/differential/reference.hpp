@@ -18,6 +18,9 @@ using JointValues = std::vector<double>;
 /// coordinates.
 [[nodiscard]] std::vector<int> blocks(const Scene& scene);
 
+/// Numbers in a sensor's readings that belong together, in the order of the file's columns.
+[[nodiscard]] std::vector<int> parts_of(const Scene& scene, const Sensor& sensor);
+
 /// Reference sizes for the drift of invariants.
 struct Sizes {
   long double energy = 0;
@@ -41,7 +44,7 @@ struct ReferenceMotion {
 /// torque is about the body's origin, all on body axes.
 [[nodiscard]] std::vector<double> start_reactions(const Scene& scene);
 
-/// Readings of sensors at the start, in the order of Tree::readings().
+/// Readings of sensors at the start, in the order of Tree::readings(); NaN for unknown numbers.
 [[nodiscard]] std::vector<double> start_readings(const Scene& scene);
 
 /// The pose of a body in the guide: attitude and position of its origin.

@@ -11,9 +11,6 @@ namespace differential::reference {
 namespace {
 
 constexpr Real pi = 3.14159265358979323846264338327950288L;
-constexpr Real equator = 6378137;
-constexpr Real flattening = 1 / 298.257223563L;
-constexpr Real earth_rate = Real(7.292115e-5);  // as double, like the site's
 
 struct Oscillation {
   Vec value;
@@ -143,11 +140,6 @@ Motion moved(const Link& link, Real t) {
 constexpr Real earth_gm = 3.986004418e14L;
 constexpr Real earth_j2 = 1.08262982131e-3L;
 
-/// A frame that turns about an axis from an angle on.
-Motion turning(const Vec& axis, Real angle, Real rate, Real rate_of_rate = 0) {
-  return {Eigen::AngleAxis<Real>(angle, axis).toRotationMatrix(), rate * axis, rate_of_rate * axis};
-}
-
 /// The eccentric anomaly by bisection.
 Real eccentric_anomaly(Real M, Real e) {
   Real low = M - e;
@@ -191,26 +183,6 @@ Vec planet_gravitation(const Vec& p, const Vec& pole, bool oblate) {
   return -earth_gm / (r * r) * ((1 + k * (1 - 5 * s * s)) * p / r + 2 * k * s * pole);
 }
 
-/// A motion relative to a frame that moves itself.
-Motion on(const Motion& base, const Motion& own) {
-  const Vec x = base.R * own.x;
-  const Vec v = base.R * own.v;
-  const Vec w = base.R * own.w;
-  Motion sum;
-  sum.R = base.R * own.R;
-  sum.w = base.w + w;
-  sum.dw = base.dw + base.R * own.dw + base.w.cross(w);
-  sum.x = base.x + x;
-  sum.v = base.v + base.w.cross(x) + v;
-  sum.a = base.a + base.dw.cross(x) + base.w.cross(base.w.cross(x)) + 2 * base.w.cross(v) +
-          base.R * own.a;
-  return sum;
-}
-
-}  // namespace
-
-namespace {
-
 /// Node, inclination and perigee turn one after the other.
 Motion along_orbit(const Orbit& o, Real t) {
   const Real a = o.semi_major_axis;
@@ -226,51 +198,27 @@ Motion along_orbit(const Orbit& o, Real t) {
   return on(apse, in_plane(o, n, t));
 }
 
-/// A vehicle relative to the inertial frame, by the rates of latitude, longitude and heading.
-///
-///   lat' = v cos(hdg)/(M + h),   lon' = v sin(hdg)/((N + h) cos(lat)),
-///   hdg' = turn_rate + lon' sin(lat)
-Motion along_course(const Vehicle& vehicle, Real t, Real within, const Real* y, Real* rates) {
-  const Real lat = y[0], heading = y[2], h = y[3], v = y[4];
-  const Course turn = course_of(vehicle.turn_rate, t, within);
-  const Course climb = course_of(vehicle.climb, t, within);
-  const Real dv = course_of(vehicle.acceleration, t, within).value.x();
-  const Real dh = climb.value.x();
-  const Real e2 = flattening * (2 - flattening);
-  const Real s = std::sin(lat), c = std::cos(lat);
-  const Real w = 1 - e2 * s * s;
-  const Real N = equator / std::sqrt(w);
-  const Real M = N * (1 - e2) / w;
-  const Real north = v * std::cos(heading), east = v * std::sin(heading);
-  const Real dlat = north / (M + h);
-  const Real dlon = east / ((N + h) * c);
-  const Real dheading = turn.value.x() + dlon * s;
-  const Real numbers[] = {dlat, dlon, dheading, dh, dv};
-  std::copy(std::begin(numbers), std::end(numbers), rates);
+}  // namespace
 
-  const Real dnorth = dv * std::cos(heading) - east * dheading;
-  const Real deast = dv * std::sin(heading) + north * dheading;
-  const Real dN = N * e2 * s * c * dlat / w;
-  const Real dM = 3 * M * e2 * s * c * dlat / w;
-  const Real ddlat = (dnorth - dlat * (dM + dh)) / (M + h);
-  const Real ddlon = (deast - dlon * ((dN + dh) * c - (N + h) * s * dlat)) / ((N + h) * c);
-  const Real ddheading = turn.rate.x() + ddlon * s + dlon * c * dlat;
-
-  // x up, y east, z north
-  Motion place =
-      on(turning(Vec::UnitZ(), y[1], dlon, ddlon), turning(-Vec::UnitY(), lat, dlat, ddlat));
-  place.x = place.R * Vec((N + h) - N * e2 * s * s, 0, -N * e2 * s * c);
-  place.v = place.R * Vec(dh, east, north);
-  place.a = place.R * Vec(climb.rate.x(), deast, dnorth) + place.w.cross(place.v);
-  Motion level;  // x down, y west, z north
-  level.R = Vec(-1, -1, 1).asDiagonal();
-  const Course bank = course_of(vehicle.bank, t, within);
-  const Motion banked = turning(Vec::UnitZ(), bank.value.x(), bank.rate.x(), bank.second_rate.x());
-  const Motion headed = on(place, turning(Vec::UnitX(), -heading, -dheading, -ddheading));
-  return on(turning(Vec::UnitZ(), earth_rate * t, earth_rate), on(on(headed, level), banked));
+Motion turning(const Vec& axis, Real angle, Real rate, Real rate_of_rate) {
+  return {Eigen::AngleAxis<Real>(angle, axis).toRotationMatrix(), rate * axis, rate_of_rate * axis};
 }
 
-}  // namespace
+Motion on(const Motion& base, const Motion& own) {
+  const Vec x = base.R * own.x;
+  const Vec v = base.R * own.v;
+  const Vec w = base.R * own.w;
+  Motion sum;
+  sum.R = base.R * own.R;
+  sum.w = base.w + w;
+  sum.dw = base.dw + base.R * own.dw + base.w.cross(w);
+  sum.x = base.x + x;
+  sum.v = base.v + base.w.cross(x) + v;
+  sum.a = base.a + base.dw.cross(x) + base.w.cross(base.w.cross(x)) + 2 * base.w.cross(v) +
+          base.R * own.a;
+  sum.down = base.down + base.R * own.down;
+  return sum;
+}
 
 Course course_of(const Signal& signal, Real t, Real within) {
   Course sum;
@@ -295,6 +243,7 @@ Course course_of(const Signal& signal, Real t, Real within) {
     sum.value += std::sin(angle) * wide(term.amplitude);
     sum.rate += w * std::cos(angle) * wide(term.amplitude);
     sum.second_rate -= w * w * std::sin(angle) * wide(term.amplitude);
+    sum.third_rate -= w * w * w * std::cos(angle) * wide(term.amplitude);
   }
   return sum;
 }
@@ -363,7 +312,7 @@ Motion Guide::own(const Link& link, Real t, const Real* y, Real* rates) const {
   if (link.kind == LinkKind::motion) return moved(link, t);
   if (link.kind == LinkKind::inertial) return {};
   if (link.kind == LinkKind::orbit) return along_orbit(link.orbit, t);
-  if (link.kind == LinkKind::course) return along_course(link.vehicle, t, within_, y, rates);
+  if (link.kind == LinkKind::course) return along_course(link, t, within_, y, rates);
   const Oscillation u =
       link.kind == LinkKind::harmonic
           ? differential::reference::at(link.turning, t, link.turns_in_degrees)
@@ -439,7 +388,7 @@ Vec Guide::gravity(Real t, const Motion& motion, const Vec& place) const {
   const Vec down(std::stold(site.gravity), 0, 0);
   if (!on_course) return earth(site, t).R * down;
   // The number includes the centrifugal acceleration, which the motion has too.
-  return motion.R * down - earth_rate * earth_rate * Vec(motion.x.x(), motion.x.y(), 0);
+  return down.x() * motion.down - earth_rate * earth_rate * Vec(motion.x.x(), motion.x.y(), 0);
 }
 
 }  // namespace differential::reference

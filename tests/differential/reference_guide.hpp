@@ -23,7 +23,23 @@ struct Motion {
   Vec x = Vec::Zero();  ///< the guide's origin
   Vec v = Vec::Zero();
   Vec a = Vec::Zero();
+  Vec down = Vec::Zero();  ///< of a course: the normal of the ellipsoid
 };
+
+inline constexpr Real equator = 6378137;
+inline constexpr Real flattening = 1 / 298.257223563L;
+inline constexpr Real earth_rate = Real(7.292115e-5);  // as double, like the site's
+
+/// A frame that turns about an axis from an angle on.
+[[nodiscard]] Motion turning(const Vec& axis, Real angle, Real rate, Real rate_of_rate = 0);
+
+/// A motion relative to a frame that moves itself.
+[[nodiscard]] Motion on(const Motion& base, const Motion& own);
+
+/// A vehicle relative to the inertial frame. y: latitude, longitude, heading, height, speed; their
+/// rates are written to `rates`.
+[[nodiscard]] Motion along_course(const Link& link, Real t, Real within, const Real* y,
+                                  Real* rates);
 
 /// The guide of a scene. Links without a closed form are integrated with the state. Each rotating
 /// or harmonic link adds ten numbers: attitude, position and velocity relative to the link before. A
@@ -61,11 +77,12 @@ class Guide {
   Real within_ = 0;
 };
 
-/// A function of time with its first and second rate, on the piece that contains `within`.
+/// A function of time with its first three rates, on the piece that contains `within`.
 struct Course {
   Vec value = Vec::Zero();
   Vec rate = Vec::Zero();
   Vec second_rate = Vec::Zero();
+  Vec third_rate = Vec::Zero();
 };
 [[nodiscard]] Course course_of(const Signal& signal, Real t, Real within);
 

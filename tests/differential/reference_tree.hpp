@@ -123,6 +123,12 @@ class Tree {
   [[nodiscard]] Frame frame(int index, const Motion& guide, const State& accelerations) const;
   [[nodiscard]] Frame at_point(int body, const Vec& at, const State& accelerations) const;
 
+  /// The direction of a plumb line from a point of the guide, on inertial axes.
+  [[nodiscard]] Vec plumb_line(Real t, const Motion& guide, const Vec& pivot, Real length) const;
+  /// The direction of a swing; NaN if it is not clear.
+  [[nodiscard]] Real azimuth(Real t, const Sensor& sensor, const Motion& guide,
+                             const Frame& point) const;
+
   void read(const State& y, const Motion& guide);
   [[nodiscard]] Pose pose(const State& y, int body) const;
   [[nodiscard]] const Pose& parent(int body) const;

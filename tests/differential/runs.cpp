@@ -202,15 +202,39 @@ std::vector<double> readings(const Scene& scene, const kreisel::SceneSolver& mod
       kreisel::SensorReadings(file).row(model, file.t_begin, start_of(file));
   auto at = result.begin();
   for (const Sensor& sensor : scene.sensors) {
-    switch (sensor.kind) {
-      case SensorKind::gyro:
-      case SensorKind::accelerometer: at += 3; break;
-      case SensorKind::point: at += 9; break;
-      case SensorKind::reaction: at += 6; break;
-      case SensorKind::attitude: std::rotate(at, at + 1, at + 4); at += 4;
+    for (const int count : parts_of(scene, sensor)) {
+      if (count == 4) std::rotate(at, at + 1, at + 4);
+      at += count;
     }
   }
   return result;
+}
+
+/// The sensors' readings in the first rows, all for the state at the start.
+std::vector<double> first_rows(const kreisel::SceneSolver& model, const kreisel::SceneFile& file) {
+  kreisel::SensorReadings readings(file);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < std::min<std::size_t>(file.output_times.size(), 3); ++i) {
+    const auto row = readings.row(model, file.output_times[i], start_of(file));
+    result.insert(result.end(), row.begin(), row.end());
+  }
+  return result;
+}
+
+/// True if random errors are not the same a second time, or do not change with the seed.
+bool is_wrongly_random(const Scene& scene, const kreisel::SceneSolver& model,
+                       kreisel::SceneFile file) {
+  const auto counts = [](const Sensor& sensor) {
+    return sensor.errors && sensor.errors->noise.minCoeff() > 0 && sensor.errors->resolution == 0 &&
+           sensor.errors->range == 0 && sensor.increments.empty();
+  };
+  if (std::none_of(scene.sensors.begin(), scene.sensors.end(), counts)) return false;
+  const std::vector<double> first = first_rows(model, file);
+  if (first_rows(model, file) != first) return true;
+  for (auto& sensor : file.sensors) {
+    if (sensor.errors) ++sensor.errors->seed;
+  }
+  return first_rows(model, file) == first;
 }
 
 bool misread(const Scene& scene, const kreisel::SceneFile& file) {
@@ -273,6 +297,7 @@ Answers run(const Scene& scene, const std::vector<std::string>& methods, const L
     if (!scene.sensors.empty()) {
       begin("sensors");
       answers.readings = readings(scene, *model, file);
+      answers.wrongly_random = is_wrongly_random(scene, *model, exact_file);
       answers.wrong_increments = wrong_increments(*model, exact_file);
     }
     begin("sizes");

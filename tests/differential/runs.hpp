@@ -64,8 +64,9 @@ struct Answers {
   std::vector<double> reactions = {};            ///< at the start, as in start_reactions()
   std::vector<double> readings = {};             ///< at the start, as in start_readings()
   std::optional<WrongIncrements> wrong_increments = {};
-  bool misread = false;  ///< requests of the file besides the motion, read
-                         ///< wrongly
+  bool wrongly_random = false;  ///< errors of sensors do not depend on the seed alone
+  bool misread = false;         ///< requests of the file besides the motion, read
+                                ///< wrongly
 };
 
 /// Runs the scene's text by the library, by each method in turn. `folder` contains its logs.

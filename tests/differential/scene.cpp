@@ -71,6 +71,19 @@ int single_coordinates(JointKind kind) {
   return type.has_single_coordinates() ? type.rate_count() : 0;
 }
 
+std::vector<int> blocks(JointKind kind) {
+  const kreisel::JointType& type = kreisel::joint_type(kind);
+  std::vector<int> result;
+  for (const auto* const quantities : {&type.coordinates, &type.rates}) {
+    for (const auto& quantity : *quantities) {
+      const int count = quantity.count();
+      const bool single = type.has_single_coordinates();
+      result.insert(result.end(), single ? std::size_t(count) : 1, single ? 1 : count);
+    }
+  }
+  return result;
+}
+
 bool slides(JointKind kind) {
   const auto& coordinates = kreisel::joint_type(kind).coordinates;
   return single_coordinates(kind) > 0 &&

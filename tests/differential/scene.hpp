@@ -80,6 +80,7 @@ struct Vehicle {
   Signal acceleration = {};
   Signal climb = {};
   Signal bank = {};
+  bool is_coordinated = false;  ///< the bank
 };
 
 enum class LinkKind { inertial, rotating, harmonic, earth, table, rates, motion, orbit, course };
@@ -236,11 +237,30 @@ struct Constraint {
   Vector normal = Vector::UnitZ();  ///< of the plane
 };
 
-enum class SensorKind { gyro, accelerometer, point, attitude, reaction };
+enum class SensorKind { gyro, accelerometer, point, attitude, reaction, joint, azimuth };
 
 /// A frame that a sensor names: the index of a body, or one of these.
 inline constexpr int guide_frame = -1;
 inline constexpr int inertial_frame = -2;
+
+/// Errors of a gyro or an accelerometer, three numbers for its axes.
+struct SensorErrors {
+  Vector misalignment = Vector::Zero();  ///< rad
+  Vector scale = Vector::Zero();
+  Vector bias = Vector::Zero();
+  bool is_in_degrees = false;  ///< the bias
+  Vector noise = Vector::Zero();
+  Vector drift = Vector::Zero();
+  Vector sigma = Vector::Zero();
+  double time = 1;  ///< of the correlation
+  double resolution = 0;
+  double range = 0;
+  int seed = 0;
+
+  [[nodiscard]] bool is_random() const {
+    return !noise.isZero(0) || !drift.isZero(0) || !sigma.isZero(0);
+  }
+};
 
 struct Sensor {
   SensorKind kind = SensorKind::gyro;
@@ -251,8 +271,9 @@ struct Sensor {
   bool at_by_name = false;                   ///< as one of the body's points
   std::optional<Eigen::Vector4d> axes = {};  ///< w, x, y, z
   int against = guide_frame;
-  int on = guide_frame;         ///< axes of a point
-  double period = 0;            ///< 0: not given
+  int on = guide_frame;  ///< axes of a point
+  double period = 0;     ///< 0: not given
+  std::optional<SensorErrors> errors = {};
   std::string increments = {};  ///< "true" or "\"uncompensated\""; empty: values
 };
 
@@ -289,6 +310,9 @@ struct Scene {
 
 /// The number of coordinates of a joint that have single numbers.
 [[nodiscard]] int single_coordinates(JointKind kind);
+
+/// The numbers of a joint's coordinates and rates: 4 for an attitude, 3 for other vectors, else 1.
+[[nodiscard]] std::vector<int> blocks(JointKind kind);
 
 /// True if one of the coordinates is a displacement.
 [[nodiscard]] bool slides(JointKind kind);

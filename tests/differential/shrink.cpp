@@ -253,6 +253,7 @@ std::vector<Change> changes_of(const Scene& scene) {
         [i](Scene& s) { s.sensors.erase(s.sensors.begin() + static_cast<std::ptrdiff_t>(i)); });
     changes.emplace_back(
         [i](Scene& s) { s.sensors[i].axes.reset(), s.sensors[i].at_by_name = false; });
+    changes.emplace_back([i](Scene& s) { s.sensors[i].errors.reset(); });
   }
   changes.emplace_back([](Scene& s) { s.outputs = 1; });
   changes.emplace_back([](Scene& s) { s.tolerance = 1e-10; });

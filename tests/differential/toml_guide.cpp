@@ -64,6 +64,7 @@ Keys course_keys(const Link& link) {
   add("acceleration", vehicle.acceleration);
   add("climb", vehicle.climb);
   add("bank", vehicle.bank);
+  if (vehicle.is_coordinated) result.emplace_back("bank", "\"coordinated\"");
   if (!link.gravity.empty()) result.emplace_back("gravity", link.gravity);
   return result;
 }

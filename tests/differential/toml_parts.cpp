@@ -45,6 +45,25 @@ void add_spring(const Element& e, Keys& keys) {
   if (e.damping != 0) keys.emplace_back("damping", text(e.damping));
 }
 
+void add_errors(const SensorErrors& errors, Keys& keys) {
+  const auto axes = [](const Vector& v) { return v.isConstant(v.x(), 0) ? text(v.x()) : list(v); };
+  const auto add = [&keys, &axes](const std::string& key, const Vector& v) {
+    if (!v.isZero(0)) keys.emplace_back(key, axes(v));
+  };
+  if (!errors.misalignment.isZero(0)) keys.emplace_back("misalignment", list(errors.misalignment));
+  add("scale", errors.scale);
+  add(angle_key("bias", errors.is_in_degrees), errors.bias);
+  add("noise", errors.noise);
+  add("drift", errors.drift);
+  if (!errors.sigma.isZero(0)) {
+    keys.emplace_back("correlation", fmt::format("{{ sigma = {}, time = {} }}", axes(errors.sigma),
+                                                 text(errors.time)));
+  }
+  if (errors.resolution > 0) keys.emplace_back("resolution", text(errors.resolution));
+  if (errors.range > 0) keys.emplace_back("range", text(errors.range));
+  keys.emplace_back("seed", fmt::format("{}", errors.seed));
+}
+
 std::string frame_name(int frame) {
   const std::string name = frame == inertial_frame ? "inertial" : body_name(frame);
   return "\"" + name + "\"";
@@ -77,7 +96,8 @@ std::string element(const Element& e, std::size_t index) {
 }
 
 std::string sensor(const Sensor& sensor, std::size_t index) {
-  static const char* const kinds[] = {"gyro", "accelerometer", "point", "attitude", "reaction"};
+  static const char* const kinds[] = {"gyro",     "accelerometer", "point",  "attitude",
+                                      "reaction", "joint",         "azimuth"};
   const bool is_point = sensor.kind == SensorKind::point;
   Keys keys{{"name", fmt::format("\"s{}\"", index)},
             {"kind", std::string("\"") + kinds[static_cast<int>(sensor.kind)] + "\""}};
@@ -86,7 +106,9 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
   } else if (sensor.constraint >= 0) {
     keys.emplace_back("constraint", fmt::format("\"k{}\"", sensor.constraint));
   } else {
-    keys.emplace_back(sensor.kind == SensorKind::reaction ? "joint" : "body",
+    const bool is_of_joint =
+        sensor.kind == SensorKind::reaction || sensor.kind == SensorKind::joint;
+    keys.emplace_back(is_of_joint ? "joint" : "body",
                       fmt::format("\"{}\"", body_name(sensor.body)));
   }
   if (sensor.at_by_name) {
@@ -104,6 +126,7 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
     keys.emplace_back("period", fmt::format("{}", sensor.period));
   }
   if (!sensor.increments.empty()) keys.emplace_back("increments", sensor.increments);
+  if (sensor.errors) add_errors(*sensor.errors, keys);
   std::string result = "[[sensor]]\n";
   for (const auto& [key, value] : keys) result += key + " = " + value + "\n";
   return result;
