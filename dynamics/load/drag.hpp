@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <type_traits>
+
+#include <dynamics/load/analytic_load.hpp>
 #include <dynamics/load/load.hpp>
 
 namespace kreisel {
@@ -31,6 +35,13 @@ struct Drag {
     // |v| has no derivative at 0, but |v| v has: 0.
     if (!(v.squaredNorm() == N(0))) f -= v.norm() * (quadratic.template cast<N>() * v);
     return {{f, arm.cross(f) - angular.template cast<N>() * s.V_rel.value.resultant}};
+  }
+
+  /// |v| v has no Taylor series where v reverses.
+  [[nodiscard]] std::optional<AnalyticLoad> analytic() const requires(std::is_same_v<S, double>) {
+    if (!quadratic.isZero(0)) return std::nullopt;
+    return AnalyticLoad{
+        .axes = LoadAxes::body, .point = point, .linear = linear, .angular = angular};
   }
 };
 

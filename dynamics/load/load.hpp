@@ -54,8 +54,8 @@ struct LoadContext {
 /// origin, on body axes. A user's lambda is a load. A load with a potential declares it by a member
 /// potential(context), which the outputs add up. A load that does not read LoadContext::guide
 /// declares a static member ignores_guide = true: scenes then do not compute the guide. A static
-/// member kind is the load's name in terms(). A load that depends on time alone has a member
-/// in_time(), which returns a TimedLoad. It then has Taylor series.
+/// member kind is the load's name in terms(). A load that may have a Taylor series has a member
+/// analytic(), which returns an AnalyticLoad, or nothing.
 ///
 /// Energy is listed as an invariant only if each load has a member keeps_energy() that returns
 /// true. On a guide at rest the work of such a load is that of its potential(), which does not

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include <dynamics/load/analytic_load.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/signal/signal.hpp>
 
@@ -20,6 +23,10 @@ struct Magnet {
   [[nodiscard]] Force<Body, N> operator()(const LoadContext<N>& s) const {
     const Vector3<N> B = s.template on_body_axes<Guide>(field(s.t));
     return {{Vector3<N>::Zero(), moment.template cast<N>().cross(B)}};
+  }
+
+  [[nodiscard]] std::optional<AnalyticLoad> analytic() const {
+    return AnalyticLoad{.axes = LoadAxes::guide, .moment = moment, .field = field};
   }
 
   [[nodiscard]] bool keeps_energy() const { return field.is_constant(); }

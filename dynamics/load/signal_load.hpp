@@ -1,9 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <type_traits>
 
+#include <dynamics/load/analytic_load.hpp>
 #include <dynamics/load/load.hpp>
-#include <dynamics/load/timed_load.hpp>
 #include <dynamics/signal/signal.hpp>
 
 namespace kreisel {
@@ -27,8 +28,8 @@ struct SignalLoad {
     return {{f, s.template on_body_axes<A>(torque(s.t)) + point.template cast<N>().cross(f)}};
   }
 
-  [[nodiscard]] TimedLoad in_time() const requires(!std::is_same_v<A, Inertial>) {
-    return {std::is_same_v<A, Body>, force, torque, point};
+  [[nodiscard]] std::optional<AnalyticLoad> analytic() const {
+    return AnalyticLoad{detail::load_axes<A>, force, torque, point};
   }
 };
 

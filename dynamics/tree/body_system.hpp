@@ -225,11 +225,11 @@ class BodySystem {
     return now;
   }
 
-  /// True if series() is available. The guide is then analytic, as are all loads and prescribed
-  /// accelerations as functions of time. There are no constraints, no elements except couplings, and
-  /// no free joint between two bodies.
+  /// True if series() is available. The guide is then analytic, loads are AnalyticLoads, and
+  /// prescribed accelerations are analytic functions of time. There are no constraints, no elements
+  /// except couplings, and no free joint between two bodies.
   [[nodiscard]] bool knows_series() const requires(detail::feels_analytically<M>) {
-    return detail::has_series(guide_) && detail::knows_series(tree_);
+    return detail::has_series(guide_) && detail::knows_series(tree_, detail::is_resting<M>);
   }
 
   /// The Taylor series of the motion, for TaylorSteps. This system must outlive the series.
@@ -238,7 +238,8 @@ class BodySystem {
     const auto field = [this](double t, const Vector& y, Vector& rate, BodyWorkspace& w) {
       rates(t, y, rate, w);
     };
-    return {tree_, detail::is_resting<M>, field, felt_at_origin()};
+    const auto attitude = [this](double t) { return guide_(t).X.value.rotation; };
+    return {tree_, detail::is_resting<M>, field, felt_at_origin(), attitude};
   }
 
   /// Moves a state that is close to the constraints onto them, by the least change of the motion

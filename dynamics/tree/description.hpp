@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <dynamics/inertia.hpp>
-#include <dynamics/load/timed_load.hpp>
+#include <dynamics/load/analytic_load.hpp>
 #include <dynamics/model/dual_numbers.hpp>
 #include <dynamics/signal/signal.hpp>
 #include <dynamics/tree/joint/joint.hpp>
@@ -125,8 +125,10 @@ class BodyLoad {
     if constexpr (requires { load.keeps_energy(); }) keeps_energy_ = load.keeps_energy();
     if constexpr (Load<L, detail::AlongOne>) along_ = load;
     if constexpr (requires { L::ignores_spin; }) ignores_spin_ = L::ignores_spin;
-    if constexpr (requires { detail::in_time(load); }) {
-      in_time_ = std::make_shared<const TimedLoad>(detail::in_time(load));
+    if constexpr (requires { detail::analytic(load); }) {
+      if (const auto analytic = detail::analytic(load)) {
+        analytic_ = std::make_shared<const AnalyticLoad>(*analytic);
+      }
     }
   }
 
@@ -158,8 +160,8 @@ class BodyLoad {
   }
   [[nodiscard]] bool ignores_spin() const { return ignores_spin_; }
 
-  /// The load as a function of time; null if it depends on more.
-  [[nodiscard]] const TimedLoad* in_time() const { return in_time_.get(); }
+  /// The load in the form that has a Taylor series; null if it has none.
+  [[nodiscard]] const AnalyticLoad* analytic() const { return analytic_.get(); }
 
  private:
   std::function<Force<Body>(const LoadContext<>&)> force_;
@@ -167,7 +169,7 @@ class BodyLoad {
   std::function<Force<Body, detail::AlongOne>(const LoadContext<detail::AlongOne>&)> along_;
   bool keeps_energy_ = false;
   bool ignores_spin_ = false;
-  std::shared_ptr<const TimedLoad> in_time_ = nullptr;
+  std::shared_ptr<const AnalyticLoad> analytic_ = nullptr;
 };
 
 /// One body of a system and the joint that holds it to its parent.

@@ -11,13 +11,14 @@
 namespace kreisel::detail {
 
 /// True if a load on this body has a series. Rotors carry loads that depend on their position.
-[[nodiscard]] inline bool is_analytic(const BodyDescription& body) {
-  return !body.rotor && std::all_of(body.loads.begin(), body.loads.end(), [](const BodyLoad& load) {
-    return load.in_time() != nullptr && load.in_time()->is_analytic();
-  });
+[[nodiscard]] inline bool is_analytic(const BodyDescription& body, bool guide_rests) {
+  const auto has_series = [guide_rests](const BodyLoad& load) {
+    return load.analytic() != nullptr && load.analytic()->is_analytic(guide_rests);
+  };
+  return !body.rotor && std::all_of(body.loads.begin(), body.loads.end(), has_series);
 }
 
-bool knows_series(const BodyTree& tree) {
+bool knows_series(const BodyTree& tree, bool guide_rests) {
   const auto all = [](const auto& list, const auto& is_so) {
     return std::all_of(list.begin(), list.end(), is_so);
   };
@@ -26,7 +27,7 @@ bool knows_series(const BodyTree& tree) {
              [](const Element& element) {
                return std::holds_alternative<CouplingElement>(element);
              }) &&
-         all(tree.loaded(), [&](int body) { return is_analytic(tree.body(body)); }) &&
+         all(tree.loaded(), [&](int body) { return is_analytic(tree.body(body), guide_rests); }) &&
          all(tree.drives(), [](const auto& drive) { return drive.acceleration.is_analytic(); }) &&
          all(tree.timed_forces(), [](const auto& force) { return force.signal.is_analytic(); }) &&
          all(tree.rotors(),
@@ -95,11 +96,13 @@ inline void TreeSeries::Recurrences::Ball::put_attitude(std::size_t k, const Vec
   turn[k] = turn_back[k].transposed();
 }
 
-TreeSeries::Recurrences::Recurrences(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
+TreeSeries::Recurrences::Recurrences(const BodyTree& tree, bool guide_rests, Field field, Felt felt,
+                                     Attitude attitude)
     : tree_(tree),
       guide_rests_(guide_rests),
       field_(std::move(field)),
       felt_(std::move(felt)),
+      attitude_(std::move(attitude)),
       workspace_(tree),
       left_(Eigen::VectorXd::Zero(tree.rates())),
       given_(Eigen::VectorXd::Zero(tree.rates())),
@@ -174,7 +177,7 @@ TreeSeries::Recurrences::Recurrences(const BodyTree& tree, bool guide_rests, Fie
   for (const int body : tree.loaded()) {
     const std::size_t link = tree.link(body);
     for (const BodyLoad& load : tree.body(body).loads) {
-      loads_.emplace_back(*load.in_time(), link, branches_[link].own_axes);
+      loads_.emplace_back(*load.analytic(), link, branches_[link].own_axes);
     }
   }
 }
@@ -186,7 +189,7 @@ void TreeSeries::Recurrences::operator()(double t, double h, int order,
   c.col(1) = h * rate_;
   if (order == 1) return;
   const GuideSeries felt = felt_(t, h, order);
-  begin_functions_of_time(t, h, order);
+  begin_functions_of_time(t, h, order, felt);
   begin(c);
   prepare_response();
   const double* dv = rate_.data() + tree_.coordinates();
@@ -210,16 +213,26 @@ void TreeSeries::Recurrences::operator()(double t, double h, int order,
   }
 }
 
-void TreeSeries::Recurrences::begin_functions_of_time(double t, double h, int order) {
+void TreeSeries::Recurrences::begin_functions_of_time(double t, double h, int order,
+                                                      const GuideSeries& felt) {
   for (std::size_t j = 0; j < timed_.size(); ++j) {
     tree_.timed_forces()[j].signal.coefficients(t, h, timed_[j]);
   }
   for (Prescribed& p : prescribed_) {
     p.acceleration.coefficients(t, h, std::span(p.coefficients).first(std::size_t(order)));
   }
-  for (TimedLoadSeries& load : loads_) {
+  for (LoadSeries& load : loads_) {
     const Matrix3<double>& own_axes = branches_[load.link()].own_axes;
-    load.begin(t, h, order, own_axes * workspace_.pose[load.link()].R.transpose());
+    const Matrix3<double> guide_to_own = own_axes * workspace_.pose[load.link()].R.transpose();
+    if (load.axes() == LoadAxes::inertial) {
+      load.begin(t, h, order, guide_to_own * attitude_(t).transpose());
+    } else {
+      load.begin(t, h, order, guide_to_own);
+    }
+    if (load.drag() == nullptr) continue;
+    const auto& [x, y, z] = felt.g[0];
+    load.drag()->begin(guide_to_own * workspace_.place[load.link()].V.moment,
+                       guide_to_own * Vector3<double>(x, y, z));
   }
 }
 
@@ -406,7 +419,14 @@ void TreeSeries::Recurrences::prepare_spins(int k, double weight, Columns& c) {
 void TreeSeries::Recurrences::prepare_loads(std::size_t k, double weight, const GuideSeries& felt) {
   using Turning = std::span<const Components<double>>;
   const Turning u = guide_rests_ ? Turning() : Turning(felt.u);
-  for (TimedLoadSeries& load : loads_) load.prepare(k, weight, branches_[load.link()].w, u);
+  for (LoadSeries& load : loads_) {
+    const Branch& b = branches_[load.link()];
+    if (load.drag() != nullptr && k > 0) {
+      const auto order = static_cast<double>(k);
+      load.drag()->advance(k - 1, weight * (order + 1) / order, b.w, b.a);
+    }
+    load.prepare(k, weight, b.w, load.axes() == LoadAxes::guide ? u : Turning());
+  }
 }
 
 void TreeSeries::Recurrences::go_outwards(std::size_t k, double weight, const double* dv) {
@@ -453,7 +473,7 @@ void TreeSeries::Recurrences::go_outwards(std::size_t k, double weight, const do
     if (!spin.regulated) acceleration += along(spin.axis, carrier.dw.as_is);
     carrier.moment += spin.about * acceleration * spin.axis;
   }
-  for (const TimedLoadSeries& load : loads_) {
+  for (const LoadSeries& load : loads_) {
     Branch& b = branches_[load.link()];
     b.force = b.force - load.force();
     b.moment = b.moment - load.moment();
@@ -557,9 +577,10 @@ double* TreeSeries::Recurrences::response() {
   return dv_.data();
 }
 
-TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt)
-    : recurrences_(
-          std::make_unique<Recurrences>(tree, guide_rests, std::move(field), std::move(felt))) {}
+TreeSeries::TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt,
+                       Attitude attitude)
+    : recurrences_(std::make_unique<Recurrences>(tree, guide_rests, std::move(field),
+                                                 std::move(felt), std::move(attitude))) {}
 TreeSeries::TreeSeries(const TreeSeries& other)
     : recurrences_(std::make_unique<Recurrences>(*other.recurrences_)) {}
 TreeSeries::TreeSeries(TreeSeries&&) noexcept = default;

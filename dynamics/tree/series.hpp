@@ -11,10 +11,10 @@
 
 namespace kreisel::detail {
 
-/// True if the motion of a tree has a computable Taylor series. Its loads and prescribed
-/// accelerations are then analytic functions of time. It has no constraints, no elements except
+/// True if the motion of a tree has a computable Taylor series. Its loads are then AnalyticLoads and
+/// its prescribed accelerations analytic functions of time. It has no constraints, no elements except
 /// couplings, and no free joint between two bodies.
-KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree);
+KREISEL_API [[nodiscard]] bool knows_series(const BodyTree& tree, bool guide_rests);
 
 /// The Taylor series of the motion of a tree, for TaylorSteps.
 /// Formulas: dynamics/tree/series_recurrences.hpp.
@@ -37,8 +37,11 @@ class KREISEL_API TreeSeries {
   /// The series of u and g' at the guide's origin.
   using Felt = std::function<GuideSeries(double t, double h, int order)>;
 
+  /// The rotation from guide axes to inertial axes.
+  using Attitude = std::function<Matrix3<double>(double t)>;
+
   /// The tree must outlive this object.
-  TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt);
+  TreeSeries(const BodyTree& tree, bool guide_rests, Field field, Felt felt, Attitude attitude);
   TreeSeries(const TreeSeries& other);
   TreeSeries(TreeSeries&& other) noexcept;
   TreeSeries& operator=(const TreeSeries& other);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <dynamics/rigid/packed_tensor.hpp>
+#include <dynamics/tree/load_series.hpp>
 #include <dynamics/tree/series.hpp>
-#include <dynamics/tree/timed_load_series.hpp>
 #include <motor/simd.hpp>
 
 namespace kreisel::detail {
@@ -26,7 +26,7 @@ namespace kreisel::detail {
 /// w^t.
 class TreeSeries::Recurrences {
  public:
-  Recurrences(const BodyTree& tree, bool guide_rests, Field field, Felt felt);
+  Recurrences(const BodyTree& tree, bool guide_rests, Field field, Felt felt, Attitude attitude);
 
   /// As TreeSeries.
   void operator()(double t, double h, int order, Eigen::Ref<Eigen::MatrixXd>& c);
@@ -150,7 +150,7 @@ class TreeSeries::Recurrences {
 
   using Columns = Eigen::Ref<Eigen::MatrixXd>;
 
-  void begin_functions_of_time(double t, double h, int order);
+  void begin_functions_of_time(double t, double h, int order, const GuideSeries& felt);
 
   void begin(const Columns& c);
 
@@ -186,6 +186,7 @@ class TreeSeries::Recurrences {
   bool guide_rests_;
   Field field_;
   Felt felt_;
+  Attitude attitude_;
   BodyWorkspace workspace_;
   Eigen::VectorXd y_, rate_, left_;
   Eigen::VectorXd given_;          ///< accelerations: the prescribed ones, else 0
@@ -195,7 +196,7 @@ class TreeSeries::Recurrences {
   std::vector<Ball> balls_;
   std::vector<Spin> spins_;
   std::vector<Prescribed> prescribed_;
-  std::vector<TimedLoadSeries> loads_;
+  std::vector<LoadSeries> loads_;
   Of<Mat3dByDiagonals> guide_gamma_;
 
   /// The most rates for which the mass matrix is inverted; for more, linear time is faster.

@@ -9,8 +9,11 @@
 
 #include <dynamics/guide/harmonic.hpp>
 #include <dynamics/guide/rotating.hpp>
+#include <dynamics/load/drag.hpp>
+#include <dynamics/load/magnet.hpp>
 #include <dynamics/load/signal_load.hpp>
 #include <dynamics/pendulum/pendulum_series.hpp>
+#include <dynamics/solve/solve.hpp>
 #include <dynamics/tree/body_system.hpp>
 
 #include <support/random_tree.hpp>
@@ -82,6 +85,8 @@ std::vector<BodyDescription> tree_in_time(std::uint64_t seed) {
     if (sample.once_in(3)) body.loads.emplace_back(SignalLoad<Body>{torque, force, vector()});
     if (sample.once_in(3))
       body.loads.emplace_back(ConstantLoad<Guide>{vector(), vector(), vector()});
+    if (sample.once_in(3)) body.loads.emplace_back(SignalLoad<Inertial>{force, torque, vector()});
+    if (sample.once_in(3)) body.loads.emplace_back(Magnet{vector(), random_signal(vector, sample)});
   }
   return bodies;
 }
@@ -95,6 +100,28 @@ BOOST_DATA_TEST_CASE(agrees_for_functions_of_time, data::xrange(120), seed) {
             BodySystem(RotatingFrame<>{{0.3, -0.8, 0.5}, {1, 2, 3}}, bodies, gravity), number);
   const HarmonicSeries<> u{{0.1, -0.2, 0.3}, {{{0.3, 0.1, -0.2}, 1.3, 0.4}}};
   hold_tree("on a harmonic guide", BodySystem(HarmonicFrame<>(u, {}, 0, 2), bodies, gravity),
+            number);
+}
+
+BOOST_DATA_TEST_CASE(agrees_for_drag, data::xrange(120), seed) {
+  const auto number = static_cast<std::uint64_t>(seed);
+  Sample sample(number + 3000);
+  const auto matrix = [&sample] {
+    return Matrix3<double>(
+        Matrix3<double>::NullaryExpr([&sample] { return sample.uniform(-1, 1); }));
+  };
+  auto bodies = tree_in_time(number);
+  for (BodyDescription& body : bodies) {
+    if (body.rotor || sample.once_in(3)) continue;
+    body.loads.emplace_back(
+        Drag<>{.linear = matrix(),
+               .angular = sample.once_in(2) ? matrix() : Matrix3<double>::Zero(),
+               .point = sample.direction()});
+  }
+  RestingFrame<> aslant;
+  aslant.X.value.rotation = sample.rotation();
+  hold_tree("at rest", BodySystem(aslant, bodies, UniformGravity<Guide>{{1, 2, -9}}), number);
+  hold_tree("gravity at rest", BodySystem(aslant, bodies, UniformGravity<Inertial>{{1, 2, -9}}),
             number);
 }
 
@@ -147,6 +174,51 @@ BOOST_AUTO_TEST_CASE(agrees_for_a_pendulum) {
   }
 }
 
+/// Motions of a rod in a ball joint, which carries a rod on a hinge, by series and by other methods.
+template <class M>
+void agree_with_stages(const M& guide, const std::vector<BodyLoad>& loads) {
+  BodyDescription upper;
+  upper.name = "upper";
+  upper.joint = {.kind = JointKind::spherical};
+  upper.inertia = InertiaTensor<Body>::about_centre(2, {0, 0, -0.4},
+                                                    Vector3<double>(0.2, 0.25, 0.1).asDiagonal());
+  BodyDescription lower = upper;
+  lower.name = "lower";
+  lower.parent = "upper";
+  lower.joint = {.kind = JointKind::revolute, .axis = {0.6, 0.8, 0}, .position = {0, 0, -0.8}};
+  upper.loads = loads;
+  lower.loads = loads;
+  const BodySystem system(guide, {upper, lower}, UniformGravity<Inertial>{{0, 0, -9.81}});
+  auto start = system.to_vector(system.rest());
+  start.tail(4) << 0.4, -0.3, 0.9, 1.1;
+  const auto by = [&](Method method) {
+    return solve(system, system.from_vector(start),
+                 {.t_end = 2, .tolerance = 1e-13, .method = method});
+  };
+  const auto series = by(Method::taylor);
+  BOOST_TEST(by(Method::automatic).report.method == "taylor");
+  const auto end = system.to_vector(series.states.back());
+  for (const Method method : {Method::verner98, Method::radau13}) {
+    const auto other = by(method);
+    BOOST_TEST((end - system.to_vector(other.states.back())).norm() <= 1e-12);
+    BOOST_TEST_MESSAGE(series.report.effort.steps << " steps, " << series.report.all_evaluations
+                                                  << " evaluations; " << other.report.method << ' '
+                                                  << other.report.all_evaluations);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(leads_where_other_methods_do) {
+  const RotatingFrame<> turntable{{0.3, -0.8, 0.5}, {1, 2, 3}};
+  const Signal<Vector3<double>> shaking({0.5, 0, 0}, {0, 0, 0}, {{{0, 2, 1}, 3, 0.2}});
+  agree_with_stages(turntable, {SignalLoad<Inertial>{shaking, shaking, {0, 0.1, -0.2}}});
+  agree_with_stages(turntable, {ConstantLoad<Inertial>{{1, 2, 0}, {0, 0.3, 0}, {0, 0, -1}}});
+  agree_with_stages(turntable, {Magnet{{0, 0, 1.5}, shaking}});
+  agree_with_stages(RestingFrame<>{},
+                    {Drag<>{.linear = Vector3<double>(0.2, 0.3, 0.1).asDiagonal(),
+                            .angular = Vector3<double>(0.01, 0.02, 0.03).asDiagonal(),
+                            .point = {0, 0, -0.5}}});
+}
+
 BOOST_AUTO_TEST_CASE(is_unavailable_for_other_loads) {
   BodyDescription carrier;
   carrier.name = "carrier";
@@ -160,7 +232,12 @@ BOOST_AUTO_TEST_CASE(is_unavailable_for_other_loads) {
   BodyDescription loaded = carrier;
   loaded.loads = {[](const LoadContext<>&) { return Force<Body>{}; }};
   BOOST_TEST(!knows({loaded}));
-  loaded.loads = {SignalLoad<Inertial>{}};
+  loaded.loads = {SignalLoad<Inertial>{}, Magnet{}};
+  BOOST_TEST(knows({loaded}));
+  loaded.loads = {Drag<>{.linear = Matrix3<double>::Identity()}};
+  BOOST_TEST(knows({loaded}));
+  BOOST_TEST(!BodySystem(RotatingFrame<>{}, {loaded}).knows_series());
+  loaded.loads = {Drag<>{.quadratic = Matrix3<double>::Identity()}};
   BOOST_TEST(!knows({loaded}));
   loaded.loads = {SignalLoad<Guide>{}};
   BOOST_TEST(knows({loaded}));
