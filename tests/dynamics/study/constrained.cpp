@@ -1,7 +1,7 @@
 // Linear equations, equilibria and Floquet multipliers of constrained systems: the published bicycle,
 // closed forms, and the same systems as trees.
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/LU>
 #include <boost/test/data/monomorphic.hpp>
 #include <boost/test/data/test_case.hpp>
@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/study/equilibrium.hpp>
@@ -38,7 +39,7 @@ Roots roots(const System& system, const Eigen::VectorXd& y) {
   const auto linear = linearize<Guide, Body>(system, 0, y);
   const auto& own = linear.free.independent;
   const Eigen::MatrixXd A = linear.free.bound() ? Eigen::MatrixXd(linear.A(own, own)) : linear.A;
-  const Eigen::VectorXcd all = A.eigenvalues();
+  const Eigen::VectorXcd all = eigenvalues(A);
   Roots result;
   for (const auto& root : all) {
     // Multiple roots 0 of coordinates on which nothing depends come out as small ones.
@@ -124,7 +125,7 @@ Roots published(double v) {
   A.topRightCorner<2, 2>().setIdentity();
   A.bottomLeftCorner<2, 2>() = -M.inverse() * (g * K_0 + v * v * K_2);
   A.bottomRightCorner<2, 2>() = -v * M.inverse() * C;
-  const Eigen::Vector4cd all = A.eigenvalues();
+  const Eigen::VectorXcd all = eigenvalues(A);
   return {all.begin(), all.end()};
 }
 

@@ -1,7 +1,7 @@
 // A compass with two gyros that a gear couples, against its linear equations derived by hand.
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/decompositions.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/linearize.hpp>
@@ -123,7 +124,7 @@ Eigen::VectorXcd roots_by_hand(const Rest& rest) {
   A.topRightCorner<4, 4>().setIdentity();
   A.bottomLeftCorner<4, 4>() = -M.inverse() * K;
   A.bottomRightCorner<4, 4>() = -M.inverse() * (N.transpose() - N);
-  return A.eigenvalues();
+  return eigenvalues(A);
 }
 
 /// The state with both gyros at their momentum.
