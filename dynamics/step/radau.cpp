@@ -497,7 +497,7 @@ RadauIntegrator::Verdict RadauIntegrator::judge(StiffField& field, double h, dou
   if (verdict.worst >= 1 && (again || effort_.steps == 0 || verdict.looks_new)) {
     verdict.worst = filtered_estimate(field);
   }
-  if (is_shortest(h)) return verdict;
+  if (only_rounds(h, verdict.worst)) return verdict;
   if (jumps_within(h, verdict.worst)) {
     verdict.most = least_allowed();
   } else if (verdict.worst > least_allowed() && is_rough(std::abs(h))) {
@@ -510,8 +510,11 @@ RadauIntegrator::Verdict RadauIntegrator::judge(StiffField& field, double h, dou
   return verdict;
 }
 
-bool RadauIntegrator::is_shortest(double h) const {
-  return std::abs(h) <= 64 * std::numeric_limits<double>::epsilon() * std::abs(t());
+bool RadauIntegrator::only_rounds(double h, double worst) const {
+  if (std::abs(h) <= 64 * std::numeric_limits<double>::epsilon() * std::abs(t())) return true;
+  constexpr double greatest_rounding = 1e-11;
+  if (rejected_.step == 0 || worst * allowed_ > greatest_rounding) return false;
+  return worst > rejected_.worst * std::sqrt(std::abs(h) / rejected_.step);
 }
 
 bool RadauIntegrator::is_rough(double h) const {
@@ -525,7 +528,8 @@ bool RadauIntegrator::is_rough(double h) const {
     if (angle > resolved_angle() && std::exp(rates_of_field_(0, i) * h) > gone) return false;
   }
   const Eigen::VectorXd error = error_by_decay(coefficients_->node, stages_.value);
-  return sizes_.relative(error, change_) > least_allowed() * allowed_;
+  constexpr double rounding_of_forces = 1e-12;
+  return sizes_.relative(error, change_) > std::max(least_allowed() * allowed_, rounding_of_forces);
 }
 
 void RadauIntegrator::reject(double h, double worst, double most, double fastest) {
