@@ -228,9 +228,9 @@ class KREISEL_API RadauIntegrator {
   /// must be as small as the accuracy. So must the estimate where the motion is not smooth.
   [[nodiscard]] Verdict judge(StiffField& field, double h, double output, bool again);
 
-  /// True if an error may be rounding, which shorter steps do not reduce: the step is about as long
-  /// as the rounding of its time, or a longer one had no greater error. That of a jump is in
-  /// proportion to the length.
+  /// True if an error may be rounding, which shorter steps do not reduce. The step is then about as
+  /// long as the rounding of its time, or a longer step had no greater error. The error of a jump is
+  /// in proportion to the length.
   [[nodiscard]] bool only_rounds(double h, double worst) const;
 
   /// True if the parts of the polynomial of a step of length h do not decrease as those of a smooth motion.
