@@ -3,6 +3,7 @@
 /// All headers of kreisel::dynamics for motions: laws, guides, loads, scenes, sensors and solve().
 /// <dynamics/study/all.hpp> has the studies. Compiling is faster with the few headers that are needed.
 
+#include <dynamics/control/controlled_system.hpp>
 #include <dynamics/ensemble/ensemble.hpp>
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/gyrostat.hpp>

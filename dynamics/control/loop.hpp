@@ -56,9 +56,11 @@ class KREISEL_API ControlLoop {
 
   /// True if an output depends on a reading of the same moment.
   [[nodiscard]] bool feeds_through() const { return feeds_through_; }
-  /// True if a reading depends on accelerations, or on anything else than joints.
+  /// True if a reading depends on accelerations.
   [[nodiscard]] bool reads_accelerations() const;
+  /// True if a reading depends on more than coordinates and rates of joints.
   [[nodiscard]] bool reads_bodies() const;
+  /// False for a callable, which has no linear equations.
   [[nodiscard]] bool is_linear() const { return !callable_; }
 
   /// The memory at the start.

@@ -19,6 +19,12 @@ constexpr const char* axes[] = {"x", "y", "z"};
 
 std::string force_unit(const std::string& rate_unit) { return rate_unit == "m/s" ? "N" : "N m"; }
 
+/// A name with the number of one of several, from 1.
+std::string numbered(std::string name, int index, int count) {
+  if (count > 1) name.append(".").append(std::to_string(index + 1));
+  return name;
+}
+
 /// Appends the joint forces of a body. `rate` is the first rate of its joint.
 void append_joint_forces(const BodyDescription& body, int rate, std::vector<PlantInput>& inputs) {
   const JointType& type = joint_type(body.joint.kind);
@@ -28,9 +34,8 @@ void append_joint_forces(const BodyDescription& body, int rate, std::vector<Plan
   int k = 0;
   for (const JointQuantity& quantity : type.rates) {
     for (int i = 0; i < quantity.count(); ++i, ++k) {
-      const std::string number = type.rate_count() > 1 ? "." + std::to_string(k + 1) : "";
-      inputs.push_back({"joint." + body.name + number, force_unit(quantity.unit),
-                        PlantInput::JointForce{rate + k}});
+      inputs.push_back({numbered("joint." + body.name, k, type.rate_count()),
+                        force_unit(quantity.unit), PlantInput::JointForce{rate + k}});
     }
   }
 }
@@ -51,8 +56,8 @@ void append_references(const SceneFile& scene, std::vector<PlantInput>& inputs) 
     const Controller& controller = scene.controllers[c];
     const int count = static_cast<int>(controller.reads.size());
     for (int i = 0; i < count; ++i) {
-      const std::string number = count > 1 ? "." + std::to_string(i + 1) : "";
-      inputs.push_back({controller.name + ".reference" + number, "", PlantInput::Reference{c, i}});
+      inputs.push_back(
+          {numbered(controller.name + ".reference", i, count), "", PlantInput::Reference{c, i}});
     }
   }
 }
@@ -114,7 +119,8 @@ Named named(const std::vector<Named>& all, const std::string& name, const char* 
   }
   std::string list;
   constexpr std::size_t most = 24;
-  for (std::size_t i = 0; i < names.size() && i < most; ++i) list += (i > 0 ? ", " : "") + names[i];
+  for (std::size_t i = 0; i < names.size() && i < most; ++i)
+    list.append(i > 0 ? ", " : "").append(names[i]);
   if (names.size() > most) list += ", ..";
   throw InvalidInput(detail::in_quotes(name) + " is no " + what +
                      detail::did_you_mean(name, names) + "; there are " + list);

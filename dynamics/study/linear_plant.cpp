@@ -164,7 +164,7 @@ MatrixXcd LinearPlant::response(double w) const {
     const MatrixXcd open = s * MatrixXcd::Identity(A.rows(), A.cols()) - A;
     eta = open.fullPivLu().solve(B);
   }
-  const MatrixXcd result = C * eta + D;
+  MatrixXcd result = C * eta + D;
   if (!result.allFinite()) {
     throw ComputationFailed("response: an undamped resonance lies at the frequency of " +
                             std::to_string(w) + " rad/s");

@@ -126,14 +126,12 @@ namespace detail {
 
 /// The part of an input's influence that a column of the plant describes.
 template <class N>
-void seed(const PlantInput& input, int power, const N& unit, const BodyTree& tree,
-          ControlDisturbance<N>& outside) {
+void seed(const PlantInput& input, int power, const N& unit, ControlDisturbance<N>& outside) {
   const auto set = [&](const auto& kind) {
     using Kind = std::decay_t<decltype(kind)>;
     if constexpr (std::is_same_v<Kind, PlantInput::JointForce>) {
       outside.bodies.joint_force[kind.rate] += unit;
     } else if constexpr (std::is_same_v<Kind, PlantInput::BodyForce>) {
-      (void)tree;
       outside.bodies.on_bodies.push_back(
           {kind.body, Motor<N>{kind.unit.resultant.template cast<N>() * unit,
                                kind.unit.moment.template cast<N>() * unit}});
@@ -166,13 +164,13 @@ class PlantDerivatives {
  public:
   PlantDerivatives(const ControlledSystem<M>& system, const Eigen::VectorXd& y,
                    const Eigen::MatrixXd& E, const LinearPlant& plant)
-      : system_(system), y_(y), E_(E), plant_(plant) {}
+      : system_(system), y_(y), moves_(E), plant_(plant) {}
 
   /// function(state, outside) -> numbers; the result has a column for each move, then for each
   /// column of the plant.
   template <class F>
   [[nodiscard]] Eigen::MatrixXd of(Eigen::Index count, const F& function) const {
-    const Eigen::Index columns = E_.cols() + static_cast<Eigen::Index>(plant_.columns.size());
+    const Eigen::Index columns = moves_.cols() + static_cast<Eigen::Index>(plant_.columns.size());
     Eigen::MatrixXd result(count, columns);
     for (Eigen::Index begin = 0; begin < columns; begin += at_once) {
       VectorOn<N> state(y_.size());
@@ -202,22 +200,21 @@ class PlantDerivatives {
 
   void move(Eigen::Index column, Eigen::Index derivative, VectorOn<N>& state,
             ControlDisturbance<N>& outside) const {
-    if (column < E_.cols()) {
+    if (column < moves_.cols()) {
       for (Eigen::Index i = 0; i < y_.size(); ++i) {
-        state[i].derivatives()[derivative] = E_(i, column);
+        state[i].derivatives()[derivative] = moves_(i, column);
       }
       return;
     }
-    const auto& own = plant_.columns[static_cast<std::size_t>(column - E_.cols())];
+    const auto& own = plant_.columns[static_cast<std::size_t>(column - moves_.cols())];
     N unit(0);
     unit.derivatives()[derivative] = 1;
-    seed(plant_.inputs[static_cast<std::size_t>(own.input)], own.power, unit, system_.tree(),
-         outside);
+    seed(plant_.inputs[static_cast<std::size_t>(own.input)], own.power, unit, outside);
   }
 
   const ControlledSystem<M>& system_;
   const Eigen::VectorXd& y_;
-  const Eigen::MatrixXd& E_;
+  const Eigen::MatrixXd& moves_;
   const LinearPlant& plant_;
 };
 

@@ -666,6 +666,74 @@ BOOST_AUTO_TEST_CASE(precession_of_a_gyro_on_springs) {
 
 BOOST_AUTO_TEST_SUITE_END()
 
+BOOST_AUTO_TEST_SUITE(closed_loops)
+
+// 0.5 kg m^2 under a torque -(2 + 0.3 s/(1 + 0.01 s)) angle.
+BOOST_AUTO_TEST_CASE(servo_has_roots_response_and_margins) {
+  const Scratch folder;
+  const auto file = folder.write("servo.toml", R"(
+[solve]
+t_end = 1
+[[body]]
+name = "arm"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 2
+inertia = [0.3, 0.3, 0.5]
+[[sensor]]
+name = "pickoff"
+kind = "joint"
+joint = "arm"
+[[controller]]
+name = "servo"
+reads = ["pickoff.angle"]
+drives = ["arm"]
+law = { kind = "pid", proportional = 2, derivative = 0.3, filter = 0.01 }
+)");
+  const auto plant = folder.path() / "plant.json";
+  const auto table = folder.path() / "table.csv";
+  const json result =
+      answer(file.string() + " --response joint.arm --to servo.arm --frequencies " +
+             "0.1:100:50 --state-space " + plant.string() + " --csv " + table.string());
+  const auto law = [](Complex s) { return 2.0 + 0.3 * s / (1.0 + 0.01 * s); };
+  for (const Complex s : roots(result)) BOOST_TEST(std::abs(0.5 * s * s + law(s)) < 1e-9);
+  const json& response = result.at("response");
+  for (const json& row : response.at("rows")) {
+    const Complex s(0, row.at("frequency").get<double>());
+    const Complex wanted = -law(s) / (0.5 * s * s + law(s));
+    check_near("amplitude", row.at("amplitude"), std::abs(wanted), 1e-12);
+    check_near("phase", row.at("phase"), std::arg(wanted), 1e-12);
+  }
+  const double w = response.at("phase_margin").at("frequency");
+  const Complex loop = law(Complex(0, w)) / (0.5 * Complex(0, w) * Complex(0, w));
+  check_near("gain", std::abs(loop), 1, 1e-11);
+  check_near("margin", response.at("phase_margin").at("angle"), std::arg(loop) + pi, 1e-11);
+  BOOST_TEST(response.at("gain_margin").is_null());
+
+  const json matrices = json::parse(std::ifstream(plant));
+  BOOST_TEST(matrices.at("dt") == 0);
+  BOOST_TEST(matrices.at("states").size() == 3U);
+  BOOST_TEST(matrices.at("A").size() == 3U);
+  BOOST_TEST(matrices.at("B").at(0).size() == matrices.at("inputs").size());
+  BOOST_TEST(matrices.at("D").size() == matrices.at("outputs").size());
+  std::string first;
+  std::ifstream rows(table);
+  std::getline(rows, first);
+  BOOST_TEST(first == "frequency,amplitude,phase");
+}
+
+BOOST_AUTO_TEST_CASE(requests_for_responses_are_checked) {
+  const auto refused = [](const std::string& options, const std::string& part) {
+    const Outcome outcome = run(scene("gyro_horizon") + " " + options);
+    BOOST_TEST(outcome.status == 2);
+    BOOST_TEST(outcome.err.find(part) != std::string::npos, outcome.err);
+  };
+  refused("--response joint.outer", "go together");
+  refused("--csv table.csv", "needs --response");
+  refused("--response joint.outer --to outer.angle --frequencies 0:1:5", "above 0");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
 BOOST_AUTO_TEST_SUITE(analyze_from_a_command_line)
 
 BOOST_AUTO_TEST_CASE(every_example_scene_has_an_answer) {
