@@ -11,6 +11,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -121,12 +122,14 @@ class SteppedRun : public Run {
   void pass(Checkpoint& checkpoint) override { checkpoint(sizes_, sampled_at_); }
 
  protected:
-  /// Takes the samples at the present time, once, before a step.
+  /// Takes the samples at the present time, once, before a step. States of fixed size have none.
   template <class Steps>
   void take_samples(Steps& steps) {
-    if (!has_samples_ || t() == sampled_at_) return;
-    steps.jump_to(vector_of<std::decay_t<decltype(steps.y())>>(sampled_state()));
-    sampled_at_ = t();
+    if constexpr (std::is_same_v<decltype(steps.y()), const Eigen::VectorXd&>) {
+      if (!has_samples_ || t() == sampled_at_) return;
+      steps.jump_to(sampled_state());
+      sampled_at_ = t();
+    }
   }
 
  private:

@@ -90,9 +90,12 @@ class SceneRuns final : public SteppedScene {
     }
   }
   [[nodiscard]] Eigen::VectorXd sampled(double t, std::span<const double> y) const override {
-    Own state = vector_of<Own>(y);
-    if constexpr (HasSamples<Scene>) scene_.sample(t, state);
-    return vector_of<Eigen::VectorXd>(state);
+    Eigen::VectorXd state = vector_of<Eigen::VectorXd>(y);
+    if constexpr (HasSamples<Scene>) {
+      static_assert(of_any_size, "a scene with samples needs a Vector of dynamic size");
+      scene_.sample(t, state);
+    }
+    return state;
   }
   [[nodiscard]] bool may_be_stiff() const override {
     if constexpr (HasStiffness<Scene>) {

@@ -42,9 +42,10 @@ struct Range {
 /// The speeds of "100:3000:30": first, last and number.
 std::vector<double> speeds(const std::string& text) {
   const Range range("--speeds", text, "100:3000:30");
-  std::vector<double> result;
+  std::vector<double> result(static_cast<std::size_t>(range.count));
   for (int i = 0; i < range.count; ++i) {
-    result.push_back(range.from + (range.to - range.from) * i / (range.count - 1));
+    result[static_cast<std::size_t>(i)] =
+        range.from + (range.to - range.from) * i / (range.count - 1);
   }
   return result;
 }
@@ -55,10 +56,10 @@ std::vector<double> frequencies(const std::string& text) {
   if (!(range.from > 0 && range.to > range.from)) {
     throw InvalidInput("--frequencies " + text + ": FROM must be above 0 and below TO");
   }
-  std::vector<double> result;
+  std::vector<double> result(static_cast<std::size_t>(range.count));
   const double ratio = std::log(range.to / range.from);
   for (int i = 0; i < range.count; ++i) {
-    result.push_back(range.from * std::exp(ratio * i / (range.count - 1)));
+    result[static_cast<std::size_t>(i)] = range.from * std::exp(ratio * i / (range.count - 1));
   }
   result.back() = range.to;
   return result;
