@@ -235,7 +235,8 @@ BOOST_AUTO_TEST_CASE(mistakes_are_told) {
   told(with(connected + spring + "delay = 0.1\n"), "period");
   told(with(connected + spring + "limit = -1\n"), "above 0");
   told(with(connected + spring + "gain = 3\n"), "gain");
-  told(with("reads = [\"pickoff\"]\ndrives = [\"arm\", \"arm\"]\n" + spring),
+  told(with("reads = [\"pickoff\"]\ndrives = [\"arm\", \"arm\"]\n" + spring), "twice");
+  told(with("reads = [\"pickoff.angle\", \"pickoff.rate\"]\ndrives = [\"arm\"]\n" + spring),
        "one reading for each");
   told(arm + pickoff + controller(connected + spring) + controller(connected + spring) + run_part,
        "used by an earlier");
