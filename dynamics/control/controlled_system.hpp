@@ -28,7 +28,9 @@ struct ControlDisturbance {
 ///
 /// The state of continuous laws is part of the state of the system, so that integrators, their
 /// Jacobians and error estimates cover the loop. The outputs that sampled laws hold are part of it
-/// as well: they jump at samples, which solve() meets exactly.
+/// as well: they jump at samples, which solve() meets exactly. A state at the time of samples is the
+/// one before them. A run that starts with it takes them, and forces and readings are those after
+/// them.
 ///
 /// Error  : as BodySystem; joint forces are those of the law, with <= 4u for each product
 /// Throws : InvalidInput, naming the controller and the reason; else as BodySystem
@@ -272,27 +274,11 @@ class ControlledSystem {
     return result;
   }
 
-  /// The output of the i-th controller, from the state after samples.
+  /// The outputs of the i-th controller.
   ///
   /// Units : N m or N
   [[nodiscard]] Vector outputs(double t, const Vector& y, std::size_t controller) const {
-    const Vector joints = joints_of(y);
-    const ControlDisturbance<double> none;
-    MotionOfBodies<double> motion;
-    if (loops_[controller].reads_bodies()) {
-      motion = observed(t, joints, static_cast<const double*>(nullptr), none);
-    }
-    return outputs_of(loops_[controller], t, y, Situation<double>{joints, motion, none});
-  }
-
-  /// The joint forces of all controllers, for each rate.
-  [[nodiscard]] Vector control_force(double t, const Vector& y) const {
-    Vector force = Vector::Zero(tree().rates());
-    for (std::size_t k = 0; k < loops_.size(); ++k) {
-      const Vector u = outputs(t, y, k);
-      for (int i = 0; i < loops_[k].outputs(); ++i) force[loops_[k].rate(i)] += u[i];
-    }
-    return force;
+    return outputs_after_samples(t, after_samples(t, y), controller);
   }
 
   /// As the functions of BodySystem, with the forces of the controllers.
@@ -317,16 +303,23 @@ class ControlledSystem {
     act(t, y, w);
     return detail::terms(tree(), system_.at(t, &w.force), w.joints, body, w.bodies);
   }
-  [[nodiscard]] Terms terms() const { return system_.terms(); }
+  [[nodiscard]] Terms terms() const {
+    Terms all = system_.terms();
+    all.add("load", "joint forces of controllers");
+    return all;
+  }
   [[nodiscard]] bool may_be_stiff() const { return true; }
 
   /// The motion of all bodies and the reactions, for sensors.
   [[nodiscard]] SystemKinematics kinematics(double t, const Vector& y, Workspace& w) const {
+    const Vector after = after_samples(t, y);
     act(t, y, w);
     SystemKinematics result =
         detail::kinematics(tree(), system_.at(t, &w.force), w.joints, gravitation(), w.bodies);
-    result.rates = rates(t, y);
-    for (std::size_t i = 0; i < loops_.size(); ++i) result.outputs.push_back(outputs(t, y, i));
+    result.rates = rates(t, after);
+    for (std::size_t i = 0; i < loops_.size(); ++i) {
+      result.outputs.push_back(outputs_after_samples(t, after, i));
+    }
     return result;
   }
 
@@ -512,7 +505,23 @@ class ControlledSystem {
     require(y);
     set_joints(y, w);
     Vector memory_rates(memory_);
-    set_outputs(t, y, w, memory_rates);
+    set_outputs(t, after_samples(t, y), w, memory_rates);
+  }
+
+  [[nodiscard]] Vector after_samples(double t, const Vector& y) const {
+    Vector result = y;
+    sample(t, result);
+    return result;
+  }
+
+  [[nodiscard]] Vector outputs_after_samples(double t, const Vector& y,
+                                             std::size_t controller) const {
+    const Vector joints = joints_of(y);
+    MotionOfBodies<double> motion;
+    if (loops_[controller].reads_bodies()) {
+      motion = observed(t, joints, static_cast<const double*>(nullptr), none_);
+    }
+    return outputs_of(loops_[controller], t, y, Situation<double>{joints, motion, none_});
   }
 
   BodySystem<M> system_;

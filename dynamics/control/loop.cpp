@@ -117,18 +117,40 @@ void ControlLoop::find_rates(const BodyTree& tree) {
   }
 }
 
-void ControlLoop::check_readings(const BodyTree& tree) const {
-  const auto check_body = [&](int body) {
-    if (body >= 0 && body < static_cast<int>(tree.bodies().size())) return;
-    refuse("a reading is of body " + std::to_string(body) + ", which the system does not have");
+void ControlLoop::check_body(const BodyTree& tree, int body) const {
+  if (body >= 0 && body < static_cast<int>(tree.bodies().size())) return;
+  refuse("a reading is of body " + std::to_string(body) + ", which the system does not have");
+}
+
+void ControlLoop::check_carrier(const BodyTree& tree, int body) const {
+  check_body(tree, body);
+  if (!tree.body(body).rotor) return;
+  refuse("it reads the motion of the rotor '" + tree.body(body).name +
+         "': read its joint, or its carrier");
+}
+
+void ControlLoop::check_frames(const BodyTree& tree, const Reading& reading) const {
+  const auto check = [&](const SensorFrame& frame) {
+    if (frame.kind == SensorFrame::Kind::body) check_carrier(tree, frame.body);
   };
+  if (const auto* const point = std::get_if<PointSensor>(&reading.sensor)) {
+    check(point->against);
+    check(point->axes);
+  } else if (const auto* const attitude = std::get_if<AttitudeSensor>(&reading.sensor)) {
+    check(attitude->against);
+  } else if (const auto* const angles = std::get_if<AttitudeAngles>(&reading.sensor)) {
+    check(angles->sensor.against);
+  }
+}
+
+void ControlLoop::check_readings(const BodyTree& tree) const {
   const auto check_component = [&](int component, int count) {
     if (component >= 0 && component < count) return;
     refuse("a reading is component " + std::to_string(component) + " of " + std::to_string(count));
   };
   for (const Reading& reading : controller_.reads) {
     if (const auto* const joint = std::get_if<JointSensor>(&reading.sensor)) {
-      check_body(joint->body);
+      check_body(tree, joint->body);
       const JointPlace place = tree.place(joint->body);
       check_component(joint->component, joint->is_rate ? place.v_count : place.q_count);
       if (!joint->is_rate && place.q_count != place.v_count) {
@@ -144,12 +166,8 @@ void ControlLoop::check_readings(const BodyTree& tree) const {
         return sensor.body;
       }
     };
-    const int body = std::visit(body_of, reading.sensor);
-    check_body(body);
-    if (tree.body(body).rotor) {
-      refuse("it reads a sensor on the rotor '" + tree.body(body).name +
-             "': read its joint, or a sensor on its carrier");
-    }
+    check_carrier(tree, std::visit(body_of, reading.sensor));
+    check_frames(tree, reading);
     const bool is_point = std::holds_alternative<PointSensor>(reading.sensor);
     const bool is_attitude = std::holds_alternative<AttitudeSensor>(reading.sensor);
     check_component(reading.component, is_point ? 9 : is_attitude ? 4 : 3);
@@ -205,8 +223,14 @@ void ControlLoop::set_pid(const PidLaw& pid) {
       law_.D += pid.integral * T * one;
     }
   }
-  if (of_derivative == 0) return;
-  const int at = integrals;
+  if (of_derivative > 0) set_derivative(pid, integrals);
+}
+
+/// Sets the derivative part of a pid; its states begin at `at`.
+void ControlLoop::set_derivative(const PidLaw& pid, int at) {
+  const int m = inputs();
+  const double T = controller_.period;
+  const MatrixXd one = MatrixXd::Identity(m, m);
   if (is_sampled()) {  // states d and the error before
     const double stays = pid.filter > 0 ? std::exp(-T / pid.filter) : 0;
     const double per_change = (1 - stays) / T;

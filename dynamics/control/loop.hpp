@@ -111,10 +111,14 @@ class KREISEL_API ControlLoop {
 
  private:
   void check() const;
-  void set_pid(const PidLaw& law);
+  void set_pid(const PidLaw& pid);
+  void set_derivative(const PidLaw& pid, int at);
   void set_delay();
   void find_rates(const BodyTree& tree);
   void check_readings(const BodyTree& tree) const;
+  void check_body(const BodyTree& tree, int body) const;
+  void check_carrier(const BodyTree& tree, int body) const;
+  void check_frames(const BodyTree& tree, const Reading& reading) const;
   void check_matrices() const;
   [[noreturn]] void refuse(const std::string& why) const;
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,10 @@ std::vector<std::string> columns(const std::vector<Constraint>& constraints) {
 
 std::vector<std::string> columns(const SceneFile& scene) {
   std::vector<std::string> names = columns(scene.bodies, scene.reactions);
+  std::vector<std::string> memory;
+  for (const std::string& name : scene.memory_names) memory.push_back("memory." + name);
+  const auto joints = static_cast<std::ptrdiff_t>(columns(scene.bodies, false).size());
+  names.insert(names.begin() + joints, memory.begin(), memory.end());
   if (scene.element_forces) {
     const std::vector<std::string> own = columns(scene.elements);
     names.insert(names.end(), own.begin(), own.end());
@@ -116,6 +121,7 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
     values.insert(values.end(), vector.data(), vector.data() + vector.size());
   };
   for (int i = 0; i < count(tree); ++i) append_joint(tree, i, state, values);
+  append(state.memory);
   if (forces.reactions) {
     const JointReactions carried = model.reactions(t, state);
     for (int i = 0; i < count(tree); ++i) {
@@ -155,8 +161,10 @@ std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
   return values;
 }
 
-JointState state_of(const BodyTree& tree, const std::vector<double>& row) {
-  JointState state{Eigen::VectorXd(tree.coordinates()), Eigen::VectorXd(tree.rates())};
+JointState state_of(const SceneSolver& model, const std::vector<double>& row) {
+  const BodyTree& tree = model.tree();
+  JointState state{Eigen::VectorXd(tree.coordinates()), Eigen::VectorXd(tree.rates()),
+                   Eigen::VectorXd(model.memory())};
   const double* next = row.data() + 1;
   for (int i = 0; i < count(tree); ++i) {
     const auto [q, q_count, v, v_count] = tree.place(i);
@@ -175,6 +183,7 @@ JointState state_of(const BodyTree& tree, const std::vector<double>& row) {
     std::copy_n(next, v_count, state.rates.data() + v);
     next += v_count;
   }
+  std::copy_n(next, state.memory.size(), state.memory.data());
   return state;
 }
 

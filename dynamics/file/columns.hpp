@@ -42,8 +42,8 @@ struct RowForces {
   bool constraints = false;
 };
 
-/// The columns of a scene's run: joints, reactions, elements and constraints if they are
-/// requested, and sensors.
+/// The columns of a scene's run: joints, the memory of controllers, reactions, elements and
+/// constraints if they are requested, and sensors.
 [[nodiscard]] std::vector<std::string> columns(const SceneFile& scene);
 
 /// True if a word is a column's name or its group: the part of the name before a dot or a blank.
@@ -67,6 +67,6 @@ std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
                               const SceneScale& scale);
 
 /// The state in a row.
-JointState state_of(const BodyTree& tree, const std::vector<double>& row);
+JointState state_of(const SceneSolver& model, const std::vector<double>& row);
 
 }  // namespace kreisel

@@ -22,6 +22,8 @@ namespace kreisel::detail {
 
 namespace {
 
+constexpr double most_samples = 1e7;
+
 class ControllerReader {
  public:
   explicit ControllerReader(const SceneFile& scene) : scene_(scene) {
@@ -36,6 +38,9 @@ class ControllerReader {
     Controller result{.name = name};
     result.first = scene_.t_begin;
     result.period = section.number("period", dimension::time, Range::positive).value_or(0);
+    if (result.period > 0 && scene_.duration() / result.period > most_samples) {
+      section.refuse("period", "asks for more than ten million samples");
+    }
     result.delay = section.number("delay", dimension::time, Range::not_negative).value_or(0);
     is_sampled_ = result.period > 0;
     const std::string kind = peek_law(section);
@@ -244,11 +249,15 @@ class ControllerReader {
   bool is_sampled_ = false;
 };
 
-/// Notes as a mistake whatever prevents the controller from controlling the bodies.
-void check_loop(Section& section, const Controller& controller, const SceneFile& scene) {
+/// Appends the memory of a controller. Notes as a mistake whatever prevents the controller from
+/// controlling the bodies.
+void append_memory(Section& section, const Controller& controller, SceneFile& scene) {
   try {
     const BodyTree tree(scene.bodies, scene.elements, scene.constraints);
-    (void)ControlLoop(controller, tree, 0);
+    const ControlLoop loop(controller, tree, 0);
+    const Eigen::VectorXd start = loop.initial();
+    for (const std::string& name : loop.memory_names()) scene.memory_names.push_back(name);
+    scene.memory_start.insert(scene.memory_start.end(), start.begin(), start.end());
   } catch (const InvalidInput& error) {
     const std::string text = error.what();
     const std::string before = "controller '" + controller.name + "': ";
@@ -294,7 +303,7 @@ void read_controllers(Section& root, bool sound, SceneFile& scene) {
                          kreisel::name(scene.model) + "'");
     }
     if (sound && section.mistakes() == before) {
-      check_loop(section, controller, scene);
+      append_memory(section, controller, scene);
       check_frames(section, controller, scene);
     }
     outputs.push_back({.name = name,

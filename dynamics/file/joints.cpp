@@ -23,7 +23,7 @@ JointState start_of(const SceneFile& scene) {
     return Eigen::VectorXd(
         Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
   };
-  return {vector(coordinates), vector(rates)};
+  return {vector(coordinates), vector(rates), vector(scene.memory_start)};
 }
 
 Eigen::Quaterniond attitude(const BodyTree& tree, int body, const JointState& state) {

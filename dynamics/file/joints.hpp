@@ -15,7 +15,7 @@ namespace kreisel {
 struct JointState {
   Eigen::VectorXd coordinates;
   Eigen::VectorXd rates;
-  Eigen::VectorXd memory = {};  ///< as ControlledSystem has it; at a start also empty: the default
+  Eigen::VectorXd memory = {};  ///< as ControlledSystem has it
 };
 
 /// The scene file and the logs of its guides.

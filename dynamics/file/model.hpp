@@ -47,6 +47,8 @@ class SceneSolver {
   /// The motion of all bodies, the reactions of their joints, and the rates of the state by the
   /// exact equations.
   [[nodiscard]] virtual SystemKinematics kinematics(double t, const JointState& state) const = 0;
+  /// The number of memory components of all controllers.
+  [[nodiscard]] virtual int memory() const { return 0; }
   /// The times in (begin, end] at which controllers are sampled, and the state after samples.
   [[nodiscard]] virtual std::vector<double> sample_times(double /*begin*/, double /*end*/) const {
     return {};

@@ -90,6 +90,14 @@ class ModelOnGuide final : public SceneSolver {
     }
   }
 
+  [[nodiscard]] int memory() const override {
+    if constexpr (is_controlled) {
+      return system_.memory();
+    } else {
+      return 0;
+    }
+  }
+
   [[nodiscard]] std::vector<double> sample_times(double begin, double end) const override {
     if constexpr (is_controlled) {
       return system_.sample_times(begin, end);
@@ -115,9 +123,7 @@ class ModelOnGuide final : public SceneSolver {
  private:
   [[nodiscard]] State begin_of(const JointState& start) const {
     if constexpr (is_controlled) {
-      State state = system_.start({start.coordinates, start.rates});
-      if (start.memory.size() > 0) state.memory = start.memory;
-      return state;
+      return {start.coordinates, start.rates, start.memory};
     } else {
       return {start.coordinates, start.rates};
     }

@@ -87,7 +87,8 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
   const Index of_joints = coordinates + state.rates.size();
   const Index of_motion = of_joints + state.memory.size();
   VectorXd start(of_motion + Equations::count * static_cast<Index>(group.sensors.size()));
-  start << state.coordinates, state.rates, state.memory,
+  const JointState from = model.sampled(begin, state);
+  start << from.coordinates, from.rates, from.memory,
       Equations::start().replicate(static_cast<Index>(group.sensors.size()), 1);
   std::vector<int> blocks = model.tree().blocks();
   blocks.insert(blocks.end(), static_cast<std::size_t>(state.memory.size()), 1);
@@ -115,9 +116,14 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
   field(begin, start, first);
   const std::vector<double> sizes =
       sizes_of(first.tail(start.size() - of_motion), blocks_of_motion, end - begin);
+  // Steps evaluate the field on their own side of a sample.
+  const std::vector<double> samples = model.sample_times(begin, end);
+  std::vector<double> stops = scene_.discontinuities;
+  if (model.memory() > 0) stops.push_back(begin);
+  stops.insert(stops.end(), samples.begin(), samples.end());
   const auto integrated = [&](auto&& steps) -> VectorXd {
-    steps.stop_at(scene_.discontinuities);
-    for (const double t : model.sample_times(begin, end)) {
+    steps.stop_at(stops);
+    for (const double t : samples) {
       VectorXd all = steps.advance_to(t);
       if (t == end) break;
       all.segment(of_joints, of_motion - of_joints) = model.sampled(t, state_in(all)).memory;

@@ -164,6 +164,8 @@ struct SceneFile {
   /// Those of the file, then one for the outputs of each controller.
   std::vector<SceneSensor> sensors;
   std::vector<Controller> controllers = {};
+  std::vector<std::string> memory_names = {};  ///< of all controllers, as ControlledSystem has it
+  std::vector<double> memory_start = {};
   double t_begin = 0;
   double t_end = 0;  ///< after t_begin
   double tolerance = 1e-10;

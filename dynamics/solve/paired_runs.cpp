@@ -112,8 +112,10 @@ bool PairedRuns::compare_at_next_time() {
   const std::span<const double> reached = coarse_->at_output(try_->done, t, end_);
   try_->distance.note_sizes(coarse_->sizes());
   // A run that was moved by last digits does not begin with the given ones.
-  try_->state = t == options_.begin ? components_of(maker_.start()) : reached;
+  const bool is_start = t == options_.begin;
+  try_->state = is_start ? components_of(maker_.start_after_samples()) : reached;
   const ErrorParts error = error_at(t);
+  if (is_start) try_->state = components_of(maker_.start());
   if (refinement_.is_last() && !std::isfinite(error.sum())) {
     stop_integration(t, "the state has grown beyond the range of numbers");
   }

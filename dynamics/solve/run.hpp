@@ -62,8 +62,8 @@ class SteppedScene;
 
 /// An integration with steps of its own length. States within the last step can be read.
 ///
-/// Samples at the end of a step are taken at the begin of the next one. A run begins with a state
-/// after the samples at its begin.
+/// States are those before the samples at their time, which are taken at the begin of the next step.
+/// A run begins with a state after the samples at its begin.
 class SteppedRun : public Run {
  public:
   inline SteppedRun(const SteppedScene& scene, const SolveOptions& options);
@@ -75,10 +75,6 @@ class SteppedRun : public Run {
       step_towards(end, t);
     }
     read(t, y);
-    if (has_samples_ && t == this->t() && t != sampled_at()) {
-      const Eigen::VectorXd after = sampled_state();
-      std::copy_n(after.data(), after.size(), y);
-    }
   }
 
   /// Takes one step towards `end`; `output` is the next time at which the state is read.
@@ -110,9 +106,6 @@ class SteppedRun : public Run {
 
   /// Takes over the sizes of blocks before this run began; errors are relative to them.
   virtual void know_sizes(std::span<const double> sizes) = 0;
-
-  /// The time of the last samples, or of the begin.
-  [[nodiscard]] virtual double sampled_at() const { return sampled_at_; }
 
   /// The state with the samples at its time taken.
   [[nodiscard]] inline Eigen::VectorXd sampled_state() const;
@@ -146,7 +139,7 @@ class SteppedRun : public Run {
 
   const SteppedScene& scene_;
   bool has_samples_;
-  double sampled_at_;
+  double sampled_at_;  ///< time of the last samples, or the begin
   std::vector<int> blocks_;
   std::vector<double> sizes_;
   std::stop_token stop_;
@@ -196,7 +189,7 @@ class SteppedScene {
   [[nodiscard]] virtual std::vector<double> sample_times(double begin, double end) const = 0;
 
   /// The state after the samples at t; the same if there are none.
-  [[nodiscard]] virtual Eigen::VectorXd sampled(double t, std::span<const double> y) const = 0;
+  [[nodiscard]] virtual Eigen::VectorXd sampled(double t, const Eigen::VectorXd& y) const = 0;
 
   /// True if a part of the scene may make it stiff, or if the scene does not declare this.
   [[nodiscard]] virtual bool may_be_stiff() const = 0;
@@ -234,15 +227,9 @@ inline SteppedRun::SteppedRun(const SteppedScene& scene, const SolveOptions& opt
       stop_(options.stop) {}
 
 inline Eigen::VectorXd SteppedRun::sampled_state() const {
-  if (has_samples_ && t() != sampled_at()) return scene_.sampled(t(), state());
-  return vector_of<Eigen::VectorXd>(state());
+  const Eigen::VectorXd y = vector_of<Eigen::VectorXd>(state());
+  return has_samples_ && t() != sampled_at_ ? scene_.sampled(t(), y) : y;
 }
-
-/// The options with the times of samples among the discontinuities.
-///
-/// Throws : InvalidInput for a run backwards in time
-KREISEL_API [[nodiscard]] SolveOptions with_samples(const SteppedScene& scene,
-                                                    SolveOptions options);
 
 /// Throws : InvalidInput if the options do not fit this scene and this start
 KREISEL_API void check(const SteppedScene& scene, const Eigen::VectorXd& start,

@@ -8,7 +8,7 @@
 namespace kreisel::detail {
 
 Eigen::VectorXd RunMaker::start_of(const RunRequest& request) const {
-  Eigen::VectorXd from = start_;
+  Eigen::VectorXd from = after_samples_;
   if (request.moved != 0) move_last_digits(from, request.moved);
   return from;
 }

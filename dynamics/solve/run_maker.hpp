@@ -22,7 +22,10 @@ class RunMaker {
  public:
   /// The arguments must outlive it.
   RunMaker(const SteppedScene& scene, const SolveOptions& options, const Eigen::VectorXd& start)
-      : scene_(scene), options_(options), start_(start) {}
+      : scene_(scene),
+        options_(options),
+        start_(start),
+        after_samples_(scene.sampled(options.begin, start)) {}
 
   [[nodiscard]] std::unique_ptr<Run> run(const Levels& levels, const RunRequest& request) const;
 
@@ -33,6 +36,8 @@ class RunMaker {
   [[nodiscard]] const SteppedScene& scene() const { return scene_; }
   [[nodiscard]] const SolveOptions& options() const { return options_; }
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
+  /// The state with which runs begin: after the samples at the start.
+  [[nodiscard]] const Eigen::VectorXd& start_after_samples() const { return after_samples_; }
 
  private:
   [[nodiscard]] Eigen::VectorXd start_of(const RunRequest& request) const;
@@ -43,6 +48,7 @@ class RunMaker {
   const SteppedScene& scene_;
   const SolveOptions& options_;
   const Eigen::VectorXd& start_;
+  Eigen::VectorXd after_samples_;
 };
 
 }  // namespace kreisel::detail

@@ -89,8 +89,8 @@ class SceneRuns final : public SteppedScene {
       return {};
     }
   }
-  [[nodiscard]] Eigen::VectorXd sampled(double t, std::span<const double> y) const override {
-    Eigen::VectorXd state = vector_of<Eigen::VectorXd>(y);
+  [[nodiscard]] Eigen::VectorXd sampled(double t, const Eigen::VectorXd& y) const override {
+    Eigen::VectorXd state = y;
     if constexpr (HasSamples<Scene>) {
       static_assert(of_any_size, "a scene with samples needs a Vector of dynamic size");
       scene_.sample(t, state);

@@ -222,29 +222,25 @@ class ByMethod {
 
 }  // namespace
 
-SolveOptions with_samples(const SteppedScene& scene, SolveOptions options) {
+/// The options with the times of samples among the discontinuities.
+[[nodiscard]] static SolveOptions with_sample_times(const SteppedScene& scene,
+                                                    SolveOptions options) {
   if (!scene.has_samples()) return options;
-  const double end = options.output_times.back();
-  if (end < options.begin) {
-    refuse_task(
-        "the run goes backwards in time, but a sampled controller does not: take an end "
-        "after t = ",
-        options.begin, " s");
-  }
-  const std::vector<double> times = scene.sample_times(options.begin, end);
+  const std::vector<double> times = scene.sample_times(options.begin, options.output_times.back());
   options.discontinuities.insert(options.discontinuities.end(), times.begin(), times.end());
   return options;
 }
 
 Trajectory<double> solve_by_steps(const SteppedScene& scene, const Eigen::VectorXd& given,
-                                  const SolveOptions& options, const OnComponents& on_output) try {
+                                  const SolveOptions& all, const OnComponents& on_output) try {
+  const SolveOptions options = with_sample_times(scene, all);
   const Eigen::VectorXd start = start_of_steps(scene, given, options.absolute_scale);
   return ByMethod(scene, start, options, on_output).solve();
 } catch (const StopRequested&) {  // before the first step of a run
   Trajectory<double> none;
-  none.report.method = name(options.method);
-  none.report.tolerance = options.tolerance;
-  cancel(none.report, "request", options.begin);
+  none.report.method = name(all.method);
+  none.report.tolerance = all.tolerance;
+  cancel(none.report, "request", all.begin);
   return none;
 }
 
@@ -266,8 +262,9 @@ static void check_method(const SteppedScene& scene, const SolveOptions& options)
     refuse_task("method ", name(options.method), " does not apply: ", why);
   };
   const bool fixed_steps = options.method == Method::gauss16 || options.method == Method::splitting;
-  if (fixed_steps && !options.discontinuities.empty())
+  if (fixed_steps && (!options.discontinuities.empty() || scene.has_samples())) {
     refuse("its equal steps cannot end at the jumps");
+  }
   if (options.method == Method::taylor && !scene.knows_series()) {
     refuse("this scene does not know its series");
   }
@@ -276,8 +273,18 @@ static void check_method(const SteppedScene& scene, const SolveOptions& options)
   refuse("it is for an EulerTop with two equal moments, under weight and without rotor");
 }
 
+/// Throws : InvalidInput for a run backwards in time, if the scene has samples
+static void check_direction(const SteppedScene& scene, const SolveOptions& options) {
+  if (!scene.has_samples() || options.output_times.back() >= options.begin) return;
+  refuse_task(
+      "the run goes backwards in time, but a sampled controller does not: take an end after "
+      "t = ",
+      options.begin, " s");
+}
+
 void check(const SteppedScene& scene, const Eigen::VectorXd& start, const SolveOptions& options) {
   check(options);
+  check_direction(scene, options);
   check_method(scene, options);
   check_start(scene, start);
 }

@@ -50,10 +50,9 @@ template <class Scene>
                                                               const SolveOptions& given,
                                                               const OnComponents& on_output) {
   KREISEL_SAME_MARCH();
-  const SolveOptions options = with_samples(runs, with_output_times(given));
-  const Eigen::VectorXd before = runs.to_vector(start);
-  const auto components = static_cast<std::size_t>(before.size());
-  const Eigen::VectorXd y = runs.sampled(options.begin, {before.data(), components});
+  const SolveOptions options = with_output_times(given);
+  const Eigen::VectorXd y = runs.to_vector(start);
+  const auto components = static_cast<std::size_t>(y.size());
   check(runs, y, options);
   const bool closed_wanted =
       options.method == Method::closed_form || options.method == Method::automatic;

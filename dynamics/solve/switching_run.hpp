@@ -34,7 +34,6 @@ class SwitchingRun final : public SteppedRun {
   SwitchingRun(const SteppedScene& scene, bool other, const SolveOptions& options, Method first,
                const Eigen::VectorXd& start, const Accuracy& accuracy);
 
-  [[nodiscard]] double sampled_at() const override { return run_->sampled_at(); }
   void step_towards(double end, double output) override;
   void follow(const SteppedRun& other) override;
 

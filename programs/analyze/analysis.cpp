@@ -430,6 +430,37 @@ Response response_of(const kreisel::StudySystem& system, const kreisel::SceneFil
   return response;
 }
 
+/// Adds the Floquet multipliers, or a note why there are none.
+///
+/// Throws : InvalidInput if a requested period does not fit
+void add_multipliers(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
+                     const Request& request, const VectorXd& start, Analysis& result) {
+  const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
+  const bool logged = scene.guide_follows_log();
+  if (logged && !request.period) {
+    result.notes.emplace_back("the guide follows a log: Floquet multipliers only with --period");
+  } else if (swings && !period_of(scene, request)) {
+    result.notes.emplace_back(
+        "the guide swings with several frequencies: Floquet multipliers only with --period, if "
+        "they have a common one");
+  }
+  const auto period = period_of(scene, request);
+  if (period && system.has_samples()) {
+    const std::string why = "controllers are sampled: there are no Floquet multipliers";
+    if (request.period) throw InvalidInput("--period: " + why);
+    result.notes.push_back(why);
+  } else if (period) {
+    if (const double misses = field_misses(system, start, *period); misses > 1e-9) {
+      const std::string why = fmt::format(
+          "after {:.9g} s the equations are not the same: rates differ by {:.1e}", *period, misses);
+      if (request.period) throw InvalidInput("--period: " + why);
+      result.notes.push_back(why + ", so there are no Floquet multipliers");
+    } else {
+      result.floquet = multipliers(system, start, *period, with_longer_guide(scene, request).t_end);
+    }
+  }
+}
+
 }  // namespace
 
 kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& request) {
@@ -461,23 +492,7 @@ Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& s
     }
     result.campbell = sweep(system, *request.campbell, result.steady.state, scene.duration());
   }
-  if (logged && !request.period) {
-    result.notes.emplace_back("the guide follows a log: Floquet multipliers only with --period");
-  } else if (swings && !period_of(scene, request)) {
-    result.notes.emplace_back(
-        "the guide swings with several frequencies: Floquet multipliers only with --period, if "
-        "they have a common one");
-  }
-  if (const auto period = period_of(scene, request)) {
-    if (const double misses = field_misses(system, start, *period); misses > 1e-9) {
-      const std::string why = fmt::format(
-          "after {:.9g} s the equations are not the same: rates differ by {:.1e}", *period, misses);
-      if (request.period) throw InvalidInput("--period: " + why);
-      result.notes.push_back(why + ", so there are no Floquet multipliers");
-    } else {
-      result.floquet = multipliers(system, start, *period, with_longer_guide(scene, request).t_end);
-    }
-  }
+  add_multipliers(system, scene, request, start, result);
   if (request.response) {
     result.response = response_of(system, scene, result.steady, *request.response);
   }

@@ -51,7 +51,7 @@ Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scen
   Begin begin = from_the_start(scene);
   begin.latest = row.front();
   begin.options.begin = begin.latest;
-  begin.state = state_of(model.tree(), row);
+  begin.state = state_of(model, row);
   std::erase_if(begin.options.output_times, [&](double t) { return t <= begin.latest; });
   if (begin.options.output_times.empty()) begin.options.output_times.push_back(scene.t_end);
   return begin;
@@ -92,7 +92,7 @@ struct Record {
   void read_up_to(double t) {
     for (const auto& numbers : earlier) {
       if (numbers.front() > t) break;
-      (void)sensors.row(model, numbers.front(), state_of(model.tree(), numbers));
+      (void)sensors.row(model, numbers.front(), state_of(model, numbers));
     }
   }
 
@@ -218,7 +218,7 @@ void put_before(kreisel::Trajectory<kreisel::JointState>& run, const kreisel::Sc
   for (const auto& row : rows) {
     if (row.front() >= run.times.front()) break;
     times.push_back(row.front());
-    states.push_back(state_of(model.tree(), row));
+    states.push_back(state_of(model, row));
   }
   run.times.insert(run.times.begin(), times.begin(), times.end());
   run.states.insert(run.states.begin(), states.begin(), states.end());

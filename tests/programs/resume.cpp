@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
@@ -173,6 +174,39 @@ BOOST_AUTO_TEST_CASE(continues_increments_exactly) {
   const Case c("verner98", "40", gyro);
   c.stop_half_way();
   c.check(c.run("--resume"));
+}
+
+/// A sampled servo with memory and outputs that wait.
+const std::string servo =
+    "[[sensor]]\nname = \"pickoff\"\nkind = \"joint\"\njoint = \"upper\"\n"
+    "[[controller]]\nname = \"servo\"\nreads = [\"pickoff.angle\"]\ndrives = [\"upper\"]\n"
+    "law = { kind = \"pid\", proportional = 3, integral = 1, derivative = 0.5 }\n"
+    "period = 0.2\ndelay = 0.3\nlimit = 2\n";
+
+BOOST_AUTO_TEST_CASE(continues_controllers_exactly) {
+  const Case c("verner98", "40", gyro + servo);
+  c.stop_half_way();
+  c.check(c.run("--resume"));
+}
+
+// Without a checkpoint the rows have the whole state, also at the time of a sample.
+BOOST_AUTO_TEST_CASE(continues_controllers_from_a_row) {
+  const Case c("verner98", "3", gyro + servo);
+  for (const char* const cut : {"\n1.45", "\n1.6", "\n0.05"}) {
+    c.folder.write("part.csv", c.rows.substr(0, c.rows.find(cut) + 1));
+    const Outcome outcome = c.run("--resume");
+    BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+    const json final = test::parsed(outcome.out).at("final");
+    const auto check_near = [&](const json& found, const json& wanted) {
+      BOOST_TEST(std::abs(found.get<double>() - wanted.get<double>()) < 1e-7);
+    };
+    for (const char* const body : {"upper", "lower"}) {
+      check_near(final.at("joints").at(body).at("coordinate"),
+                 c.report.at("final").at("joints").at(body).at("coordinate"));
+    }
+    check_near(final.at("sensors").at("servo").at("value").at(0),
+               c.report.at("final").at("sensors").at("servo").at("value").at(0));
+  }
 }
 
 // The checkpoint after new steps belongs to the run that began with that row.

@@ -73,6 +73,23 @@ BOOST_AUTO_TEST_CASE(outputs_are_columns) {
   BOOST_TEST(std::abs(row.back() + 2 * 0.3 * std::cos(4)) < 1e-10);
 }
 
+// The row of a sample has the memory before it and the output after it.
+BOOST_AUTO_TEST_CASE(rows_have_the_memory) {
+  const SceneFile file = scene(servo(spring + "period = 0.5\n"));
+  const auto names = columns(file);
+  const auto at = std::find(names.begin(), names.end(), "memory.servo output arm") - names.begin();
+  BOOST_TEST_REQUIRE(at == 3);
+  const auto model = make_model(file);
+  const auto run = model->solve(options_of(file), start_of(file));
+  for (std::size_t i = 1; i < run.times.size(); ++i) {
+    const auto numbers = row(*model, run.times[i], run.states[i], {});
+    BOOST_TEST(numbers[3] == -2 * run.states[i - 1].coordinates[0]);
+    BOOST_TEST(model->kinematics(run.times[i], run.states[i]).outputs[0][0] ==
+               -2 * run.states[i].coordinates[0]);
+    BOOST_TEST((state_of(*model, numbers).memory - run.states[i].memory).isZero(0));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_reference_steps_the_loop) {
   const auto text = servo(spring + "reference = { steps = [[0, 0.3], [1, 0]] }\n");
   BOOST_TEST(std::abs(end(text).coordinates[0] - 0.3 * std::cos(2)) < 1e-11);
@@ -122,7 +139,8 @@ BOOST_AUTO_TEST_CASE(increments_follow_a_sampled_loop) {
     const auto row = readings.row(*model, run.times[i], run.states[i]);
     const auto sensor = columns(file);
     const auto at = std::find(sensor.begin(), sensor.end(), "imu.dtheta z") - sensor.begin();
-    sum += row[static_cast<std::size_t>(at) - 3];  // after t, angle and rate
+    // After t, angle, rate and the held output.
+    sum += row[static_cast<std::size_t>(at) - 4];
   }
   BOOST_TEST(std::abs(run.states.back().coordinates[0] - 0.3 - sum) < 1e-11);
 }
@@ -157,6 +175,40 @@ BOOST_AUTO_TEST_CASE(a_plant_responds_by_its_formula) {
   BOOST_CHECK_THROW((void)plant_input(file, "joint.leg"), InvalidInput);
   BOOST_CHECK_THROW((void)plant_output(file, "arm.torque"), InvalidInput);
   BOOST_CHECK_THROW((void)plant.response(0), InvalidInput);
+}
+
+// A pendulum with the moment J about its hinge. In gravity that does not turn with the guide it hangs
+// still while the guide pitches; in gravity on guide axes it does not.
+BOOST_AUTO_TEST_CASE(a_plant_responds_to_its_guide) {
+  using Complex = std::complex<double>;
+  const std::string rod =
+      body("rod", "{ kind = \"revolute\", axis = [0, 1, 0] }", "centre = [0, 0, -0.4]\n") +
+      "[[sensor]]\nname = \"force\"\nkind = \"accelerometer\"\n"
+      "body = \"rod\"\n" +
+      run_part;
+  const double J = 0.3 + 2 * 0.16, g = 9.81, k = 2 * g * 0.4, w = 1.7;
+  const Complex s(0, w);
+  for (const std::string kind : {"inertial", "uniform"}) {
+    const SceneFile file =
+        scene(rod + "[gravity]\nkind = \"" + kind + "\"\nvector = [0, 0, -9.81]\n");
+    const StudySystem system(file);
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(2);
+    const auto H =
+        system
+            .plant(
+                rest,
+                {plant_input(file, "guide.pitch"), plant_input(file, "guide.origin_acceleration.x"),
+                 plant_input(file, "load.rod.torque.y"), plant_input(file, "load.rod.force.x")},
+                {plant_output(file, "rod.angle"), plant_output(file, "force.x")})
+            .response(w);
+    const auto is_near = [](Complex a, Complex b) { return std::abs(a - b) < 1e-13; };
+    const Complex open = J * s * s + k;
+    BOOST_TEST(is_near(H(0, 0), kind == "inertial" ? -1.0 : -J * s * s / open));
+    BOOST_TEST(is_near(H(0, 1), 0.8 / open));
+    BOOST_TEST(is_near(H(1, 1), 1.0 - g * 0.8 / open));
+    BOOST_TEST(is_near(H(0, 2), 1.0 / open));
+    BOOST_TEST(is_near(H(0, 3), 0.0));
+  }
 }
 
 // A run over many periods has the regime of the plant: its first harmonic is the mean over one
@@ -235,6 +287,12 @@ BOOST_AUTO_TEST_CASE(mistakes_are_told) {
   told(with(connected + spring + "delay = 0.1\n"), "period");
   told(with(connected + spring + "limit = -1\n"), "above 0");
   told(with(connected + spring + "gain = 3\n"), "gain");
+  const std::string wheel = body("wheel", hinge, "rotor = { mode = \"free\", speed = 3 }\n");
+  told(arm + wheel +
+           "[[sensor]]\nname = \"s\"\nkind = \"attitude\"\nbody = \"arm\"\n"
+           "against = \"wheel\"\nas = \"yaw pitch roll\"\n" +
+           controller("reads = [\"s.yaw\"]\ndrives = [\"arm\"]\n" + spring) + run_part,
+       "the rotor 'wheel'");
   told(with("reads = [\"pickoff\"]\ndrives = [\"arm\", \"arm\"]\n" + spring), "twice");
   told(with("reads = [\"pickoff.angle\", \"pickoff.rate\"]\ndrives = [\"arm\"]\n" + spring),
        "one reading for each");
