@@ -12,6 +12,7 @@
 #include <dynamics/control/loop.hpp>
 #include <dynamics/control/readings.hpp>
 #include <dynamics/sensor/kinematics.hpp>
+#include <dynamics/signal/same_time.hpp>
 #include <dynamics/tree/body_system.hpp>
 
 namespace kreisel {
@@ -213,7 +214,8 @@ class ControlledSystem {
     std::vector<double> times;
     for (const detail::ControlLoop& loop : loops_) loop.append_sample_times(begin, end, times);
     std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    const auto is_same = [](double a, double b) { return detail::is_same_time(a, b); };
+    times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
     return times;
   }
 
@@ -312,8 +314,13 @@ class ControlledSystem {
 
   /// The motion of all bodies and the reactions, for sensors.
   [[nodiscard]] SystemKinematics kinematics(double t, const Vector& y, Workspace& w) const {
-    const Vector after = after_samples(t, y);
-    act(t, y, w);
+    return kinematics_after_samples(t, after_samples(t, y), w);
+  }
+
+  /// The same from a state after the samples at its time.
+  [[nodiscard]] SystemKinematics kinematics_after_samples(double t, const Vector& after,
+                                                          Workspace& w) const {
+    act_after_samples(t, after, w);
     SystemKinematics result =
         detail::kinematics(tree(), system_.at(t, &w.force), w.joints, gravitation(), w.bodies);
     result.rates = rates(t, after);
@@ -502,13 +509,18 @@ class ControlledSystem {
 
   /// Sets the joints and the forces of the controllers in w.
   void act(double t, const Vector& y, Workspace& w) const {
+    act_after_samples(t, after_samples(t, y), w);
+  }
+
+  void act_after_samples(double t, const Vector& y, Workspace& w) const {
     require(y);
     set_joints(y, w);
     Vector memory_rates(memory_);
-    set_outputs(t, after_samples(t, y), w, memory_rates);
+    set_outputs(t, y, w, memory_rates);
   }
 
   [[nodiscard]] Vector after_samples(double t, const Vector& y) const {
+    require(y);
     Vector result = y;
     sample(t, result);
     return result;

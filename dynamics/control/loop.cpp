@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <dynamics/control/loop.hpp>
+#include <dynamics/signal/same_time.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel::detail {
@@ -13,7 +14,7 @@ using Eigen::VectorXd;
 
 bool SampleTimes::contain(double t) const {
   const double k = std::round((t - first_) / period_);
-  return k >= 0 && at(k) == t;
+  return k >= 0 && is_same_time(at(k), t, std::abs(first_));
 }
 
 void SampleTimes::append(double begin, double end, std::vector<double>& times) const {
@@ -24,8 +25,9 @@ void SampleTimes::append(double begin, double end, std::vector<double>& times) c
         "more than ten million samples of a controller lie in the run: take a "
         "longer period or an earlier end");
   }
-  for (; at(k) <= end; ++k) {
-    if (at(k) > begin) times.push_back(at(k));
+  const auto is_same = [this](double a, double b) { return is_same_time(a, b, std::abs(first_)); };
+  for (; at(k) <= end || is_same(at(k), end); ++k) {
+    if (at(k) > begin && !is_same(at(k), begin)) times.push_back(is_same(at(k), end) ? end : at(k));
   }
 }
 

@@ -16,7 +16,7 @@ namespace kreisel::detail {
 template <class S>
 using VectorOn = Eigen::Matrix<S, Eigen::Dynamic, 1>;
 
-/// The times first + k period, k = 0, 1, ..
+/// The times first + k period, k = 0, 1, ..  Times that differ by rounding are the same.
 class KREISEL_API SampleTimes {
  public:
   SampleTimes(double first, double period) : first_(first), period_(period) {}

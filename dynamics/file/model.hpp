@@ -47,6 +47,11 @@ class SceneSolver {
   /// The motion of all bodies, the reactions of their joints, and the rates of the state by the
   /// exact equations.
   [[nodiscard]] virtual SystemKinematics kinematics(double t, const JointState& state) const = 0;
+  /// The same from a state after the samples of controllers at its time.
+  [[nodiscard]] virtual SystemKinematics kinematics_after_samples(double t,
+                                                                  const JointState& state) const {
+    return kinematics(t, state);
+  }
   /// The number of memory components of all controllers.
   [[nodiscard]] virtual int memory() const { return 0; }
   /// The times in (begin, end] at which controllers are sampled, and the state after samples.

@@ -90,6 +90,15 @@ class ModelOnGuide final : public SceneSolver {
     }
   }
 
+  [[nodiscard]] SystemKinematics kinematics_after_samples(double t,
+                                                          const JointState& state) const override {
+    if constexpr (is_controlled) {
+      return system_.kinematics_after_samples(t, vector(state), workspace_);
+    } else {
+      return kinematics(t, state);
+    }
+  }
+
   [[nodiscard]] int memory() const override {
     if constexpr (is_controlled) {
       return system_.memory();

@@ -102,7 +102,7 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
             all.segment(of_joints, of_motion - of_joints)};
   };
   const auto field = [&](double t, const VectorXd& all, VectorXd& result) {
-    const auto system = model.kinematics(t, state_in(all));
+    const auto system = model.kinematics_after_samples(t, state_in(all));
     result.head(of_motion) = system.rates;
     Index at = of_motion;
     for (const std::size_t i : group.sensors) {
@@ -116,13 +116,9 @@ void PeriodIntegrals::integrate(Group& group, const SceneSolver& model, double b
   field(begin, start, first);
   const std::vector<double> sizes =
       sizes_of(first.tail(start.size() - of_motion), blocks_of_motion, end - begin);
-  // Steps evaluate the field on their own side of a sample.
   const std::vector<double> samples = model.sample_times(begin, end);
-  std::vector<double> stops = scene_.discontinuities;
-  if (model.memory() > 0) stops.push_back(begin);
-  stops.insert(stops.end(), samples.begin(), samples.end());
   const auto integrated = [&](auto&& steps) -> VectorXd {
-    steps.stop_at(stops);
+    steps.stop_at(scene_.discontinuities);
     for (const double t : samples) {
       VectorXd all = steps.advance_to(t);
       if (t == end) break;

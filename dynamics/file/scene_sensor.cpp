@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/scene_sensor.hpp>
+#include <dynamics/signal/same_time.hpp>
 
 namespace kreisel {
 
@@ -34,11 +34,7 @@ SensorPart joint_part(const BodyDescription& body) {
 
 namespace {
 
-/// True if two times are the same but for the rounding of multiples of a step.
-bool is_same_time(double a, double b) {
-  return std::abs(a - b) <=
-         4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), 1e-300);
-}
+using detail::is_same_time;
 
 double sample_time(const SceneSensor& sensor, double begin, double count) {
   return begin + count * sensor.period;

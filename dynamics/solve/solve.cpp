@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include <dynamics/model/closed_form.hpp>
 #include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/signal/same_time.hpp>
 #include <dynamics/solve/outputs.hpp>
 #include <dynamics/solve/paired_runs.hpp>
 #include <dynamics/solve/run.hpp>
@@ -222,12 +224,21 @@ class ByMethod {
 
 }  // namespace
 
-/// The options with the times of samples among the discontinuities.
+/// The options with the times of samples among the discontinuities. A sample time that differs only
+/// by rounding from a discontinuity or an output time is taken as that time: no step fits between
+/// them.
 [[nodiscard]] static SolveOptions with_sample_times(const SteppedScene& scene,
                                                     SolveOptions options) {
   if (!scene.has_samples()) return options;
-  const std::vector<double> times = scene.sample_times(options.begin, options.output_times.back());
-  options.discontinuities.insert(options.discontinuities.end(), times.begin(), times.end());
+  std::vector<double> given = options.discontinuities;
+  given.insert(given.end(), options.output_times.begin(), options.output_times.end());
+  std::sort(given.begin(), given.end());
+  for (double t : scene.sample_times(options.begin, options.output_times.back())) {
+    const auto next = std::lower_bound(given.begin(), given.end(), t);
+    if (next != given.end() && is_same_time(*next, t)) t = *next;
+    if (next != given.begin() && is_same_time(*std::prev(next), t)) t = *std::prev(next);
+    options.discontinuities.push_back(t);
+  }
   return options;
 }
 

@@ -257,7 +257,7 @@ void RadauIntegrator::begin_step(StiffField& field, double goal) {
     step_ = std::max(sizes_.first_step(rate_), least);
   }
   note_jacobian(field);
-  const bool at_jump = std::binary_search(jumps_.begin(), jumps_.end(), t());
+  const bool at_jump = start_time_ != t();
   if (at_jump) quiet_ = 0;
   if (steps_to_spectrum_ == 0 || at_jump || step_ > 2 * looked_at_) note_spectrum();
   steps_to_spectrum_ = std::max(steps_to_spectrum_ - 1, 0);

@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <dynamics/signal/same_time.hpp>
 #include <dynamics/step/compensated.hpp>
 #include <motor/error.hpp>
 #include <motor/lanes.hpp>
@@ -79,16 +80,20 @@ inline void require_step(double step) {
   }
 }
 
-/// `end`, or the first discontinuity between t and `end`. Jumps are in order.
+/// `end`, or the first discontinuity between t and `end`. Jumps are in order. One that differs from t
+/// or `end` only by rounding is at that time: no step fits between them.
 template <class S>
 [[nodiscard]] S next_stop(const S& t, const S& end, const std::vector<S>& jumps) {
-  if (jumps.empty()) return end;
+  const auto stops = [&](const S& jump) { return !is_same_time(jump, t); };
+  const auto goal = [&end](const S& jump) { return is_same_time(jump, end) ? end : jump; };
   if (t < end) {
-    const auto after = std::upper_bound(jumps.begin(), jumps.end(), t);
-    return after != jumps.end() && *after < end ? *after : end;
+    auto next = std::upper_bound(jumps.begin(), jumps.end(), t);
+    while (next != jumps.end() && !stops(*next)) ++next;
+    return next != jumps.end() && *next < end ? goal(*next) : end;
   }
-  const auto here = std::lower_bound(jumps.begin(), jumps.end(), t);
-  return here != jumps.begin() && *std::prev(here) > end ? *std::prev(here) : end;
+  auto next = std::make_reverse_iterator(std::lower_bound(jumps.begin(), jumps.end(), t));
+  while (next != jumps.rend() && !stops(*next)) ++next;
+  return next != jumps.rend() && *next > end ? goal(*next) : end;
 }
 
 /// Times in order.
@@ -145,8 +150,15 @@ template <class To, class From>
 template <class S>
 [[nodiscard]] S on_this_side(const S& t, const S& side, const std::vector<S>& jumps) {
   using std::nextafter;
-  const bool jumps_here = std::binary_search(jumps.begin(), jumps.end(), t);
-  return jumps_here ? S(nextafter(t, side)) : t;
+  S here = t;
+  bool jumps_here = false;
+  auto near = std::lower_bound(jumps.begin(), jumps.end(), t);
+  if (near != jumps.begin() && is_same_time(*std::prev(near), t)) --near;
+  for (; near != jumps.end() && is_same_time(*near, t); ++near) {
+    jumps_here = true;
+    here = side > t ? std::max(here, *near) : std::min(here, *near);
+  }
+  return jumps_here ? S(nextafter(here, side)) : t;
 }
 
 /// Moves the components of a state by a number of units in the last digit, up and down in turn.

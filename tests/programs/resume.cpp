@@ -180,8 +180,8 @@ BOOST_AUTO_TEST_CASE(continues_increments_exactly) {
 const std::string servo =
     "[[sensor]]\nname = \"pickoff\"\nkind = \"joint\"\njoint = \"upper\"\n"
     "[[controller]]\nname = \"servo\"\nreads = [\"pickoff.angle\"]\ndrives = [\"upper\"]\n"
-    "law = { kind = \"pid\", proportional = 3, integral = 1, derivative = 0.5 }\n"
-    "period = 0.2\ndelay = 0.3\nlimit = 2\n";
+    "law = { kind = \"pid\", proportional = 1, integral = 0.05 }\n"
+    "period = 0.2\ndelay = 0.25\nlimit = 2\n";
 
 BOOST_AUTO_TEST_CASE(continues_controllers_exactly) {
   const Case c("verner98", "40", gyro + servo);

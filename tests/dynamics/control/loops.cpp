@@ -172,6 +172,41 @@ BOOST_AUTO_TEST_CASE(delayed_outputs_follow_their_samples) {
   }
 }
 
+// 3 * 0.3 is an ulp less than 0.9, and 9 * 0.1 is 0.9: no step fits between these times.
+BOOST_AUTO_TEST_CASE(samples_may_differ_from_the_end_by_rounding) {
+  Controller slow = servo(PidLaw{1.5}, 0.3);
+  Controller fast = servo(PidLaw{0.5}, 0.1);
+  fast.name = "fast";
+  const ControlledSystem<RestingFrame<>> system(BodySystem<RestingFrame<>>({}, {arm()}),
+                                                {slow, fast});
+  Real of_slow = 0;
+  const auto expected = angles_between(0.1L, 9, [&](int k, Real q) {
+    if (k % 3 == 0) of_slow = -1.5L * q;
+    return of_slow - 0.5L * q;
+  });
+  const auto start =
+      system.start({Eigen::VectorXd::Constant(1, angle_0), Eigen::VectorXd::Zero(1)});
+  const auto run = solve(system, start, {.t_end = 0.9, .tolerance = 1e-11});
+  BOOST_TEST(run.report.tolerance_kept);
+  BOOST_TEST(std::abs(run.states.back().coordinates[0] - double(expected.back())) < 1e-14);
+  BOOST_TEST(sampled_transition(system, 0, Eigen::VectorXd::Zero(4)).period == 0.3);
+}
+
+// A run from the last state of another takes the samples of that time once.
+BOOST_AUTO_TEST_CASE(runs_continue_from_the_state_of_a_sample) {
+  Controller controller = servo(pid, 0.1);
+  controller.delay = 0.13;
+  const auto system = arm_with(controller);
+  const auto start =
+      system.start({Eigen::VectorXd::Constant(1, angle_0), Eigen::VectorXd::Zero(1)});
+  const auto whole = solve(system, start, {.output_times = {0.8, 2}, .tolerance = 1e-12});
+  const auto rest =
+      solve(system, whole.states[0], {.begin = 0.8, .output_times = {2}, .tolerance = 1e-12});
+  BOOST_TEST_REQUIRE(rest.states.size() == 1U, rest.report.message);
+  BOOST_TEST(std::abs(whole.states[1].coordinates[0] - rest.states[0].coordinates[0]) < 1e-13);
+  BOOST_TEST((whole.states[1].memory - rest.states[0].memory).cwiseAbs().maxCoeff() < 1e-12);
+}
+
 BOOST_AUTO_TEST_CASE(saturated_samples_do_not_wind_up) {
   Controller controller = servo(PidLaw{3, 0.7}, 0.1);
   controller.limit = {0.25};

@@ -499,6 +499,23 @@ BOOST_AUTO_TEST_CASE(find_events_and_stop_at_jumps) {
   BOOST_TEST(steps.effort().rejected == 0);
 }
 
+// No step fits between times that differ by rounding.
+BOOST_AUTO_TEST_CASE(take_a_jump_beside_an_end_as_at_the_end) {
+  for (const double jump : {std::nextafter(1.0, 0.0), 1.0, std::nextafter(1.0, 2.0)}) {
+    const auto thrust = [jump](double t, const VectorXd& y, VectorXd& rate) {
+      rate[0] = y[1];
+      rate[1] = t < jump ? 0 : 2;
+    };
+    ExplicitRungeKutta steps(thrust, 0.0, VectorXd(VectorXd::Zero(2)));
+    steps.stop_at({jump});
+    BOOST_TEST(steps.advance_to(1)[1] == 0);
+    BOOST_TEST(near(steps.advance_to(3)[0], 4.0, 4.0, 8));
+    BOOST_TEST(near(steps.advance_to(1)[1], 0.0, 4.0, 8));
+    BOOST_TEST(near(steps.advance_to(-1)[0], 0.0, 4.0, 16));
+    BOOST_TEST(steps.effort().rejected == 0);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(recognise_a_stiff_field) {
   for (const double damping : {0.0, 1e4}) {
     const auto field = [=](double, const VectorXd& y, VectorXd& rate) {
