@@ -6,8 +6,8 @@
 
 namespace kreisel::detail {
 
-/// True if two times are the same but for the rounding of a multiple of a step, which began at a
-/// time of the given size.
+/// True if two times differ by no more than the rounding of a multiple of a step. The steps began
+/// at a time of the given size.
 template <class S>
 [[nodiscard]] bool is_same_time(const S& a, const S& b, const S& size = S(0)) {
   using std::abs;

@@ -105,6 +105,7 @@ Scene generate(Random r) {
     if (add_constraint(r, scene, *wanted)) break;
   }
   add_constraints(r, scene);
+  add_servos(r, scene);
   return scene;
 }
 

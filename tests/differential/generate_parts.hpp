@@ -60,6 +60,11 @@ void add_sensors(Random& r, Scene& scene);
 // generate_elements.cpp
 void add_elements(Random& r, Scene& scene);
 
+// generate_servos.cpp
+
+/// Servos of joints that are free to move.
+void add_servos(Random& r, Scene& scene);
+
 // generate_constraints.cpp
 
 /// Makes some joints constraints.

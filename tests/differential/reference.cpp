@@ -19,10 +19,19 @@ constexpr int columns = 8;  // 2, 4, .. 16 parts of a step: order 16, 73 evaluat
 /// Gragg's steps by the modified midpoint rule, extrapolated.
 class Steps {
  public:
-  Steps(Tree& tree, State start) : tree_(tree), y_(std::move(start)) { note(); }
+  Steps(Tree& tree, Real t, State start) : tree_(tree), y_(std::move(start)), sampled_(t) {
+    note();
+  }
 
   [[nodiscard]] const State& state() const { return y_; }
   [[nodiscard]] double evaluations() const { return evaluations_; }
+
+  /// Takes the samples at t, once. An output may differ from a sample by rounding.
+  void sample(Real t) {
+    if (t - sampled_ <= 1e-12L * std::abs(t)) return;
+    tree_.sample(t, y_);
+    sampled_ = t;
+  }
 
   /// One step from t by h. The error is the difference to the column before, relative to the
   /// greatest sizes so far.
@@ -83,6 +92,7 @@ class Steps {
   State first_;
   State rate_;
   State size_;
+  Real sampled_;  ///< time of the last samples
   double evaluations_ = 0;
 };
 
@@ -125,7 +135,7 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
          ReferenceMotion& motion, std::vector<Step>& taken) {
   constexpr Real tolerance = 1e-15L;
   Tree tree(scene);
-  Steps steps(tree, tree.start());
+  Steps steps(tree, Real(scene.t_begin), tree.start());
   const std::vector<double> jumps = scene.jumps();
   auto t = Real(scene.t_begin);
   const Real whole = Real(times.back()) - t;
@@ -137,6 +147,7 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
       const bool last = t + h * Real(1.01) >= goal;
       const Real length = last ? goal - t : h;
       tree.stay_within(t + length / 2);
+      steps.sample(t);
       const Real off = steps.attempt(t, length);
       const Real factor = Real(0.8) * std::pow(tolerance / (off + Real(1e-19)), Real(1) / 15);
       if (!(off <= tolerance)) {
@@ -162,10 +173,11 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
 void repeat(const Scene& scene, const std::vector<Step>& taken, ReferenceMotion& motion) {
   Scene other = moved(scene);
   Tree tree(other);
-  Steps steps(tree, tree.start());
+  Steps steps(tree, Real(scene.t_begin), tree.start());
   for (const Step& step : taken) {
     if (motion.others.size() == motion.states.size()) break;
     tree.stay_within(step.begin + step.length / 2);
+    steps.sample(step.begin);
     for (const int half : {0, 1}) {
       const Real begin = step.begin + Real(half) * step.length / 2;
       [[maybe_unused]] const Real off = steps.attempt(begin, step.length / 2);

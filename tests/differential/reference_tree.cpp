@@ -80,6 +80,11 @@ Tree::Tree(const Scene& scene) : scene_(scene), guide_(scene), poses_(scene.bodi
     parts_.push_back(part);
     parents_.push_back(body.parent);
   }
+  for (const Servo& servo : scene.servos) {
+    memories_.push_back({size_});
+    if (servo.period > 0) memories_.back().size += servo.whole_periods() + 1;
+    size_ += memories_.back().size;
+  }
   for (const Constraint& constraint : scene.constraints) {
     holds_.push_back({Mat::Identity(), rows, rows_of(constraint.kind)});
     rows += holds_.back().rows;
@@ -101,6 +106,7 @@ State Tree::start() {
   std::vector<Pose> poses(scene_.bodies.size());
   for (int i = 0; i < static_cast<int>(scene_.bodies.size()); ++i) start_body(i, y, poses);
   start_constraints(y);
+  sample(Real(scene_.t_begin), y);
   return y;
 }
 
@@ -288,6 +294,7 @@ void Tree::rates(Real t, const State& y, State& result) {
   assemble(guide);
   add_forces(t, y, guide);
   solve();
+  set_servo_rates(y, result);
   for (int i = 0; i < static_cast<int>(poses_.size()); ++i) {
     const Eigen::Index k = at(i);
     const Vec w = y.segment<3>(k + 10);

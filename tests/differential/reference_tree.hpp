@@ -36,6 +36,8 @@ class Tree {
     within_ = t;
     guide_.stay_within(t);
   }
+  /// Takes the samples of servos that are due at t. start() has taken those of the start.
+  void sample(Real t, State& y);
   /// Readings of the scene's sensors: three numbers for each vector, for an attitude the quaternion
   /// x, y, z, w.
   [[nodiscard]] std::vector<double> readings(Real t, const State& y);
@@ -178,6 +180,17 @@ class Tree {
   /// Adds the springs and mounts.
   void add_elements();
   void add_gears(const State& y);
+
+  /// The memory of a servo: integral, filter or derivative, the error before, the output that is
+  /// held, and those that wait, the latest first.
+  struct Memory {
+    Eigen::Index at = 0;
+    Eigen::Index size = 4;
+  };
+  [[nodiscard]] Real servo_error(const Servo& servo, const State& y) const;
+  void sample_servo(const Servo& servo, Real e, Real* memory) const;
+  void add_servos(const State& y);
+  void set_servo_rates(const State& y, State& result) const;
   /// The joint force Q_a of a gear.
   [[nodiscard]] Real gear_force(const Element& element, const State& y) const;
   [[nodiscard]] std::pair<Real, Real> coordinate_of(int body, const State& y) const;
@@ -201,6 +214,7 @@ class Tree {
   std::vector<Part> parts_;
   std::vector<int> parents_;
   std::vector<Hold> holds_;
+  std::vector<Memory> memories_;
   Eigen::Index size_ = 0;
   Real within_ = 0;
   Real now_ = 0;

@@ -1,6 +1,7 @@
 #include "scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "reference_guide.hpp"
@@ -25,8 +26,23 @@ std::vector<double> Scene::jumps() const {
   for (const Signal* const s : signals()) {
     times.insert(times.end(), s->jumps.times.begin(), s->jumps.times.end());
   }
+  for (const Servo& servo : servos) {
+    for (int k = 0; servo.period > 0 && t_begin + k * servo.period <= t_end; ++k) {
+      times.push_back(t_begin + k * servo.period);
+      if (servo.rest() > 0) times.push_back(t_begin + servo.rest() + k * servo.period);
+    }
+  }
   std::sort(times.begin(), times.end());
+  const auto is_same = [](double a, double b) { return b - a < 1e-13 * std::abs(b); };
+  times.erase(std::unique(times.begin(), times.end(), is_same), times.end());
   return times;
+}
+
+int Servo::whole_periods() const { return static_cast<int>(std::floor(delay / period + 1e-9)); }
+
+double Servo::rest() const {
+  const double left = delay - whole_periods() * period;
+  return left > 1e-9 * period ? left : 0;
 }
 
 std::vector<const Signal*> Scene::signals() const {
@@ -145,6 +161,7 @@ std::string to_toml(const Scene& scene) {
     if (scene.bodies[i].loose) result += constraint(scene.bodies[i], static_cast<int>(i));
   }
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) result += sensor(scene.sensors[i], i);
+  for (std::size_t i = 0; i < scene.servos.size(); ++i) result += servo(scene.servos[i], scene, i);
   result +=
       "[solve]\nt_end = " + text(scene.t_end) + "\ntolerance = " + text(scene.tolerance) + "\n";
   if (scene.t_begin != 0) result += "t_begin = " + text(scene.t_begin) + "\n";

@@ -277,6 +277,25 @@ struct Sensor {
   std::string increments = {};  ///< "true" or "\"uncompensated\""; empty: values
 };
 
+/// A pid that reads a joint of one coordinate and drives another or the same one.
+struct Servo {
+  int reads = 0;
+  bool reads_rate = false;
+  int drives = 0;
+  double proportional = 0;
+  double integral = 0;
+  double derivative = 0;
+  double filter = 0;
+  double reference = 0;
+  double limit = 0;   ///< 0: none
+  double period = 0;  ///< 0: continuous
+  double delay = 0;
+
+  /// The periods that a sample waits at the least, and the rest of the delay.
+  [[nodiscard]] int whole_periods() const;
+  [[nodiscard]] double rest() const;
+};
+
 struct Scene {
   std::string title = {};
   std::vector<Link> guide = {};  ///< more than one: a chain; none: not given
@@ -289,6 +308,7 @@ struct Scene {
   std::vector<Element> elements = {};
   std::vector<Constraint> constraints = {};
   std::vector<Sensor> sensors = {};
+  std::vector<Servo> servos = {};
   double t_begin = 0;
   double t_end = 1;
   double tolerance = 1e-10;

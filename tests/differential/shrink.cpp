@@ -131,6 +131,12 @@ void drop_body(Scene& scene, std::size_t index) {
   for (Element& element : scene.elements) {
     for (int& body : element.bodies) move_up(body);
   }
+  std::erase_if(scene.servos, [dropped](const Servo& servo) {
+    return servo.reads == dropped || servo.drives == dropped;
+  });
+  for (Servo& servo : scene.servos) {
+    for (int* const body : {&servo.reads, &servo.drives}) move_up(*body);
+  }
   for (Constraint& constraint : scene.constraints) {
     for (int& body : constraint.bodies) move_up(body);
   }
@@ -254,6 +260,14 @@ std::vector<Change> changes_of(const Scene& scene) {
     changes.emplace_back(
         [i](Scene& s) { s.sensors[i].axes.reset(), s.sensors[i].at_by_name = false; });
     changes.emplace_back([i](Scene& s) { s.sensors[i].errors.reset(); });
+  }
+  for (std::size_t i = 0; i < scene.servos.size(); ++i) {
+    changes.emplace_back(
+        [i](Scene& s) { s.servos.erase(s.servos.begin() + static_cast<std::ptrdiff_t>(i)); });
+    for (double Servo::*const part : {&Servo::integral, &Servo::derivative, &Servo::reference,
+                                      &Servo::limit, &Servo::period, &Servo::delay}) {
+      changes.emplace_back([i, part](Scene& s) { s.servos[i].*part = 0; });
+    }
   }
   changes.emplace_back([](Scene& s) { s.outputs = 1; });
   changes.emplace_back([](Scene& s) { s.tolerance = 1e-10; });

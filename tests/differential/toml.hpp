@@ -60,6 +60,8 @@ void add_angles(Inline& table, const std::string& key, const std::vector<Angle>&
 // toml_parts.cpp
 [[nodiscard]] std::string element(const Element& e, std::size_t index);
 [[nodiscard]] std::string sensor(const Sensor& sensor, std::size_t index);
+/// The sensor that a servo reads, and its controller.
+[[nodiscard]] std::string servo(const Servo& servo, const Scene& scene, std::size_t index);
 
 [[nodiscard]] std::string constraint(const Constraint& c, std::size_t index);
 

@@ -132,4 +132,33 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
   return result;
 }
 
+std::string servo(const Servo& servo, const Scene& scene, std::size_t index) {
+  const Body& read = scene.bodies[static_cast<std::size_t>(servo.reads)];
+  const char* const coordinate = read.kind == JointKind::prismatic ? "displacement" : "angle";
+  std::string law = "{ kind = \"pid\"";
+  const auto add = [&law](const char* key, double x) {
+    if (x != 0) law += fmt::format(", {} = {}", key, text(x));
+  };
+  add("proportional", servo.proportional);
+  add("integral", servo.integral);
+  add("derivative", servo.derivative);
+  add("filter", servo.filter);
+  Keys keys{{"name", fmt::format("\"c{}\"", index)},
+            {"reads", fmt::format("[\"r{}.{}\"]", index, servo.reads_rate ? "rate" : coordinate)},
+            {"drives", fmt::format("[\"{}\"]", body_name(servo.drives))},
+            {"law", law + " }"}};
+  const auto add_key = [&keys](const char* key, double x) {
+    if (x != 0) keys.emplace_back(key, fmt::format("{}", x));
+  };
+  add_key("reference", servo.reference);
+  add_key("limit", servo.limit);
+  add_key("period", servo.period);
+  add_key("delay", servo.delay);
+  std::string result = fmt::format("[[sensor]]\nname = \"r{}\"\nkind = \"joint\"\njoint = \"{}\"\n",
+                                   index, body_name(servo.reads)) +
+                       "[[controller]]\n";
+  for (const auto& [key, value] : keys) result += key + " = " + value + "\n";
+  return result;
+}
+
 }  // namespace differential

@@ -1,0 +1,57 @@
+#include <algorithm>
+
+#include "generate_parts.hpp"
+
+namespace differential {
+
+namespace {
+
+/// The bodies whose joints have one coordinate.
+std::vector<int> joints_of_one(const Scene& scene, bool only_driven) {
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(i)];
+    const bool has_one = kreisel::joint_type(body.kind).rate_count() == 1;
+    const bool is_free = !body.hold && !body.drive;
+    if (has_one && !body.rotor && !body.loose && (is_free || !only_driven)) result.push_back(i);
+  }
+  return result;
+}
+
+Servo servo(Random& r, double duration) {
+  Servo result;
+  result.reads_rate = r.chance(0.3);
+  if (r.chance(0.8)) result.proportional = sign(r) * r.pick({0.1, 1.0, 10.0});
+  if (r.chance(0.5)) result.integral = r.pick({0.1, 1.0});
+  if (r.chance(0.4)) result.derivative = r.pick({0.1, 1.0});
+  if (result.proportional == 0 && result.derivative == 0) result.integral = 1;
+  if (r.chance(0.6)) result.period = duration / r.pick({8.0, 30.0, 100.0});
+  const bool filters = result.period == 0 || r.chance(0.5);
+  if (filters && result.derivative != 0) result.filter = r.pick({0.01, 0.1, 1.0});
+  if (r.chance(0.3)) result.reference = r.pick({0.1, 1.0});
+  if (r.chance(0.2)) result.limit = r.pick({0.1, 1.0, 10.0});
+  if (result.period > 0 && r.chance(0.4)) result.delay = result.period * r.pick({0.4, 1.0, 2.5});
+  return result;
+}
+
+}  // namespace
+
+void add_servos(Random& r, Scene& scene) {
+  const double duration = scene.t_end - scene.t_begin;
+  // Samples jump within the periods of increments, which the check of increments does not expect.
+  const bool integrates = std::any_of(scene.sensors.begin(), scene.sensors.end(),
+                                      [](const Sensor& s) { return !s.increments.empty(); });
+  const std::vector<int> driven = joints_of_one(scene, true);
+  if (r.chance(0.85) || driven.empty() || integrates || duration > 20) return;
+  do {
+    Servo result = servo(r, duration);
+    result.drives = driven[static_cast<std::size_t>(r.below(static_cast<int>(driven.size())))];
+    const std::vector<int> read = joints_of_one(scene, false);
+    result.reads = r.chance(0.7)
+                       ? result.drives
+                       : read[static_cast<std::size_t>(r.below(static_cast<int>(read.size())))];
+    scene.servos.push_back(result);
+  } while (r.chance(0.3));
+}
+
+}  // namespace differential
