@@ -53,7 +53,6 @@ class ControlledSystem {
     MotionOfBodies<double> motion = {};
     Vector joints = {};  ///< coordinates and rates
     Vector rates = {};   ///< their derivatives
-    Vector force = {};   ///< of the controllers, for each rate
   };
 
   /// gravitation : the load on all bodies that represents a gravity that is not uniform, for
@@ -126,7 +125,7 @@ class ControlledSystem {
     auto memory_rates = result.tail(memory_);
     set_joints(y, w);
     set_outputs(t, y, w, memory_rates);
-    detail::rates(tree(), system_.at(t, &w.force), w.joints, w.rates, w.bodies);
+    detail::rates(tree(), system_.at(t, &w.bodies.outside), w.joints, w.rates, w.bodies);
     result.head(joint_count()) = w.rates;
     if (!completes_later_) return;
     if (reads_bodies_) observe(t, w, &w.rates);
@@ -154,12 +153,14 @@ class ControlledSystem {
                                              ControlDisturbance<Dual> outside) const {
     require_linear();
     const detail::VectorOn<Dual> joints = y.head(joint_count());
-    detail::VectorOn<Dual>& force = outside.bodies.joint_force;
+    detail::VectorOn<Dual>& force = outside.bodies.forces.joint_force;
     if (force.size() == 0) force = detail::VectorOn<Dual>::Constant(tree().rates(), Dual(0));
     detail::VectorOn<Dual> memory_rates = detail::VectorOn<Dual>::Constant(memory_, Dual(0));
     MotionOfBodies<Dual> motion;
     if (reads_bodies_) motion = observed(t, joints, static_cast<const Dual*>(nullptr), outside);
-    add_outputs(t, y, Situation<Dual>{joints, motion, outside}, force, memory_rates);
+    OutsideForces<Dual> forces = outside.bodies.forces;
+    add_outputs(t, y, Situation<Dual>{joints, motion, outside}, forces, memory_rates);
+    outside.bodies.forces = std::move(forces);
     const detail::VectorOn<Dual> joint_rates = system_.rates(t, joints, outside.bodies);
     if (completes_later_) {
       if (reads_bodies_) {
@@ -278,7 +279,7 @@ class ControlledSystem {
 
   /// The outputs of the i-th controller.
   ///
-  /// Units : N m or N
+  /// Units : N m or N; m of winches
   [[nodiscard]] Vector outputs(double t, const Vector& y, std::size_t controller) const {
     return outputs_after_samples(t, after_samples(t, y), controller);
   }
@@ -286,16 +287,17 @@ class ControlledSystem {
   /// As the functions of BodySystem, with the forces of the controllers.
   void reactions(double t, const Vector& y, JointReactions& result, Workspace& w) const {
     act(t, y, w);
-    detail::reactions(tree(), system_.at(t, &w.force), w.joints, result, w.bodies);
+    detail::reactions(tree(), system_.at(t, &w.bodies.outside), w.joints, result, w.bodies);
   }
   void element_forces(double t, const Vector& y, std::vector<Motor<>>& result, Workspace& w) const {
-    system_.element_forces(t, joints_of(y), result, w.bodies);
+    act(t, y, w);
+    detail::element_forces(tree(), system_.at(t, &w.bodies.outside), w.joints, result, w.bodies);
   }
   [[nodiscard]] std::vector<ConstraintReaction> constraint_reactions(double t, const Vector& y,
                                                                      Workspace& w) const {
     act(t, y, w);
-    detail::accelerate(tree(), system_.at(t, &w.force), w.joints, w.bodies.acceleration.data(),
-                       w.bodies);
+    detail::accelerate(tree(), system_.at(t, &w.bodies.outside), w.joints,
+                       w.bodies.acceleration.data(), w.bodies);
     return detail::constraint_reactions(tree(), w.bodies);
   }
   [[nodiscard]] LoadContext<> situation(double t, const Vector& y, int body, Workspace& w) const {
@@ -303,7 +305,7 @@ class ControlledSystem {
   }
   [[nodiscard]] ForceParts<Body> terms(double t, const Vector& y, int body, Workspace& w) const {
     act(t, y, w);
-    return detail::terms(tree(), system_.at(t, &w.force), w.joints, body, w.bodies);
+    return detail::terms(tree(), system_.at(t, &w.bodies.outside), w.joints, body, w.bodies);
   }
   [[nodiscard]] Terms terms() const {
     Terms all = system_.terms();
@@ -321,8 +323,8 @@ class ControlledSystem {
   [[nodiscard]] SystemKinematics kinematics_after_samples(double t, const Vector& after,
                                                           Workspace& w) const {
     act_after_samples(t, after, w);
-    SystemKinematics result =
-        detail::kinematics(tree(), system_.at(t, &w.force), w.joints, gravitation(), w.bodies);
+    SystemKinematics result = detail::kinematics(tree(), system_.at(t, &w.bodies.outside), w.joints,
+                                                 gravitation(), w.bodies);
     result.rates = rates(t, after);
     for (std::size_t i = 0; i < loops_.size(); ++i) {
       result.outputs.push_back(outputs_after_samples(t, after, i));
@@ -456,11 +458,11 @@ class ControlledSystem {
     return u;
   }
 
-  /// Adds the outputs of all loops to `force`, and sets the derivatives of the memory of those that
+  /// Adds the outputs of all loops to `forces`, and sets the derivatives of the memory of those that
   /// feed their readings through.
   template <class N, class MemoryRates>
   void add_outputs(const N& t, const detail::VectorOn<N>& y, const Situation<N>& now,
-                   detail::VectorOn<N>& force, MemoryRates& memory_rates) const {
+                   OutsideForces<N>& forces, MemoryRates& memory_rates) const {
     detail::VectorOn<N> u;
     detail::VectorOn<N> dx;
     for (const detail::ControlLoop& loop : loops_) {
@@ -473,7 +475,9 @@ class ControlledSystem {
         loop.evaluate(t, e, x, u, dx);
         if (loop.feeds_through()) set_rates(loop, dx, memory_rates);
       }
-      for (int i = 0; i < loop.outputs(); ++i) force[loop.rate(i)] += u[i];
+      for (int i = 0; i < loop.outputs(); ++i) {
+        detail::add(loop.actuators()[static_cast<std::size_t>(i)], u[i], forces);
+      }
     }
   }
 
@@ -502,9 +506,11 @@ class ControlledSystem {
   template <class MemoryRates>
   void set_outputs(double t, const Vector& y, Workspace& w, MemoryRates& memory_rates) const {
     memory_rates.setZero();
-    w.force.setZero(tree().rates());
+    w.bodies.outside.joint_force.setZero(tree().rates());
+    w.bodies.outside.on_bodies.clear();
+    w.bodies.outside.winches.clear();
     if (reads_bodies_ && feeds_through_) observe(t, w, nullptr);
-    add_outputs(t, y, Situation<double>{w.joints, w.motion, none_}, w.force, memory_rates);
+    add_outputs(t, y, Situation<double>{w.joints, w.motion, none_}, w.bodies.outside, memory_rates);
   }
 
   /// Sets the joints and the forces of the controllers in w.

@@ -32,7 +32,7 @@ struct Reading {
   int component = 0;
 };
 
-/// A controller: readings in, joint forces out. The input of its law is the control error
+/// A controller: readings in, forces and lengths out. The input of its law is the control error
 ///
 ///   e = reference(t) - reading.
 ///
@@ -42,11 +42,13 @@ struct Reading {
 ///
 /// Source : paper 000, the torquers and pickoffs that it leaves out ("Momentegeber, Abgriffe,
 ///          Fesselungen")
-/// Units  : N m or N (outputs, limit), s
+/// Units  : N m, N or m (outputs, limit), s
 struct Controller {
   std::string name = {};
   std::vector<Reading> reads = {};
-  std::vector<std::string> drives = {};  ///< bodies whose joints have one rate, or rotors
+  /// Names of bodies, for the forces of all rates of their joints; of ropes, for the lengths that
+  /// winches pay out; or of single actuators.
+  std::vector<std::string> drives = {};
   ControlLaw law = PidLaw{};
   std::vector<Signal<double>> reference = {};  ///< one for each reading; empty: 0
   std::vector<double> limit = {};              ///< |u| of each output; empty: none

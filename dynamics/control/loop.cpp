@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include <dynamics/control/actuator.hpp>
 #include <dynamics/control/loop.hpp>
 #include <dynamics/signal/same_time.hpp>
 #include <motor/error.hpp>
@@ -36,7 +37,9 @@ ControlLoop::ControlLoop(Controller controller, const BodyTree& tree, int memory
       memory_(memory),
       reads_at_(controller_.first, controller_.period) {
   check();
-  find_rates(tree);
+  actuators_ = kreisel::actuators(controller_, tree);
+  check_limits();
+  check_winches(tree);
   check_readings(tree);
   if (const auto* const pid = std::get_if<PidLaw>(&controller_.law)) {
     set_pid(*pid);
@@ -83,9 +86,12 @@ void ControlLoop::check() const {
     refuse(std::to_string(references) + " references for " +
            std::to_string(controller_.reads.size()) + " readings: give one for each");
   }
+}
+
+void ControlLoop::check_limits() const {
   const std::size_t limits = controller_.limit.size();
-  if (limits != 0 && limits != controller_.drives.size()) {
-    refuse(std::to_string(limits) + " limits for " + std::to_string(controller_.drives.size()) +
+  if (limits != 0 && limits != actuators_.size()) {
+    refuse(std::to_string(limits) + " limits for " + std::to_string(actuators_.size()) +
            " outputs: give one for each");
   }
   for (const double limit : controller_.limit) {
@@ -93,29 +99,16 @@ void ControlLoop::check() const {
   }
 }
 
-void ControlLoop::find_rates(const BodyTree& tree) {
-  for (const std::string& name : controller_.drives) {
-    const auto& bodies = tree.bodies();
-    const auto body = std::find_if(bodies.begin(), bodies.end(),
-                                   [&name](const auto& b) { return b.name == name; });
-    if (body == bodies.end()) refuse("it drives '" + name + "', but there is no such body");
-    const JointPlace place = tree.place(static_cast<int>(body - bodies.begin()));
-    if (place.v_count != 1) {
-      refuse("it drives the joint of '" + name + "', which has " + std::to_string(place.v_count) +
-             " rates: drive a joint with one rate");
-    }
-    if (body->rotor && body->rotor->mode != RotorMode::torque) {
-      refuse("it drives the rotor '" + name +
-             "', whose torque is not free: give the rotor the mode "
-             "torque");
-    }
-    if (body->rule != JointRule::forces) {
-      refuse("it drives the joint of '" + name + "', whose motion is prescribed");
-    }
-    if (std::find(rates_.begin(), rates_.end(), place.v) != rates_.end()) {
-      refuse("it drives '" + name + "' twice");
-    }
-    rates_.push_back(place.v);
+void ControlLoop::check_winches(const BodyTree& tree) const {
+  for (const Actuator& actuator : actuators_) {
+    const auto* const winch = std::get_if<Actuator::Winch>(&actuator.kind);
+    if (winch == nullptr || is_sampled()) continue;
+    const auto& rope =
+        std::get<RopeElement>(tree.elements()[static_cast<std::size_t>(winch->element)]);
+    if (rope.damping == 0) continue;
+    refuse("the damping of the rope '" + rope.name +
+           "' needs the rate of its length, which a continuous law does not give: give the "
+           "controller a period, or the rope no damping");
   }
 }
 
@@ -296,11 +289,13 @@ std::vector<std::string> ControlLoop::memory_names() const {
   for (int i = 1; i <= states(); ++i) names.push_back(name() + " state " + std::to_string(i));
   if (!is_sampled()) return names;
   for (int k = 1; k <= waiting_; ++k) {
-    for (const std::string& body : controller_.drives) {
-      names.push_back(name() + " waiting " + std::to_string(k) + " for " + body);
+    for (const Actuator& actuator : actuators_) {
+      names.push_back(name() + " waiting " + std::to_string(k) + " for " + short_name(actuator));
     }
   }
-  for (const std::string& body : controller_.drives) names.push_back(name() + " output " + body);
+  for (const Actuator& actuator : actuators_) {
+    names.push_back(name() + " output " + short_name(actuator));
+  }
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/control/actuator.hpp>
 #include <dynamics/control/controller.hpp>
 #include <dynamics/tree/tree.hpp>
 #include <motor/api.hpp>
@@ -48,11 +49,10 @@ class KREISEL_API ControlLoop {
   [[nodiscard]] const Controller& controller() const { return controller_; }
   [[nodiscard]] bool is_sampled() const { return controller_.period > 0; }
   [[nodiscard]] int inputs() const { return static_cast<int>(controller_.reads.size()); }
-  [[nodiscard]] int outputs() const { return static_cast<int>(rates_.size()); }
+  [[nodiscard]] int outputs() const { return static_cast<int>(actuators_.size()); }
   [[nodiscard]] int memory_begin() const { return memory_; }
   [[nodiscard]] int memory_size() const;
-  /// The rate that the i-th output drives.
-  [[nodiscard]] int rate(int i) const { return rates_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const std::vector<Actuator>& actuators() const { return actuators_; }
 
   /// True if an output depends on a reading of the same moment.
   [[nodiscard]] bool feeds_through() const { return feeds_through_; }
@@ -114,7 +114,8 @@ class KREISEL_API ControlLoop {
   void set_pid(const PidLaw& pid);
   void set_derivative(const PidLaw& pid, int at);
   void set_delay();
-  void find_rates(const BodyTree& tree);
+  void check_limits() const;
+  void check_winches(const BodyTree& tree) const;
   void check_readings(const BodyTree& tree) const;
   void check_body(const BodyTree& tree, int body) const;
   void check_carrier(const BodyTree& tree, int body) const;
@@ -126,11 +127,11 @@ class KREISEL_API ControlLoop {
 
   /// True if output i is saturated and the integral of error e_i would drive it further.
   template <class S>
-  [[nodiscard]] bool winds_up(int i, const S& u, const S& e) const {
+  [[nodiscard]] bool winds_up(int i, const VectorOn<S>& u, const VectorOn<S>& e) const {
     if (integral_ == 0 || controller_.limit.empty()) return false;
     const double limit = controller_.limit[static_cast<std::size_t>(i)];
-    const S pushes = integral_ * e;
-    return (u > S(limit) && pushes > S(0)) || (u < S(-limit) && pushes < S(0));
+    const S pushes = integral_ * e[i];
+    return (u[i] > S(limit) && pushes > S(0)) || (u[i] < S(-limit) && pushes < S(0));
   }
   template <class S>
   void saturate(VectorOn<S>& u) const {
@@ -146,7 +147,7 @@ class KREISEL_API ControlLoop {
 
   Controller controller_;
   int memory_;
-  std::vector<int> rates_;
+  std::vector<Actuator> actuators_;
   StateSpaceLaw law_;                    ///< unless callable_
   std::optional<CallableLaw> callable_;  ///< of a law that is no matrix
   double integral_ = 0;                  ///< of a PidLaw whose states begin with the integrals
@@ -183,7 +184,7 @@ void ControlLoop::evaluate(const S& t, const VectorOn<S>& e, const VectorOn<S>& 
                            VectorOn<S>& dx) const {
   apply_law(t, e, x, u, dx);
   for (int i = 0; i < outputs() && e.size() > 0; ++i) {
-    if (winds_up(i, u[i], e[i])) dx[i] = S(0);
+    if (winds_up(i, u, e)) dx[i] = S(0);
   }
   saturate(u);
 }
@@ -195,7 +196,7 @@ void ControlLoop::sample(const S& t, const VectorOn<S>& e, VectorOn<S>& memory) 
   VectorOn<S> next;
   apply_law(t, e, x, u, next);
   for (int i = 0; i < outputs(); ++i) {
-    if (!winds_up(i, u[i], e[i])) continue;
+    if (!winds_up(i, u, e)) continue;
     u[i] -= integral_ * (next[i] - x[i]);
     next[i] = x[i];
   }

@@ -10,12 +10,10 @@
 #include <dynamics/control/loop.hpp>
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/controller_keys.hpp>
-#include <dynamics/file/name_keys.hpp>
 #include <dynamics/file/quoted.hpp>
 #include <dynamics/file/scene_signal.hpp>
 #include <dynamics/file/scene_system.hpp>
 #include <dynamics/file/sensor_numbers.hpp>
-#include <dynamics/tree/joint/list.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel::detail {
@@ -24,14 +22,29 @@ namespace {
 
 constexpr double most_samples = 1e7;
 
+/// The message of an error without the name of the controller before it.
+std::string without_name(const std::string& text, const std::string& name) {
+  const std::string before = "controller '" + name + "': ";
+  return text.rfind(before, 0) == 0 ? text.substr(before.size()) : text;
+}
+
+/// The tree of a scene, unless its elements or constraints do not fit it.
+std::optional<BodyTree> tree_of(const SceneFile& scene) {
+  try {
+    return BodyTree(scene.bodies, scene.elements, scene.constraints);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
 class ControllerReader {
  public:
-  explicit ControllerReader(const SceneFile& scene) : scene_(scene) {
+  ControllerReader(const SceneFile& scene, bool sound) : scene_(scene) {
     for (const SceneSensor& sensor : scene.sensors) {
       const auto names = columns(sensor, scene.bodies);
       columns_.insert(columns_.end(), names.begin(), names.end());
     }
-    for (const BodyDescription& body : scene.bodies) bodies_.push_back(body.name);
+    if (sound) tree_ = tree_of(scene);
   }
 
   Controller read(Section& section, const std::string& name) {
@@ -45,29 +58,30 @@ class ControllerReader {
     is_sampled_ = result.period > 0;
     const std::string kind = peek_law(section);
     read_inputs(section, kind, result);
-    result.drives = drives(section);
+    result.drives = drives(section, name);
     read_law(section, kind, result);
     std::vector<Dimension> of_inputs;
     for (const SensorNumber& input : inputs_) of_inputs.push_back(dimension_of(input.unit));
     if (!of_inputs.empty()) result.reference = read_signals(section, "reference", of_inputs);
     (void)section.has("reference");
-    if (!result.drives.empty()) {
-      result.limit = section.number_or_list("limit", forces_).value_or(std::vector<double>());
+    if (!actuators_.empty()) {
+      result.limit = section.number_or_list("limit", units()).value_or(std::vector<double>());
     }
     (void)section.has("limit");
     return result;
   }
 
-  /// The units of the outputs of the controller that was read last.
-  [[nodiscard]] std::vector<std::string> output_units() const {
-    std::vector<std::string> units;
-    for (const Dimension& force : forces_) {
-      units.emplace_back(force == dimension::force ? "N" : "N m");
-    }
-    return units;
-  }
+  /// The forces that the outputs of the controller that was read last are.
+  [[nodiscard]] const std::vector<Actuator>& outputs() const { return actuators_; }
 
  private:
+  /// The dimensions of the outputs.
+  [[nodiscard]] std::vector<Dimension> units() const {
+    std::vector<Dimension> result;
+    for (const Actuator& one : actuators_) result.push_back(dimension_of(one.unit));
+    return result;
+  }
+
   static std::string peek_law(Section& section) {
     auto law = section.section("law");
     return law ? law->peek("kind") : "";
@@ -139,20 +153,33 @@ class ControllerReader {
     return (joint != nullptr && joint->is_rate) || (is_point && input.reading.component >= 3);
   }
 
-  std::vector<std::string> drives(Section& section) {
-    forces_.clear();
+  /// Reads `drives` and notes the forces that the outputs are.
+  std::vector<std::string> drives(Section& section, const std::string& name) {
+    actuators_.clear();
     if (!section.has("drives")) section.refuse_missing("drives");
     const std::vector<std::string> words = section.texts("drives");
-    if (section.has("drives") && words.empty()) section.refuse("drives", "must name a body");
-    std::vector<std::string> result;
-    for (const std::string& word : words) {
-      const int body = index_of_name(section, "drives", word, bodies_, "body");
-      const JointType& type = joint_type(scene_.bodies[static_cast<std::size_t>(body)].joint.kind);
-      const bool slides = type.rate_count() == 1 && type.rates.front().unit == "m/s";
-      forces_.push_back(slides ? dimension::force : dimension::torque);
-      result.push_back(bodies_[static_cast<std::size_t>(body)]);
+    if (section.has("drives") && words.empty()) {
+      section.refuse("drives", "must name a body, a joint, a load or a rope");
     }
-    return result;
+    if (!tree_) return words;
+    std::vector<std::string> known;
+    for (const BodyDescription& body : tree_->bodies()) known.push_back(body.name);
+    for (const Actuator& one : winches(*tree_)) known.push_back(short_name(one));
+    for (const Actuator& one : actuators(*tree_)) known.push_back(one.name);
+    for (const std::string& word : words) {
+      if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+      section.refuse("drives", in_quotes(word) +
+                                   " is no body, no rope, no joint (joint.BODY) and no load "
+                                   "(load.BODY.torque.x)" +
+                                   did_you_mean(word, known));
+      return {};
+    }
+    try {
+      actuators_ = actuators({.name = name, .drives = words}, *tree_);
+    } catch (const InvalidInput& error) {
+      section.refuse("drives", without_name(error.what(), name));
+    }
+    return words;
   }
 
   void read_law(Section& section, const std::string& kind, Controller& controller) {
@@ -167,8 +194,8 @@ class ControllerReader {
 
   PidLaw pid(Section& law) const {
     KeyDimension gain;
-    if (!inputs_.empty() && !forces_.empty()) {
-      gain = forces_.front() / dimension_of(inputs_.front().unit);
+    if (!inputs_.empty() && !actuators_.empty()) {
+      gain = units().front() / dimension_of(inputs_.front().unit);
     }
     const KeyDimension rate = gain ? KeyDimension(*gain / dimension::time) : std::nullopt;
     const KeyDimension damping = gain ? KeyDimension(*gain * dimension::time) : std::nullopt;
@@ -191,7 +218,7 @@ class ControllerReader {
   StateSpaceLaw state_space(Section& law) const {
     StateSpaceLaw result;
     const auto inputs = static_cast<Eigen::Index>(inputs_.size());
-    const auto outputs = static_cast<Eigen::Index>(forces_.size());
+    const auto outputs = static_cast<Eigen::Index>(actuators_.size());
     result.A = matrix(law, "A").value_or(Eigen::MatrixXd());
     const Eigen::Index n = result.A.rows();
     result.B = matrix(law, "B").value_or(Eigen::MatrixXd::Zero(n, inputs));
@@ -243,9 +270,9 @@ class ControllerReader {
 
   const SceneFile& scene_;
   std::vector<std::string> columns_;
-  std::vector<std::string> bodies_;
+  std::optional<BodyTree> tree_;  ///< unless the scene has mistakes
   std::vector<SensorNumber> inputs_;
-  std::vector<Dimension> forces_;
+  std::vector<Actuator> actuators_;
   bool is_sampled_ = false;
 };
 
@@ -259,9 +286,7 @@ void append_memory(Section& section, const Controller& controller, SceneFile& sc
     for (const std::string& name : loop.memory_names()) scene.memory_names.push_back(name);
     scene.memory_start.insert(scene.memory_start.end(), start.begin(), start.end());
   } catch (const InvalidInput& error) {
-    const std::string text = error.what();
-    const std::string before = "controller '" + controller.name + "': ";
-    section.refuse_all(text.rfind(before, 0) == 0 ? text.substr(before.size()) : text);
+    section.refuse_all(without_name(error.what(), controller.name));
   }
 }
 
@@ -283,7 +308,7 @@ void check_frames(Section& section, const Controller& controller, const SceneFil
 
 void read_controllers(Section& root, bool sound, SceneFile& scene) {
   if (!root.has("controller") || scene.bodies.empty()) return;
-  ControllerReader reader(scene);
+  ControllerReader reader(scene, sound);
   std::vector<std::string> taken;
   for (const SceneSensor& sensor : scene.sensors) taken.push_back(sensor.name);
   std::vector<SceneSensor> outputs;
@@ -306,9 +331,12 @@ void read_controllers(Section& root, bool sound, SceneFile& scene) {
       append_memory(section, controller, scene);
       check_frames(section, controller, scene);
     }
-    outputs.push_back({.name = name,
-                       .kind = scene_sensor::Outputs{scene.controllers.size(), controller.drives,
-                                                     reader.output_units()}});
+    scene_sensor::Outputs output{scene.controllers.size()};
+    for (const Actuator& one : reader.outputs()) {
+      output.drives.push_back(short_name(one));
+      output.units.push_back(one.unit);
+    }
+    outputs.push_back({.name = name, .kind = std::move(output)});
     scene.controllers.push_back(std::move(controller));
   }
   std::move(outputs.begin(), outputs.end(), std::back_inserter(scene.sensors));

@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include <dynamics/control/actuator.hpp>
 #include <dynamics/file/columns.hpp>
 #include <dynamics/file/plant.hpp>
 #include <dynamics/file/quoted.hpp>
 #include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/sensor_numbers.hpp>
-#include <dynamics/tree/joint/list.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -17,38 +18,14 @@ namespace {
 
 constexpr const char* axes[] = {"x", "y", "z"};
 
-std::string force_unit(const std::string& rate_unit) { return rate_unit == "m/s" ? "N" : "N m"; }
-
 /// A name with the number of one of several, from 1.
 std::string numbered(std::string name, int index, int count) {
   if (count > 1) name.append(".").append(std::to_string(index + 1));
   return name;
 }
 
-/// Appends the joint forces of a body. `rate` is the first rate of its joint.
-void append_joint_forces(const BodyDescription& body, int rate, std::vector<PlantInput>& inputs) {
-  const JointType& type = joint_type(body.joint.kind);
-  const bool moves = body.rule == JointRule::forces;
-  const bool is_given = body.rotor && body.rotor->mode != RotorMode::torque;
-  if (!moves || is_given) return;
-  int k = 0;
-  for (const JointQuantity& quantity : type.rates) {
-    for (int i = 0; i < quantity.count(); ++i, ++k) {
-      inputs.push_back({numbered("joint." + body.name, k, type.rate_count()),
-                        force_unit(quantity.unit), PlantInput::JointForce{rate + k}});
-    }
-  }
-}
-
-void append_loads(const BodyDescription& body, int index, std::vector<PlantInput>& inputs) {
-  if (body.rotor) return;
-  for (int k = 0; k < 6; ++k) {
-    Motor<> unit;
-    (k < 3 ? unit.resultant : unit.moment)[k % 3] = 1;
-    const std::string what = k < 3 ? ".force." : ".torque.";
-    inputs.push_back({"load." + body.name + what + axes[k % 3], k < 3 ? "N" : "N m",
-                      PlantInput::BodyForce{index, unit}});
-  }
+void append(const std::vector<Actuator>& actuators, std::vector<PlantInput>& inputs) {
+  for (const Actuator& one : actuators) inputs.push_back({one.name, one.unit, one});
 }
 
 void append_references(const SceneFile& scene, std::vector<PlantInput>& inputs) {
@@ -82,10 +59,16 @@ std::vector<PlantInput> inputs_of(const SceneFile& scene, bool all_loads) {
   const BodyTree tree(scene.bodies, scene.elements, scene.constraints);
   std::vector<PlantInput> inputs;
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
-    append_joint_forces(tree.body(i), tree.place(i).v, inputs);
+    append(joint_actuators(tree, i), inputs);
   }
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
-    if (all_loads || !tree.body(i).loads.empty()) append_loads(tree.body(i), i, inputs);
+    if (all_loads || !tree.body(i).loads.empty()) append(load_actuators(tree, i), inputs);
+  }
+  for (const Actuator& winch : winches(tree)) {
+    const int element = std::get<Actuator::Winch>(winch.kind).element;
+    const auto& rope = std::get<RopeElement>(tree.elements()[static_cast<std::size_t>(element)]);
+    // With damping the rate of the length would act, too.
+    if (rope.damping == 0) inputs.push_back({winch.name, winch.unit, winch});
   }
   append_references(scene, inputs);
   append_guide(inputs);

@@ -33,8 +33,8 @@ struct Joint {
 /// The outputs of a controller.
 struct Outputs {
   std::size_t controller = 0;
-  std::vector<std::string> drives = {};  ///< driven bodies
-  std::vector<std::string> units = {};   ///< of their joint forces
+  std::vector<std::string> drives = {};  ///< what they drive, see short_name()
+  std::vector<std::string> units = {};
 };
 
 using Kind = std::variant<Gyro, Accelerometer, PointSensor, Attitude, Joint, ReactionSensor,

@@ -7,10 +7,11 @@
 namespace kreisel::detail {
 
 /// Sets the forces of the elements. Needs poses and positions in w.
-inline void add_elements(const BodyTree& tree, double t, const Eigen::VectorXd& y,
+inline void add_elements(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                          const BodyWorkspace& w, std::vector<ElementLoad>& result) {
   std::vector<Motor<>> forces;
-  element_forces(tree, t, y.data(), y.data() + tree.coordinates(), w, forces);
+  const double* const v = y.data() + tree.coordinates();
+  element_forces(tree, now.t, y.data(), v, now.outside, w, forces);
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const auto& [first, second] = tree.element_places()[k].body;
     result.push_back({first, second, second_point(tree.elements()[k]), forces[k]});
@@ -48,7 +49,7 @@ SystemKinematics kinematics(const BodyTree& tree, const Surroundings& now, const
     const LinkMotion<>& motion = w.motion[link];
     result.bodies.push_back({w.pose[link].R, x, V.resultant, V.moment, motion.dw, motion.a});
   }
-  if (!tree.elements().empty()) add_elements(tree, now.t, y, w, result.elements);
+  if (!tree.elements().empty()) add_elements(tree, now, y, w, result.elements);
   if (!tree.constraints().empty()) add_constraints(tree, w, result.elements);
   return result;
 }

@@ -19,15 +19,6 @@ namespace kreisel {
 
 /// An influence on a plant.
 struct PlantInput {
-  /// A joint force along a rate.
-  struct JointForce {
-    int rate = 0;
-  };
-  /// A force and a torque on a body, on its axes about its origin.
-  struct BodyForce {
-    int body = 0;
-    Motor<> unit = {};
-  };
   struct Reference {
     std::size_t controller = 0;
     int component = 0;
@@ -45,7 +36,7 @@ struct PlantInput {
 
   std::string name = {};
   std::string unit = {};
-  std::variant<JointForce, BodyForce, Reference, GuideTurn, GuideAcceleration> kind = JointForce{};
+  std::variant<Actuator, Reference, GuideTurn, GuideAcceleration> kind = Actuator{};
 };
 
 /// A number that a plant shows.
@@ -129,12 +120,8 @@ template <class N>
 void seed(const PlantInput& input, int power, const N& unit, ControlDisturbance<N>& outside) {
   const auto set = [&](const auto& kind) {
     using Kind = std::decay_t<decltype(kind)>;
-    if constexpr (std::is_same_v<Kind, PlantInput::JointForce>) {
-      outside.bodies.joint_force[kind.rate] += unit;
-    } else if constexpr (std::is_same_v<Kind, PlantInput::BodyForce>) {
-      outside.bodies.on_bodies.push_back(
-          {kind.body, Motor<N>{kind.unit.resultant.template cast<N>() * unit,
-                               kind.unit.moment.template cast<N>() * unit}});
+    if constexpr (std::is_same_v<Kind, Actuator>) {
+      detail::add(kind, unit, outside.bodies.forces);
     } else if constexpr (std::is_same_v<Kind, PlantInput::Reference>) {
       outside.references[kind.controller][kind.component] += unit;
     } else if constexpr (std::is_same_v<Kind, PlantInput::GuideTurn>) {
@@ -191,7 +178,7 @@ class PlantDerivatives {
  private:
   [[nodiscard]] ControlDisturbance<N> undisturbed() const {
     ControlDisturbance<N> outside;
-    outside.bodies.joint_force = VectorOn<N>::Constant(system_.tree().rates(), N(0));
+    outside.bodies.forces.joint_force = VectorOn<N>::Constant(system_.tree().rates(), N(0));
     for (const ControlLoop& loop : system_.loops()) {
       outside.references.push_back(VectorOn<N>::Constant(loop.inputs(), N(0)));
     }

@@ -96,7 +96,8 @@ class BodySystem {
                      BodyWorkspace& w) const {
     detail::require(tree_, y, extra.size(), w);
     result.resize(tree_.rates());
-    detail::accelerate(tree_, at(t, extra.size() ? &extra : nullptr), y, result.data(), w);
+    w.outside.joint_force = extra;
+    detail::accelerate(tree_, at(t, extra.size() ? &w.outside : nullptr), y, result.data(), w);
   }
 
   /// The vector field  y' = rates(t, y).
@@ -131,18 +132,16 @@ class BodySystem {
   [[nodiscard]] Eigen::Matrix<Dual, Eigen::Dynamic, 1> rates(
       const Dual& t, const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& y,
       const Disturbance<Dual>& outside) const {
-    const Eigen::Matrix<Dual, Eigen::Dynamic, 1>& extra = outside.joint_force;
     using Duals = Eigen::Matrix<Dual, Eigen::Dynamic, 1>;
     detail::require_dual_loads(tree_);
     BodyWorkspace w = workspace();
     Vector number(y.size());
     for (Eigen::Index i = 0; i < y.size(); ++i) number[i] = y[i].value();
-    Vector force(extra.size());
-    for (Eigen::Index i = 0; i < extra.size(); ++i) force[i] = extra[i].value();
+    const OutsideForces<double> forces = detail::values(outside.forces);
     Vector rate;
     const double now = t.value();
-    detail::require(tree_, number, extra.size(), w);
-    detail::rates(tree_, at(now, extra.size() ? &force : nullptr), number, rate, w);
+    detail::require(tree_, number, forces.joint_force.size(), w);
+    detail::rates(tree_, at(now, &forces), number, rate, w);
     Duals result = rate.template cast<Dual>();
     const Dual* v = y.data() + tree_.coordinates();
     const Dual* dv = result.data() + tree_.coordinates();
@@ -165,7 +164,7 @@ class BodySystem {
                                   y.data(), v, dv, d);
     detail::take_off_loads(tree_, t, guide, v, d);
     detail::take_off_elements(tree_, t, v, d);
-    detail::take_off_disturbance(tree_, outside, d);
+    detail::take_off_outside(tree_, outside.forces, t, v, d);
     detail::add_rotor_forces_at(tree_, v, dv, d);
     detail::sum_inwards(tree_, d);
     Duals taken(tree_.rates());
@@ -174,7 +173,7 @@ class BodySystem {
     detail::set_joint_forces(tree_, y.data(), v, d);
     detail::add_timed_forces(tree_, t, d);
     detail::add_couplings(tree_, y.data(), v, d.joint_force);
-    if (extra.size()) d.joint_force += extra;
+    if (outside.forces.joint_force.size()) d.joint_force += outside.forces.joint_force;
 
     Vector left(tree_.rates());
     for (Eigen::Index k = 0; k < Dual().derivatives().size(); ++k) {
@@ -346,7 +345,7 @@ class BodySystem {
   void element_forces(double t, const Vector& y, std::vector<Motor<>>& result,
                       BodyWorkspace& w) const {
     detail::require(tree_, y, 0, w);
-    detail::element_forces(tree_, t, y, result, w);
+    detail::element_forces(tree_, at(t), y, result, w);
   }
 
   /// The situation of a body, pose and motion: the argument of a Load.
@@ -393,9 +392,10 @@ class BodySystem {
     return detail::conserved(tree_, at(t), y, w);
   }
 
-  /// Time, guide motion and gravity at t, with a further joint force for each rate; null: none.
-  [[nodiscard]] detail::Surroundings at(double t, const Vector* joint_force = nullptr) const {
-    return {t, guide_(t), detail::is_resting<M>, gravity_, joint_force};
+  /// Time, guide motion and gravity at t, with forces from outside; null: none.
+  [[nodiscard]] detail::Surroundings at(double t,
+                                        const OutsideForces<double>* outside = nullptr) const {
+    return {t, guide_(t), detail::is_resting<M>, gravity_, outside};
   }
 
  private:

@@ -9,16 +9,28 @@
 
 namespace kreisel {
 
-/// Small influences from outside on a system of bodies, for derivatives: their values are 0, their
-/// derivatives are those of the inputs. Only `joint_force` may have values.
+/// Forces that act on a system of bodies from outside, besides those of its description, and lengths
+/// of its ropes.
+///
+/// Frame  : forces on bodies on the body's axes, about its origin
+/// Units  : N, N m, m
+template <class S>
+struct OutsideForces {
+  Eigen::Matrix<S, Eigen::Dynamic, 1> joint_force = {};  ///< for each rate; empty: none
+  std::vector<std::pair<int, Motor<S>>> on_bodies = {};  ///< of bodies that are no rotors
+  /// Elements that are ropes, and the lengths by which winches make them longer.
+  std::vector<std::pair<int, S>> winches = {};
+};
+
+/// Influences from outside on a system of bodies. Those of the guide are for derivatives: their
+/// values are 0, their derivatives are those of the inputs.
 ///
 /// S      : dual numbers
-/// Frame  : forces on bodies on the body's axes, about its origin; the guide on its own axes
-/// Units  : N, N m; rad, rad/s, rad/s^2, m/s^2
+/// Frame  : the guide on its own axes
+/// Units  : rad, rad/s, rad/s^2, m/s^2
 template <class S>
 struct Disturbance {
-  Eigen::Matrix<S, Eigen::Dynamic, 1> joint_force = {};  ///< for each rate; empty: none
-  std::vector<std::pair<int, Motor<S>>> on_bodies = {};
+  OutsideForces<S> forces = {};
   bool moves_guide = false;                    ///< else the parts below do not count
   Vector3<S> guide_turn = Vector3<S>::Zero();  ///< a small rotation of the guide
   Vector3<S> guide_rate = Vector3<S>::Zero();

@@ -48,7 +48,8 @@ Vector3<double> second_point(const Element& element) {
 }
 
 void element_forces(const BodyTree& tree, double t, const double* q, const double* v,
-                    const MotionSpace<>& w, std::vector<Motor<>>& result) {
+                    const OutsideForces<double>* outside, const MotionSpace<>& w,
+                    std::vector<Motor<>>& result) {
   result.resize(tree.elements().size());
   for (std::size_t k = 0; k < result.size(); ++k) {
     const ElementPlace& place = tree.element_places()[k];
@@ -61,6 +62,13 @@ void element_forces(const BodyTree& tree, double t, const double* q, const doubl
           }
         },
         tree.elements()[k]);
+  }
+  if (outside == nullptr) return;
+  for (const auto& [k, paid_out] : outside->winches) {
+    const auto index = static_cast<std::size_t>(k);
+    const auto& rope = std::get<RopeElement>(tree.elements()[index]);
+    const auto m = motion_between(rope.ends, tree.element_places()[index].slot, t, w);
+    result[index] += winch_force(rope, m, paid_out);
   }
 }
 

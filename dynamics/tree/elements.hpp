@@ -109,6 +109,32 @@ void apply_elements(const BodyTree& tree, const std::type_identity_t<S>& t, cons
   add_couplings(tree, q, v, w.joint_force);
 }
 
+/// The force that a rope gains if a winch makes it longer by `paid_out`.
+template <class S>
+[[nodiscard]] Motor<S> winch_force(const RopeElement& rope, const ElementMotion<S>& m,
+                                   const S& paid_out) {
+  const S length = rope.length(m.t) + paid_out;
+  return rope.force(m, length, rope.length.derivative(m.t, 1)) - rope.force(m);
+}
+
+/// Subtracts forces from outside from the forces in w, which the joints transmit.
+template <class S>
+void take_off_outside(const BodyTree& tree, const OutsideForces<S>& outside, const S& t, const S* v,
+                      MotionSpace<S>& w) {
+  for (const auto& [body, P] : outside.on_bodies) {
+    const std::size_t link = tree.link(body);
+    w.force[link] -= Motor<S>{w.pose[link].R * P.resultant, w.pose[link].R * P.moment};
+  }
+  if (!outside.winches.empty()) set_places(tree, v, w);
+  for (const auto& [k, paid_out] : outside.winches) {
+    const auto index = static_cast<std::size_t>(k);
+    const auto& rope = std::get<RopeElement>(tree.elements()[index]);
+    const std::array<std::size_t, 2>& slot = tree.element_places()[index].slot;
+    const auto m = motion_between(rope.ends, slot, t, w);
+    add_element_force(winch_force(rope, m, paid_out), rope.ends[1].at, slot, w);
+  }
+}
+
 /// The potential energy of all elements. Needs poses and positions in w.
 [[nodiscard]] KREISEL_API double element_energy(const BodyTree& tree, double t, const double* q,
                                                 const MotionSpace<>& w);
@@ -116,8 +142,10 @@ void apply_elements(const BodyTree& tree, const std::type_identity_t<S>& t, cons
 /// The point of an element's second body about which its torque is reported.
 [[nodiscard]] Vector3<double> second_point(const Element& element);
 
-/// The forces of all elements on their second bodies. Needs poses and positions in w.
+/// The forces of all elements on their second bodies, with winches of `outside`, which may be null.
+/// Needs poses and positions in w.
 void element_forces(const BodyTree& tree, double t, const double* q, const double* v,
-                    const MotionSpace<>& w, std::vector<Motor<>>& result);
+                    const OutsideForces<double>* outside, const MotionSpace<>& w,
+                    std::vector<Motor<>>& result);
 
 }  // namespace kreisel::detail

@@ -29,6 +29,7 @@ BodyWorkspace::BodyWorkspace(const BodyTree& tree)
       ball(static_cast<std::size_t>(tree.balls())),
       still(Eigen::VectorXd::Zero(tree.rates())),
       acceleration(Eigen::VectorXd::Zero(tree.rates())),
+      outside{Eigen::VectorXd::Zero(tree.rates()), {}, {}},
       spin_up(tree.rotors().size()),
       driven(tree.is_prescribed() ? static_cast<std::size_t>(tree.rates()) : 0) {}
 
@@ -123,6 +124,11 @@ Eigen::VectorXd rates(const BodyTree& tree, const Eigen::VectorXd& y) {
   return y.data() + tree.coordinates();
 }
 
+/// Adds the joint forces from outside.
+inline void add_outside(const OutsideForces<double>& outside, BodyWorkspace& w) {
+  if (outside.joint_force.size() > 0) w.joint_force += outside.joint_force;
+}
+
 /// Sets the accelerations of driven joints, and makes all fulfil the constraints. A null `driven`:
 /// there is neither.
 inline void prescribe(const BodyTree& tree, const Eigen::VectorXd& y, const double* driven,
@@ -143,7 +149,10 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
     add_timed_forces(tree, now.t, w);
     apply_elements(tree, now.t, y.data(), v, w);
   }
-  if (now.joint_force != nullptr) w.joint_force += *now.joint_force;
+  if (now.outside != nullptr) {
+    take_off_outside(tree, *now.outside, now.t, v, w);
+    add_outside(*now.outside, w);
+  }
   ask_spin_up(tree, now.t, w);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
   eliminate_and_solve(tree, w.joint_force.data(), result, w);
@@ -181,7 +190,7 @@ inline void set_all_joint_forces(const BodyTree& tree, const Surroundings& now,
   set_joint_forces(tree, y.data(), v, w);
   add_timed_forces(tree, now.t, w);
   add_couplings(tree, y.data(), v, w.joint_force);
-  if (now.joint_force != nullptr) w.joint_force += *now.joint_force;
+  if (now.outside != nullptr) add_outside(*now.outside, w);
 }
 
 /// As joint_forces(). held : the constraints' forces, from the multipliers in w, are among the
@@ -193,6 +202,7 @@ void joint_forces(const BodyTree& tree, const Surroundings& now, const Eigen::Ve
   set_poses_and_motions(tree, root(now), y.data(), v, dv.size() ? dv.data() : nullptr, w);
   take_off_loads(tree, now.t, now.guide, v, w);
   take_off_elements(tree, now.t, v, w);
+  if (now.outside != nullptr) take_off_outside(tree, *now.outside, now.t, v, w);
   const double* given = dv.size() ? dv.data() : w.still.data();
   add_rotor_forces_at(tree, v, given, w);
   if (held) take_off_constraints(tree, w);
@@ -243,6 +253,9 @@ inline void answer(const BodyTree& tree, const LinkMotion<>& root, const double*
     if (!forces_at) return;
     take_off_loads(tree, forces_at->t, forces_at->guide, rates_of(tree, y), w);
     take_off_elements(tree, forces_at->t, rates_of(tree, y), w);
+    if (forces_at->outside != nullptr) {
+      take_off_outside(tree, *forces_at->outside, forces_at->t, rates_of(tree, y), w);
+    }
   };
   set_forces(driven);
   add_rotor_forces(tree, v, w.joint_force.data(), w);
@@ -290,12 +303,12 @@ void reaction_parts(const BodyTree& tree, const Surroundings& now, const Eigen::
   note(&ReactionParts::forces);
 }
 
-void element_forces(const BodyTree& tree, double t, const Eigen::VectorXd& y,
+void element_forces(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
                     std::vector<Motor<>>& result, BodyWorkspace& w) {
   const double* v = rates_of(tree, y);
   set_poses(tree, y.data(), w);
   set_places(tree, v, w);
-  element_forces(tree, t, y.data(), v, w, result);
+  element_forces(tree, now.t, y.data(), v, now.outside, w, result);
 }
 
 LoadContext<> situation(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,

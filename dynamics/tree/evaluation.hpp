@@ -25,8 +25,7 @@ struct Surroundings {
   GuideNow<> guide;
   bool guide_rests;
   const Gravity& gravity;
-  /// A further joint force for each rate; null: none.
-  const Eigen::VectorXd* joint_force = nullptr;
+  const OutsideForces<double>* outside = nullptr;  ///< null: none
 };
 
 /// Refuses a gravity that is not finite.
@@ -89,8 +88,9 @@ KREISEL_API void reaction_parts(const BodyTree& tree, const Surroundings& now,
                                 const Eigen::VectorXd& y, std::vector<ReactionParts>& result,
                                 BodyWorkspace& w);
 
-KREISEL_API void element_forces(const BodyTree& tree, double t, const Eigen::VectorXd& y,
-                                std::vector<Motor<>>& result, BodyWorkspace& w);
+KREISEL_API void element_forces(const BodyTree& tree, const Surroundings& now,
+                                const Eigen::VectorXd& y, std::vector<Motor<>>& result,
+                                BodyWorkspace& w);
 
 KREISEL_API [[nodiscard]] LoadContext<> situation(const BodyTree& tree, const Surroundings& now,
                                                   const Eigen::VectorXd& y, int body,

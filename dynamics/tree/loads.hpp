@@ -58,13 +58,22 @@ template <class S>
           {lifted<S>(tree.body(body).inertia.value)}};
 }
 
-/// Subtracts forces from outside from the forces in w, which the joints transmit.
+/// The values of forces in dual numbers.
 template <class S>
-void take_off_disturbance(const BodyTree& tree, const Disturbance<S>& outside, MotionSpace<S>& w) {
-  for (const auto& [body, P] : outside.on_bodies) {
-    const std::size_t link = tree.link(body);
-    w.force[link] -= Motor<S>{w.pose[link].R * P.resultant, w.pose[link].R * P.moment};
+[[nodiscard]] OutsideForces<double> values(const OutsideForces<S>& forces) {
+  OutsideForces<double> result;
+  result.joint_force.resize(forces.joint_force.size());
+  for (Eigen::Index i = 0; i < result.joint_force.size(); ++i) {
+    result.joint_force[i] = forces.joint_force[i].value();
   }
+  const auto value = [](const Vector3<S>& v) {
+    return Vector3<double>(v[0].value(), v[1].value(), v[2].value());
+  };
+  for (const auto& [body, P] : forces.on_bodies) {
+    result.on_bodies.emplace_back(body, Motor<>{value(P.resultant), value(P.moment)});
+  }
+  for (const auto& [rope, l] : forces.winches) result.winches.emplace_back(rope, l.value());
+  return result;
 }
 
 /// Subtracts the loads from the forces in w, which the joints transmit.

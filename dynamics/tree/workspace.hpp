@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <dynamics/tree/articulated.hpp>
+#include <dynamics/tree/disturbance.hpp>
 #include <dynamics/tree/motion.hpp>
 
 namespace kreisel {
@@ -92,8 +93,9 @@ struct KREISEL_API BodyWorkspace : detail::MotionSpace<> {
   std::vector<detail::BallElimination> ball;
   Eigen::VectorXd still;  ///< rates that are all 0
   Eigen::VectorXd acceleration;
-  std::vector<double> spin_up;  ///< prescribed relative acceleration of each rotor
-  std::vector<double> driven;   ///< prescribed derivatives of rates; the others are 0
+  OutsideForces<double> outside;  ///< forces from outside, of the caller
+  std::vector<double> spin_up;    ///< prescribed relative acceleration of each rotor
+  std::vector<double> driven;     ///< prescribed derivatives of rates; the others are 0
   detail::ConstraintMemory constraints;
 };
 

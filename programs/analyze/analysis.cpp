@@ -395,13 +395,15 @@ bool lost_spin(const kreisel::StudySystem& system, const VectorXd& start, const 
   });
 }
 
-/// True if the input is the joint force that the output, of a controller, is.
+/// True if the input is the force that the output, of a controller, is.
 bool opens_loop(const kreisel::SceneFile& scene, const kreisel::PlantInput& input,
                 const kreisel::PlantOutput& output) {
   const auto* const of = std::get_if<kreisel::PlantOutput::OfController>(&output.kind);
   if (of == nullptr) return false;
   const kreisel::Controller& controller = scene.controllers[of->controller];
-  return input.name == "joint." + controller.drives[static_cast<std::size_t>(of->component)];
+  const kreisel::BodyTree tree(scene.bodies, scene.elements, scene.constraints);
+  const std::vector<kreisel::Actuator> driven = actuators(controller, tree);
+  return input.name == driven[static_cast<std::size_t>(of->component)].name;
 }
 
 Response response_of(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,

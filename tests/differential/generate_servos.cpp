@@ -18,6 +18,15 @@ std::vector<int> joints_of_one(const Scene& scene, bool only_driven) {
   return result;
 }
 
+std::vector<int> bodies_with_mass(const Scene& scene) {
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(i)];
+    if (body.mass > 0 && !body.rotor) result.push_back(i);
+  }
+  return result;
+}
+
 Servo servo(Random& r, double duration) {
   Servo result;
   result.reads_rate = r.chance(0.3);
@@ -47,7 +56,12 @@ void add_servos(Random& r, Scene& scene) {
     Servo result = servo(r, duration);
     result.drives = driven[static_cast<std::size_t>(r.below(static_cast<int>(driven.size())))];
     const std::vector<int> read = joints_of_one(scene, false);
-    result.reads = r.chance(0.7)
+    const std::vector<int> loaded = bodies_with_mass(scene);
+    if (!loaded.empty() && r.chance(0.3)) {
+      result.drives = loaded[static_cast<std::size_t>(r.below(static_cast<int>(loaded.size())))];
+      result.load = r.below(6);
+    }
+    result.reads = r.chance(0.7) && result.load < 0
                        ? result.drives
                        : read[static_cast<std::size_t>(r.below(static_cast<int>(read.size())))];
     scene.servos.push_back(result);

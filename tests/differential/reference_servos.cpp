@@ -49,14 +49,31 @@ Real Tree::servo_error(const Servo& servo, const State& y) const {
   return Real(servo.reference) - (servo.reads_rate ? v : q);
 }
 
-void Tree::add_servos(const State& y) {
+void Tree::add_servos(const State& y, bool at_joints) {
   for (std::size_t k = 0; k < memories_.size(); ++k) {
     const Servo& servo = scene_.servos[k];
     const Real* const memory = y.data() + memories_[k].at;
     const Real u =
         servo.period > 0 ? memory[3] : continuous(servo, servo_error(servo, y), memory).u;
-    add_along_joint(servo.drives, u);
+    if (servo.load >= 0) {
+      add_servo_load(servo, u);
+    } else if (at_joints) {
+      add_along_joint(servo.drives, u);
+    }
   }
+}
+
+void Tree::add_servo_load(const Servo& servo, Real u) {
+  const Pose& b = poses_[static_cast<std::size_t>(servo.drives)];
+  const Vec along = u * b.R.col(servo.load % 3);
+  const Eigen::Index row = 6 * servo.drives;
+  if (servo.load >= 3) {
+    right_.segment<3>(row + 3) += along;
+    return;
+  }
+  const Vec lever = -(b.R * parts_[static_cast<std::size_t>(servo.drives)].centre);
+  right_.segment<3>(row) += along;
+  right_.segment<3>(row + 3) += lever.cross(along);
 }
 
 void Tree::set_servo_rates(const State& y, State& result) const {

@@ -189,7 +189,9 @@ class Tree {
   };
   [[nodiscard]] Real servo_error(const Servo& servo, const State& y) const;
   void sample_servo(const Servo& servo, Real e, Real* memory) const;
-  void add_servos(const State& y);
+  /// at_joints : those at joints, too; else loads alone
+  void add_servos(const State& y, bool at_joints);
+  void add_servo_load(const Servo& servo, Real u);
   void set_servo_rates(const State& y, State& result) const;
   /// The joint force Q_a of a gear.
   [[nodiscard]] Real gear_force(const Element& element, const State& y) const;

@@ -277,11 +277,12 @@ struct Sensor {
   std::string increments = {};  ///< "true" or "\"uncompensated\""; empty: values
 };
 
-/// A pid that reads a joint of one coordinate and drives another or the same one.
+/// A pid that reads a joint of one coordinate, and drives such a joint or a load on a body.
 struct Servo {
   int reads = 0;
   bool reads_rate = false;
-  int drives = 0;
+  int drives = 0;  ///< a body
+  int load = -1;   ///< component of the force and torque on it; -1: its joint
   double proportional = 0;
   double integral = 0;
   double derivative = 0;

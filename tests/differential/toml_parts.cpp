@@ -132,6 +132,13 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
   return result;
 }
 
+std::string driven(const Servo& servo) {
+  const std::string body = body_name(servo.drives);
+  if (servo.load < 0) return body;
+  return fmt::format("load.{}.{}.{}", body, servo.load < 3 ? "force" : "torque",
+                     "xyz"[servo.load % 3]);
+}
+
 std::string servo(const Servo& servo, const Scene& scene, std::size_t index) {
   const Body& read = scene.bodies[static_cast<std::size_t>(servo.reads)];
   const char* const coordinate = read.kind == JointKind::prismatic ? "displacement" : "angle";
@@ -145,7 +152,7 @@ std::string servo(const Servo& servo, const Scene& scene, std::size_t index) {
   add("filter", servo.filter);
   Keys keys{{"name", fmt::format("\"c{}\"", index)},
             {"reads", fmt::format("[\"r{}.{}\"]", index, servo.reads_rate ? "rate" : coordinate)},
-            {"drives", fmt::format("[\"{}\"]", body_name(servo.drives))},
+            {"drives", fmt::format("[\"{}\"]", driven(servo))},
             {"law", law + " }"}};
   const auto add_key = [&keys](const char* key, double x) {
     if (x != 0) keys.emplace_back(key, fmt::format("{}", x));

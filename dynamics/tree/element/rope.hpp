@@ -31,14 +31,20 @@ struct RopeElement {
   /// Force and torque on the second body, about its end, on the first body's axes.
   template <class S>
   [[nodiscard]] Motor<S> force(const ElementMotion<S>& m) const {
+    return force(m, length(m.t), length.derivative(m.t, 1));
+  }
+
+  /// The same for a given length of the rope without load, and its rate.
+  template <class S>
+  [[nodiscard]] Motor<S> force(const ElementMotion<S>& m, const S& l, const S& l_rate) const {
     using std::sqrt;
     const S squared = m.reach.squaredNorm();
     if (squared == S(0)) return {};
     const S distance = sqrt(squared);
-    const S stretch = distance - length(m.t);
+    const S stretch = distance - l;
     if (!(stretch > S(0))) return {};
     const Vector3<S> along = m.reach / distance;
-    const S rate = along.dot(m.velocity) - length.derivative(m.t, 1);
+    const S rate = along.dot(m.velocity) - l_rate;
     const S pull = S(stiffness) * stretch + S(damping) * rate;
     if (!(pull > S(0))) return {};
     return {S(-pull) * along, Vector3<S>::Zero()};

@@ -124,6 +124,37 @@ BOOST_AUTO_TEST_CASE(a_regulator_drives_a_rotor) {
   BOOST_TEST(std::abs(end(text).rates[0] - expected) < 1e-9);
 }
 
+// A thruster brakes a body that flies and spins: w = w_0 exp(-k t/J).
+BOOST_AUTO_TEST_CASE(a_thruster_brakes_a_spin) {
+  const auto text =
+      body("bus", "{ kind = \"free\" }", "initial = { angular_velocity = [0, 0, 0.8] }") +
+      "[[sensor]]\nname = \"gyro\"\nkind = \"gyro\"\nbody = \"bus\"\n" +
+      controller("reads = [\"gyro.z\"]\ndrives = [\"load.bus.torque.z\"]\n" + spring) + run_part;
+  BOOST_TEST(std::abs(end(text).rates[2] - 0.8 * std::exp(-2 / 0.5 * 2)) < 1e-11);
+  const auto row = last_readings(text);
+  BOOST_TEST(std::abs(row.back() + 2 * end(text).rates[2]) < 1e-11);
+}
+
+// A winch under a controller: m L'' = m g - k (L - l), l = 1.92 - 0.3 (L - 2). The rope stays taut.
+BOOST_AUTO_TEST_CASE(a_winch_follows_its_controller) {
+  const auto text =
+      body("load", "{ kind = \"prismatic\", axis = [0, 0, 1] }",
+           "initial = { displacement = -2 }") +
+      "[gravity]\nkind = \"inertial\"\nvector = [0, 0, -9.81]\n"
+      "[[element]]\nname = \"hoist\"\nkind = \"rope\"\nbetween = [\"guide\", \"load\"]\n"
+      "stiffness = 400\nlength = 1.92\n"
+      "[[sensor]]\nname = \"height\"\nkind = \"joint\"\njoint = \"load\"\n" +
+      controller(
+          "reads = [\"height.displacement\"]\ndrives = [\"hoist\"]\nreference = -2\n"
+          "law = { kind = \"pid\", proportional = -0.3 }\n") +
+      run_part;
+  const double middle = (2.52 + 9.81 / 200) / 1.3;
+  const double expected = middle + (2 - middle) * std::cos(std::sqrt(260) * 2);
+  BOOST_TEST(std::abs(end(text).coordinates[0] + expected) < 1e-11);
+  const auto row = last_readings(text);
+  BOOST_TEST(std::abs(row.back() + 0.3 * (expected - 2)) < 1e-11);
+}
+
 BOOST_AUTO_TEST_CASE(increments_follow_a_sampled_loop) {
   const std::string imu =
       "[[sensor]]\nname = \"imu\"\nkind = \"gyro\"\nbody = \"arm\"\n"
@@ -276,6 +307,8 @@ BOOST_AUTO_TEST_CASE(mistakes_are_told) {
   told(with(""), "reads");
   told(with("reads = [\"pikoff.angle\"]\ndrives = [\"arm\"]\n" + spring), "did you mean");
   told(with("reads = [\"pickoff.angle\"]\ndrives = [\"leg\"]\n" + spring), "no body");
+  told(with("reads = [\"pickoff.angle\"]\ndrives = [\"load.arm.torque.u\"]\n" + spring),
+       "did you mean");
   told(with(connected), "law");
   told(with(connected + "law = { kind = \"bang\" }\n"), "law.kind");
   told(with(connected + "law = { kind = \"pid\" }\n"), "proportional");
