@@ -80,10 +80,20 @@ output_step = 0.02
 const std::string probe = R"(<pre id="probe"></pre><script>
 playing = false;
 draw();
-const dots = context.getImageData(0, 0, canvas.width, canvas.height).data;
+const share_painted = (of) => {
+  const dots = of.getContext("2d").getImageData(0, 0, of.width, of.height).data;
+  return dots.filter((x, i) => i % 4 === 3 && x > 0).length / (dots.length / 4);
+};
+const press = (key, shiftKey = false) => {
+  document.dispatchEvent(new KeyboardEvent("keydown", { key, shiftKey, bubbles: true }));
+  return [t, playing];
+};
+const painted = share_painted(canvas), curve = share_painted(element("curve"));
 element("probe").textContent = JSON.stringify({
   poses: [poses(row_at(0)), poses(row_at(0.51))],
-  painted: dots.filter((x, i) => i % 4 === 3 && x > 0).length / (dots.length / 4),
+  painted, curve,
+  quantities: element("quantity").length,
+  keys: [press("ArrowRight"), press("ArrowLeft", true), press("End"), press("Home"), press(" ")],
   words: element("bodies").textContent,
   sensors: element("sensors").textContent,
   fetched: performance.getEntriesByType("resource").length,
@@ -128,7 +138,16 @@ BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   const json found =
       test::parsed(shown.out.substr(begin + opening.size(), end - begin - opening.size()));
   BOOST_TEST(found.at("painted").get<double>() > 0.01);
+  BOOST_TEST(found.at("curve").get<double>() > 0.01);
+  BOOST_TEST(found.at("quantities") == 20);
   BOOST_TEST(found.at("fetched") == 0);
+  // Rows are 0.02 s apart; the page begins between those at 0.5 s and 0.52 s.
+  const double shown_times[] = {0.52, 0.32, 1, 0, 0};
+  for (std::size_t i = 0; i < 5; ++i) {
+    const json& key = found.at("keys").at(i);
+    BOOST_TEST(std::abs(key.at(0).get<double>() - shown_times[i]) < 1e-9, "key " << i);
+    BOOST_TEST(key.at(1) == (i == 4));  // the space plays
+  }
   BOOST_TEST(found.at("words").get<std::string>().find("rad/s") != std::string::npos);
   BOOST_TEST(found.at("sensors").get<std::string>().starts_with("probex"));
 
