@@ -1,5 +1,3 @@
-#include "analysis.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,13 +8,14 @@
 #include <utility>
 
 #include <dynamics/decompositions.hpp>
+#include <dynamics/file/analysis.hpp>
 #include <dynamics/file/joints.hpp>
 #include <dynamics/file/plant.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
 #include <dynamics/tree/joint/list.hpp>
 
-using namespace kreisel;
+namespace kreisel::scene_analysis {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 using kreisel::GyroscopicMode;
@@ -315,7 +314,7 @@ std::optional<double> frequency_of_guide(const kreisel::SceneFile& scene) {
   return several ? std::nullopt : only;
 }
 
-std::optional<double> period_of(const kreisel::SceneFile& scene, const Request& request) {
+std::optional<double> period_of(const kreisel::SceneFile& scene, const AnalysisRequest& request) {
   if (request.period) return request.period;
   const std::optional<double> w = frequency_of_guide(scene);
   return w ? std::optional(2 * std::numbers::pi / *w) : std::nullopt;
@@ -436,7 +435,7 @@ Response response_of(const kreisel::StudySystem& system, const kreisel::SceneFil
 ///
 /// Throws : InvalidInput if a requested period does not fit
 void add_multipliers(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
-                     const Request& request, const VectorXd& start, Analysis& result) {
+                     const AnalysisRequest& request, const VectorXd& start, Analysis& result) {
   const bool swings = has_link<kreisel::scene_guide::Harmonic>(scene);
   const bool logged = scene.guide_follows_log();
   if (logged && !request.period) {
@@ -465,14 +464,14 @@ void add_multipliers(const kreisel::StudySystem& system, const kreisel::SceneFil
 
 }  // namespace
 
-kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const Request& request) {
+kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene, const AnalysisRequest& request) {
   const double period = period_of(scene, request).value_or(0);
   scene.t_end = scene.t_begin + std::max({scene.duration(), 3 * period, 1.0});
   return scene;
 }
 
 Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
-                 const Request& request) {
+                 const AnalysisRequest& request) {
   const VectorXd start = kreisel::detail::on_constraints(system, system.start_of(scene));
   if (system.tree().rates() == 0) throw InvalidInput("nothing in this scene can move");
   Analysis result;
@@ -501,3 +500,5 @@ Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& s
   result.precession = system.precession(start, result.steady.state, scene.t_end);
   return result;
 }
+
+}  // namespace kreisel::scene_analysis

@@ -12,7 +12,28 @@
 #include <dynamics/study/margins.hpp>
 #include <dynamics/study/spectrum.hpp>
 
-#include "request.hpp"
+/// Studies of the steady motions of a scene file.
+
+namespace kreisel::scene_analysis {
+
+/// A rotor whose speed is swept.
+struct Sweep {
+  std::string body;
+  std::vector<double> speeds;  ///< rad/s, against its carrier
+};
+
+/// A response that is requested.
+struct ResponseRequest {
+  std::string input;                ///< as plant_input() has it
+  std::string output;               ///< as plant_output() has it
+  std::vector<double> frequencies;  ///< rad/s, rising
+};
+
+struct AnalysisRequest {
+  std::optional<Sweep> campbell = {};
+  std::optional<ResponseRequest> response = {};
+  std::optional<double> period = {};  ///< s, of the coefficients
+};
 
 enum class Verdict { stable, marginal, unstable };
 
@@ -87,9 +108,11 @@ struct Analysis {
 
 /// The scene with a guide that is defined for as long as the analysis needs it.
 [[nodiscard]] kreisel::SceneFile with_longer_guide(kreisel::SceneFile scene,
-                                                   const Request& request);
+                                                   const AnalysisRequest& request);
 
 /// Throws : kreisel::InvalidInput if a requested body or period does not fit the scene;
 ///          kreisel::ComputationFailed if a sweep finds no steady motion
 [[nodiscard]] Analysis analyze(const kreisel::StudySystem& system, const kreisel::SceneFile& scene,
-                               const Request& request);
+                               const AnalysisRequest& request);
+
+}  // namespace kreisel::scene_analysis

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/core.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -10,11 +8,13 @@
 #include <dynamics/file/printable.hpp>
 #include <motor/error.hpp>
 
-namespace command_line {
+namespace kreisel {
 
-/// Throws : kreisel::InvalidInput unless the whole text is a finite number
+/// The number that a text is. `what` names it in the message.
+///
+/// Throws : InvalidInput unless the whole text is a finite number
 template <class Real = double>
-[[nodiscard]] Real number(const std::string& what, const std::string& text) {
+[[nodiscard]] Real finite_number(const std::string& what, const std::string& text) {
   char* end = nullptr;
   Real value = 0;
   if constexpr (std::is_same_v<Real, long double>) {
@@ -23,11 +23,10 @@ template <class Real = double>
     value = std::strtod(text.c_str(), &end);
   }
   if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-    throw kreisel::InvalidInput(fmt::format("{} = '{}' is not a finite number",
-                                            kreisel::printable(what),
-                                            kreisel::printable(text, 100)));
+    throw InvalidInput(printable(what) + " = '" + printable(text, 100) +
+                       "' is not a finite number");
   }
   return value;
 }
 
-}  // namespace command_line
+}  // namespace kreisel

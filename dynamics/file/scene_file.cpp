@@ -15,8 +15,10 @@
 #include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/scene_signal.hpp>
 #include <dynamics/file/sensor_keys.hpp>
+#include <dynamics/file/setting_keys.hpp>
 #include <dynamics/file/signal_log.hpp>
 #include <dynamics/file/text_file.hpp>
+#include <dynamics/file/toml_text.hpp>
 #include <dynamics/inertia.hpp>
 #include <dynamics/load/drag.hpp>
 #include <dynamics/load/magnet.hpp>
@@ -851,44 +853,6 @@ class SceneReader {
   bool outputs_are_given_ = false;
 };
 
-/// Refuses deeply nested keys, because the parser is recursive. No scene needs such keys.
-void refuse_depth(std::string_view text, Mistakes& mistakes) {
-  constexpr int deepest = 64;
-  toml::source_region where{{1, 1}, {1, 1}, nullptr};
-  int brackets = 0;
-  int dots = 0;
-  bool in_key = true;
-  char quote = 0;
-  for (const char c : text) {
-    ++where.begin.column;
-    if (c == '\n') {
-      where.begin = {where.begin.line + 1, 1};
-      dots = 0;
-      in_key = true;
-      quote = 0;
-    } else if (quote != 0) {
-      if (c == quote) quote = 0;
-    } else if (c == '#') {
-      quote = '\n';  // up to the end of the line
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '=') {
-      in_key = false;
-    } else if (c == '.') {
-      ++dots;
-    } else if (c == ',' || c == '{') {
-      dots = 0;
-      in_key = true;
-    }
-    if (quote == 0 && (c == '[' || c == '{')) ++brackets;
-    if (quote == 0 && (c == ']' || c == '}')) --brackets;
-    if (brackets > deepest || (in_key && dots > deepest)) {
-      mistakes.add(where, "", "is nested more than 64 deep; no scene is");
-      mistakes.throw_any();
-    }
-  }
-}
-
 }  // namespace
 
 bool SceneFile::rests() const {
@@ -927,14 +891,8 @@ namespace {
 SceneFile parse(std::string_view text, const std::filesystem::path& path,
                 const SolveRequest& request, std::vector<SceneSignalLog> given) {
   Mistakes mistakes(path.string());
-  refuse_depth(text, mistakes);
-  toml::table root;
-  try {
-    root = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    mistakes.add(error.source(), "", "is no TOML: " + std::string(error.description()));
-    mistakes.throw_any();
-  }
+  toml::table root = detail::parse_toml(text, {}, mistakes);
+  detail::apply_settings(request.settings, root, mistakes);
   detail::SignalLogs logs(path.parent_path(), std::move(given));
   return SceneReader(root, path, request, mistakes, logs).read();
 }

@@ -10,6 +10,7 @@
 
 #include <dynamics/control/controller.hpp>
 #include <dynamics/file/scene_sensor.hpp>
+#include <dynamics/file/scene_setting.hpp>
 #include <dynamics/guide/course.hpp>
 #include <dynamics/guide/earth.hpp>
 #include <dynamics/guide/harmonic.hpp>
@@ -196,15 +197,17 @@ struct SceneFile {
 };
 
 /// The mistakes in a scene file: a line for each,  file:line:column: key: reason
+/// The place of a mistake in a setting is that of the setting.
 struct SceneMistakes : InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
-/// Options of a command line that override [solve] of the file.
+/// Options of a command line that override values of the file.
 struct SolveRequest {
   std::optional<double> t_end = {};
   std::optional<double> tolerance = {};
   std::optional<Method> method = {};
+  std::vector<SceneSetting> settings = {};
 };
 
 /// The integrator with a name: "auto", "verner98", "gauss16", ...; nothing for any other word.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <tuple>
 
 #include <dynamics/file/printable.hpp>
 #include <dynamics/file/quoted.hpp>
@@ -63,26 +64,29 @@ void Mistakes::add(const toml::source_region& where, std::string_view key,
                    std::string_view reason) {
   std::string text;
   if (!key.empty()) text = printable(key, 200) + ": ";
-  list_.push_back({where.begin, text + printable(reason)});
+  list_.push_back(
+      {where.path ? *where.path : std::string(), where.begin, text + printable(reason)});
 }
 
 void Mistakes::throw_any() const {
   if (list_.empty()) return;
   std::vector<Mistake> sorted = list_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
-    return a.where.line != b.where.line ? a.where.line < b.where.line
-                                        : a.where.column < b.where.column;
+    return std::tie(a.place, a.where.line, a.where.column) <
+           std::tie(b.place, b.where.line, b.where.column);
   });
-  const auto last = std::unique(sorted.begin(), sorted.end(), [](const auto& x, const auto& y) {
-    return x.where == y.where && x.text == y.text;
-  });
-  sorted.erase(last, sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   std::ostringstream all;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    // The root has no position.
-    const auto line = std::max(sorted[i].where.line, toml::source_index(1));
-    const auto column = std::max(sorted[i].where.column, toml::source_index(1));
-    all << (i > 0 ? "\n" : "") << file_ << ':' << line << ':' << column << ": " << sorted[i].text;
+    const auto& [place, where, text] = sorted[i];
+    all << (i > 0 ? "\n" : "");
+    if (place.empty()) {  // the root has no position
+      all << file_ << ':' << std::max(where.line, toml::source_index(1)) << ':'
+          << std::max(where.column, toml::source_index(1));
+    } else {
+      all << printable(place);
+    }
+    all << ": " << text;
   }
   throw SceneMistakes(all.str());
 }

@@ -22,7 +22,8 @@ class Mistakes {
 
   void add(const toml::source_region& where, std::string_view key, std::string_view reason);
 
-  /// Throws : SceneMistakes with all mistakes in the order of the file, if there are any
+  /// Throws : SceneMistakes with all mistakes, if there are any: first those in the file, in its
+  ///          order, then those in values from outside of it
   void throw_any() const;
 
   [[nodiscard]] bool none() const { return list_.empty(); }
@@ -30,8 +31,11 @@ class Mistakes {
 
  private:
   struct Mistake {
+    std::string place;  ///< of a value that is not in the file
     toml::source_position where;
     std::string text;
+
+    friend bool operator==(const Mistake&, const Mistake&) = default;
   };
 
   std::string file_;

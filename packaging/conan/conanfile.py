@@ -11,7 +11,7 @@ from conan.tools.gnu import PkgConfigDeps
 
 class Kreisel(ConanFile):
     name = "kreisel"
-    version = "0.1.0"
+    version = "1.0.0"
     description = "Rigid bodies, pendulums and gyros seen from moving reference frames"
     license = "BSD-3-Clause"
     package_type = "static-library"

@@ -1,16 +1,20 @@
 // analyze: equilibria, linear equations, stability and precession check of a scene file.
 
+#include <fmt/core.h>
+
 #include <cstdio>
 
 #include "../shared/exit_status.hpp"
 #include "output.hpp"
+#include "request.hpp"
 
 using namespace kreisel;
+using namespace kreisel::scene_analysis;
 
 namespace {
 
 int run(const Request& request) {
-  const kreisel::SceneFile scene = kreisel::read_scene(request.scene);
+  const kreisel::SceneFile scene = kreisel::read_scene(request.scene, request.solve);
   const kreisel::StudySystem system(with_longer_guide(scene, request));
   const Analysis analysis = analyze(system, scene, request);
   const Result result{scene, system, analysis};
@@ -18,7 +22,7 @@ int run(const Request& request) {
   if (request.state_space) write_state_space(result, *request.state_space);
   if (request.plot) draw(result, *request.plot);
   if (request.json) {
-    print_json(result);
+    fmt::print("{}\n", to_json(result).dump(2));
   } else {
     print_summary(result);
   }

@@ -12,6 +12,7 @@
 #include "../shared/joint_tables.hpp"
 
 using namespace kreisel;
+using namespace kreisel::scene_analysis;
 
 using kreisel::GyroscopicMode;
 using nlohmann::ordered_json;
@@ -441,7 +442,7 @@ void write_response(const Result& result, const std::filesystem::path& path) {
   file.commit();
 }
 
-void write_state_space(const Result& result, const std::filesystem::path& path) {
+ordered_json state_space_json(const Result& result) {
   const Steady& steady = result.analysis.steady;
   if (!steady.exists()) {
     throw kreisel::ComputationFailed("--state-space: no steady motion: " + steady.reason);
@@ -466,22 +467,25 @@ void write_state_space(const Result& result, const std::filesystem::path& path) 
   for (const auto& input : matrices.inputs) {
     inputs.push_back({{"name", input.name}, {"unit", input.unit}, {"derivative", input.power}});
   }
-  const ordered_json all{{"title", result.scene.title},
-                         {"frame", result.analysis.linear ? result.analysis.linear->frame : ""},
-                         {"dt", plant.period},
-                         {"states", plant.names},
-                         {"inputs", inputs},
-                         {"outputs", named(plant.outputs)},
-                         {"A", rows(matrices.A)},
-                         {"B", rows(matrices.B)},
-                         {"C", rows(plant.C)},
-                         {"D", rows(matrices.D)}};
+  return {{"title", result.scene.title},
+          {"frame", result.analysis.linear ? result.analysis.linear->frame : ""},
+          {"dt", plant.period},
+          {"states", plant.names},
+          {"inputs", inputs},
+          {"outputs", named(plant.outputs)},
+          {"A", rows(matrices.A)},
+          {"B", rows(matrices.B)},
+          {"C", rows(plant.C)},
+          {"D", rows(matrices.D)}};
+}
+
+void write_state_space(const Result& result, const std::filesystem::path& path) {
   kreisel::AtomicFile file(path);
-  file.stream() << all.dump(1) << '\n';
+  file.stream() << state_space_json(result).dump(1) << '\n';
   file.commit();
 }
 
-void print_json(const Result& result) {
+ordered_json to_json(const Result& result) {
   const Analysis& a = result.analysis;
   ordered_json equilibria = ordered_json::array();
   for (const Rest& rest : a.equilibria) equilibria.push_back(json(rest, result));
@@ -495,7 +499,7 @@ void print_json(const Result& result) {
   if (a.response) all["response"] = json(*a.response);
   all["precession"] = json(a.precession);
   all["notes"] = a.notes;
-  fmt::print("{}\n", all.dump(2));
+  return all;
 }
 
 void print_summary(const Result& result) {

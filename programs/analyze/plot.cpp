@@ -12,6 +12,7 @@
 #include "output.hpp"
 
 using namespace kreisel;
+using namespace kreisel::scene_analysis;
 
 using gnuplot::quoted;
 using kreisel::GyroscopicMode;

@@ -4,8 +4,10 @@
 
 #include "../shared/command_line.hpp"
 #include "../shared/exit_status.hpp"
+#include "../shared/scene_options.hpp"
 
 using namespace kreisel;
+using namespace kreisel::scene_analysis;
 
 using kreisel::InvalidInput;
 
@@ -27,9 +29,9 @@ struct Range {
     if (first == std::string::npos || second == std::string::npos) {
       throw refuse(fmt::format("wanted FROM:TO:N, as {}", example));
     }
-    from = command_line::number(option + " from", text.substr(0, first));
-    to = command_line::number(option + " to", text.substr(first + 1, second - first - 1));
-    const double n = command_line::number(option + " n", text.substr(second + 1));
+    from = kreisel::finite_number(option + " from", text.substr(0, first));
+    to = kreisel::finite_number(option + " to", text.substr(first + 1, second - first - 1));
+    const double n = kreisel::finite_number(option + " n", text.substr(second + 1));
     if (!(n >= 2 && n <= 100000) || n != std::floor(n)) {
       throw refuse("N is no whole number from 2 to 100000");
     }
@@ -72,7 +74,7 @@ std::optional<Request> read_request(int argc, char** argv) {
       "Equilibrium or steady motion of what a scene file describes, its linear equations there "
       "and\n"
       "whether it is stable, how far precession equations hold. SI units and radians.\n");
-  app.name("analyze");
+  app.name("kreisel analyze");
   app.footer(exit_status::help);
   Request request;
   std::string scene;
@@ -84,14 +86,17 @@ std::optional<Request> read_request(int argc, char** argv) {
   std::string range;
   std::string csv;
   std::string state_space;
-  app.add_option("scene", scene, "the scene file, TOML")->required()->type_name("SCENE.toml");
+  app.add_option("scene", scene, "the scene file, TOML; -: standard input")
+      ->required()
+      ->type_name("SCENE.toml");
+  scene_options::add_settings(app, request.solve);
   app.add_option("--campbell", body, "how the roots go with the speed of this body")
       ->type_name("BODY");
   app.add_option("--speeds", sweep, "of it, rad/s against what carries it")->type_name("FROM:TO:N");
   app.add_option_function<std::string>(
          "--period",
          [&request](const std::string& text) {
-           request.period = command_line::number("--period", text);
+           request.period = kreisel::finite_number("--period", text);
            if (!(*request.period > 0)) throw InvalidInput("--period must be above 0");
          },
          "s, of the coefficients: Floquet multipliers [that of a harmonic guide of one frequency]")

@@ -2,30 +2,16 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
-/// A rotor whose speed is swept.
-struct Sweep {
-  std::string body;
-  std::vector<double> speeds;  ///< rad/s, against its carrier
-};
-
-/// A response that is asked for.
-struct ResponseRequest {
-  std::string input;
-  std::string output;
-  std::vector<double> frequencies;  ///< rad/s, rising
-};
+#include <dynamics/file/analysis.hpp>
+#include <dynamics/file/scene_file.hpp>
 
 /// The options on the command line of analyze.
-struct Request {
+struct Request : kreisel::scene_analysis::AnalysisRequest {
   std::filesystem::path scene;
-  std::optional<Sweep> campbell;
-  std::optional<ResponseRequest> response;
+  kreisel::SolveRequest solve;
   std::optional<std::filesystem::path> response_file;  ///< CSV
   std::optional<std::filesystem::path> state_space;    ///< JSON
-  std::optional<double> period;                        ///< s, of the coefficients
   bool json = false;
   std::optional<std::filesystem::path> plot;  ///< a folder
 };

@@ -1,44 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include <dynamics/file/scene_file.hpp>
-#include <dynamics/random.hpp>
-
-/// The variation of numbers of the scene from member to member; numbers of one variation vary
-/// together.
-struct Variation {
-  enum class Kind {
-    normal,   ///< mean and deviation
-    uniform,  ///< from and to
-    linear    ///< not random: from the first member to the last in equal steps
-  };
-  enum class Use { instead, added, factor };
-
-  std::vector<std::string> keys;
-  Use use = Use::instead;
-  Kind kind = Kind::normal;
-  double first = 0;
-  double second = 0;
-
-  /// The number for a member; `share` is 0 for the first, 1 for the last.
-  [[nodiscard]] double drawn(double share, kreisel::MemberRandom& random) const;
-
-  /// A number of the scene after the variation.
-  [[nodiscard]] double applied(double given, double drawn) const;
-};
+#include <dynamics/ensemble/scene_ensemble.hpp>
 
 /// The command line of ensemble.
 struct Request {
   std::filesystem::path scene;
-  kreisel::SolveRequest solve;
-  std::vector<Variation> variations;
-  std::size_t members = 1000;
-  std::uint64_t seed = 1;
+  kreisel::EnsembleRequest ensemble;
   int threads = 0;
   bool json = false;
   std::optional<std::filesystem::path> csv;

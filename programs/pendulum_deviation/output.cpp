@@ -109,7 +109,9 @@ nlohmann::json json(const std::vector<kreisel::PendulumTerm<double>>& terms) {
   return list;
 }
 
-nlohmann::ordered_json json(const Request& request, const Row& row) {
+}  // namespace
+
+nlohmann::ordered_json to_json(const kreisel::SitePendulum& request, const Row& row) {
   const auto number = [](Real x) { return static_cast<double>(x); };
   const auto& [latitude, azimuth, height, rate] = row.site.place;
   const auto& b = request.body;
@@ -164,8 +166,6 @@ nlohmann::ordered_json json(const Request& request, const Row& row) {
   return result;
 }
 
-}  // namespace
-
 void print_table(const Request& request, const std::vector<Row>& rows, double run_time_s) {
   if (request.mode == Request::Mode::single) {
     if (!rows.empty()) print_one(request, rows.front());
@@ -194,11 +194,11 @@ void print_table(const Request& request, const std::vector<Row>& rows, double ru
 void print_json(const Request& request, const std::vector<Row>& rows, double run_time_s) {
   nlohmann::ordered_json result;
   if (request.mode == Request::Mode::single) {
-    if (!rows.empty()) result = json(request, rows.front());
+    if (!rows.empty()) result = to_json(request, rows.front());
   } else {
     if (request.mode == Request::Mode::sweep) result["swept"] = request.swept;
     result["sites"] = nlohmann::ordered_json::array();
-    for (const Row& row : rows) result["sites"].push_back(json(request, row));
+    for (const Row& row : rows) result["sites"].push_back(to_json(request, row));
     result["run_time_s"] = run_time_s;
   }
   // A name may be invalid UTF-8.

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 
-#include <dynamics/inertia.hpp>
 #include <motor/error.hpp>
 
 #include "../shared/command_line.hpp"
@@ -14,7 +13,7 @@ using kreisel::InvalidInput;
 namespace {
 
 Real number(const std::string& what, const std::string& text) {
-  return command_line::number<Real>(what, text);
+  return kreisel::finite_number<Real>(what, text);
 }
 
 /// The quantity of the site that an option or a sweep sets.
@@ -61,43 +60,6 @@ std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<
   return sites;
 }
 
-/// The options of the pendulum: its reduced length, a rod, or single numbers.
-struct BodyOptions {
-  std::optional<Real> reduced_length, rod, mass, arm, theta_a, theta_b, theta_c, phi_a, phi_b,
-      phi_c;
-
-  [[nodiscard]] kreisel::PendulumBody<Real> body() const {
-    const bool by_number = arm || theta_a || theta_b || theta_c || phi_a || phi_b || phi_c;
-    if (int(by_number) + int(rod.has_value()) + int(reduced_length.has_value()) > 1) {
-      throw InvalidInput(
-          "the pendulum is given twice: by one of --reduced-length, --rod, or --arm with "
-          "--theta-a, "
-          "--theta-b, --theta-c");
-    }
-    const Real m = mass.value_or(1);
-    if (rod) {
-      if (!(*rod > 0)) throw InvalidInput("--rod must be a length above 0 m");
-      return checked(kreisel::PendulumBody<Real>::thin_rod(*rod, m));
-    }
-    if (by_number) {
-      if (!arm || !theta_a || !theta_b || !theta_c) {
-        throw InvalidInput("a pendulum by numbers needs --arm, --theta-a, --theta-b and --theta-c");
-      }
-      return checked({m, *arm, *theta_a, *theta_b, *theta_c, phi_a.value_or(0), phi_b.value_or(0),
-                      phi_c.value_or(0)});
-    }
-    const Real length = reduced_length.value_or(0.5L);
-    if (!(length > 0)) throw InvalidInput("--reduced-length must be a length above 0 m");
-    return checked(kreisel::PendulumBody<Real>::from_reduced_length(length, m));
-  }
-
- private:
-  static kreisel::PendulumBody<Real> checked(const kreisel::PendulumBody<Real>& body) {
-    kreisel::check(body);
-    return body;
-  }
-};
-
 }  // namespace
 
 std::optional<Request> read_request(int argc, char** argv) {
@@ -105,10 +67,10 @@ std::optional<Request> read_request(int argc, char** argv) {
       "Where a physical pendulum hangs on the rotating earth, how its period changes, and how far "
       "to\n"
       "trust each number. Angles of the site in degrees, all else in SI units and radians.\n");
-  app.name("pendulum_deviation");
+  app.name("kreisel deviation");
   app.footer(exit_status::help);
   Request request;
-  BodyOptions body;
+  kreisel::PendulumNumbers body;
   kreisel::EarthSite<Real> place;
   place.azimuth = 90;
   std::string gravity = "normal";

@@ -1,45 +1,33 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <dynamics/file/atomic_file.hpp>
-#include <dynamics/pendulum/pendulum_deviation.hpp>
+#include <dynamics/pendulum/site_deviation.hpp>
 
 #include "sites.hpp"
 
 /// The checked command line.
-struct Request {
+struct Request : kreisel::SitePendulum {
   enum class Mode { single, sites, sweep };
   Mode mode = Mode::single;
   std::string swept;  // "latitude", "azimuth", "height" or "rotation-rate"
   std::vector<Site> sites;
   std::filesystem::path list;  // of the sites, if they come from a file
 
-  kreisel::PendulumBody<Real> body;
-  std::optional<Real> gravity;  // none: normal gravity
-  bool gravity_gradient = false;
-  Real amplitude = Real(0.1L);
-
   bool json = false;
   std::optional<std::filesystem::path> csv;
   std::optional<std::filesystem::path> plot;
 };
 
-/// The effect of the gravity gradient over the body, in first order, whether included or not.
-struct GradientEffect {
-  double equilibrium;  // rad
-  double period;       // relative change
-};
-
 /// The answer for one site.
-struct Row {
+struct Row : kreisel::SiteDeviation {
   Site site;
-  double gravity;
-  kreisel::PendulumAnswer<double> answer;
-  GradientEffect gradient;
   double run_time_s;
 };
 
@@ -53,6 +41,9 @@ struct Row {
 
 /// Prints a full answer for one site, or one line per site.
 void print_table(const Request& request, const std::vector<Row>& rows, double run_time_s);
+
+/// The answer for one site: the object of --json.
+[[nodiscard]] nlohmann::ordered_json to_json(const kreisel::SitePendulum& request, const Row& row);
 
 void print_json(const Request& request, const std::vector<Row>& rows, double run_time_s);
 

@@ -4,16 +4,16 @@
 #include <utility>
 
 #include <dynamics/file/csv.hpp>
+#include <dynamics/file/finite_number.hpp>
 #include <motor/error.hpp>
-
-#include "../shared/number.hpp"
 
 std::vector<Site> listed_sites(const std::filesystem::path& file, Real rotation_rate) {
   const auto table = kreisel::CsvTable::read(file, {"name", "latitude", "height", "azimuth"});
   std::vector<Site> sites;
   for (std::size_t row = 0; row < table.size(); ++row) {
     const auto read = [&](const char* column) {
-      return command_line::number<Real>(table.where(row) + ": " + column, table.text(row, column));
+      return kreisel::finite_number<Real>(table.where(row) + ": " + column,
+                                          table.text(row, column));
     };
     Site site{table.text(row, "name"),
               {read("latitude"), read("azimuth"), read("height"), rotation_rate}};

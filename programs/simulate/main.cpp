@@ -57,6 +57,12 @@ Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scen
   return begin;
 }
 
+/// The text of a scene with the values that replace some of it.
+std::string with_settings(std::string text, const kreisel::SolveRequest& request) {
+  for (const auto& [key, value, place] : request.settings) text += key + '=' + value + '\n';
+  return text;
+}
+
 /// The rows and the checkpoint of a run, both written during the computation.
 struct Record {
   Record(const Request& request, const std::string& scene_text, const kreisel::SceneFile& scene,
@@ -68,7 +74,7 @@ struct Record {
         chosen(scene.columns.empty() ? std::vector<std::size_t>{}
                                      : chosen_columns(columns(scene), scene.columns)),
         rows(*request.csv, of_chosen(columns(scene))),
-        resume(*request.csv, identity(scene_text, scene)) {}
+        resume(*request.csv, identity(with_settings(scene_text, request.solve), scene)) {}
 
   const kreisel::SceneSolver& model;
   double t_begin;

@@ -6,6 +6,7 @@
 
 #include "../shared/command_line.hpp"
 #include "../shared/exit_status.hpp"
+#include "../shared/scene_options.hpp"
 
 using namespace kreisel;
 
@@ -14,7 +15,7 @@ using kreisel::InvalidInput;
 namespace {
 
 void check(const Request& request) {
-  const auto& [t_end, tolerance, method] = request.solve;
+  const auto& [t_end, tolerance, method, settings] = request.solve;
   if (t_end && !(*t_end > 0)) throw InvalidInput("--t-end must be above 0");
   if (tolerance && !(*tolerance >= 1e-15 && *tolerance <= 1e-2)) {
     throw InvalidInput("--tolerance lies outside [1e-15, 1e-2]");
@@ -28,7 +29,7 @@ std::optional<Request> read_request(int argc, char** argv) {
   CLI::App app(
       "Computes the motion that a scene file describes, to a tolerance of the global error.\n"
       "SI units and radians.\n");
-  app.name("simulate");
+  app.name("kreisel simulate");
   app.footer(exit_status::help);
   Request request;
   std::string scene;
@@ -39,13 +40,16 @@ std::optional<Request> read_request(int argc, char** argv) {
     app.add_option_function<std::string>(
            option,
            [&target, option](const std::string& text) {
-             target = command_line::number(option, text);
+             target = kreisel::finite_number(option, text);
            },
            help)
         ->type_name("NUMBER")
         ->group("Instead of the scene's");
   };
-  app.add_option("scene", scene, "the scene file, TOML")->required()->type_name("SCENE.toml");
+  app.add_option("scene", scene, "the scene file, TOML; -: standard input")
+      ->required()
+      ->type_name("SCENE.toml");
+  scene_options::add_settings(app, request.solve);
   value("--t-end", request.solve.t_end, "s");
   value("--tolerance", request.solve.tolerance, "of the global error");
   app.add_option_function<std::string>(
@@ -65,15 +69,14 @@ std::optional<Request> read_request(int argc, char** argv) {
   app.add_flag("--terms", request.terms, "relative, guide and Coriolis part of every body")
       ->group("Output");
   app.add_flag("--json", request.json, "one JSON object on standard output")->group("Output");
-  app.add_option("--csv", csv, "the trajectory, written while it is computed")
+  app.add_option("--csv", csv,
+                 "the trajectory, written while it is computed; -: standard output, the summary on "
+                 "standard error")
       ->type_name("FILE")
       ->group("Output");
   app.add_flag("--resume", request.resume,
-               "go on with the rows of the --csv file. From the checkpoint that a run keeps beside "
-               "it in FILE.resume until it is complete: with the same result to the last bit as "
-               "if it had not stopped. Where that is missing, damaged or of another run: from the "
-               "last row "
-               "with new steps, so that the rest agrees to the tolerance")
+               "continue the rows of the --csv file, from the checkpoint FILE.resume to the last "
+               "bit; without a valid one from the last row, within the tolerance")
       ->group("Output");
   app.add_option("--plot", plot,
                  "pictures of the run, SVG and PNG, by gnuplot; view.html shows it in motion")

@@ -12,6 +12,7 @@
 
 #include <dynamics/file/atomic_file.hpp>
 #include <dynamics/file/text_file.hpp>
+#include <dynamics/version.hpp>
 #include <motor/error.hpp>
 
 using namespace kreisel;
@@ -49,7 +50,7 @@ void add_table(Hash& hash, const std::filesystem::path& file) {
 
 std::uint64_t identity(std::string_view scene_text, const kreisel::SceneFile& scene) {
   Hash hash;
-  hash.add(std::string_view(KREISEL_VERSION));
+  hash.add(std::string_view(kreisel::version()));
   hash.add(scene_text);
   for (const auto& file : scene.log_files()) add_table(hash, file);
   for (const double x : {scene.t_end, scene.tolerance, static_cast<double>(scene.method),
@@ -83,7 +84,7 @@ std::optional<Checkpoint> ResumeFile::read(std::string& why_not) const {
   while (words >> word) checkpoint.numbers.push_back(std::strtod(word.c_str(), nullptr));
   if (checkpoint.numbers.size() != count) return std::nullopt;
   checkpoint.row.hash = Hash(rows);
-  why_not = version == KREISEL_VERSION
+  why_not = version == kreisel::version()
                 ? "is of another run: scene, table, t_end, tolerance, method, output times or "
                   "reactions differ"
                 : "is of version " + version + " of the program";
@@ -94,7 +95,7 @@ std::optional<Checkpoint> ResumeFile::read(std::string& why_not) const {
 
 void ResumeFile::write(const Checkpoint& checkpoint) const {
   const auto& [begin, t, row, numbers] = checkpoint;
-  std::string text = fmt::format("kreisel {} {:.17g} {:.17g} {} {} {} {}\n", KREISEL_VERSION, t,
+  std::string text = fmt::format("kreisel {} {:.17g} {:.17g} {} {} {} {}\n", kreisel::version(), t,
                                  begin, row.bytes, row.hash.value(), run_, numbers.size());
   for (const double x : numbers) fmt::format_to(std::back_inserter(text), "{:a}\n", x);
   try {

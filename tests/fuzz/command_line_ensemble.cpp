@@ -10,8 +10,8 @@
 void examine(int argc, char** argv) {
   const std::optional<Request> request = read_request(argc, argv);
   if (!request) return;
-  kreisel::MemberRandom random(request->seed, 0);
-  for (const Variation& variation : request->variations) {
+  kreisel::MemberRandom random(request->ensemble.seed, 0);
+  for (const kreisel::Variation& variation : request->ensemble.variations) {
     if (variation.keys.empty()) std::abort();
     const double drawn = variation.drawn(0.5, random);
     (void)variation.applied(1, drawn);

@@ -9,7 +9,7 @@
 void examine(int argc, char** argv) {
   const std::optional<Request> request = read_request(argc, argv);
   if (!request) return;
-  const auto& [t_end, tolerance, method] = request->solve;
+  const auto& [t_end, tolerance, method, settings] = request->solve;
   if (t_end && !(*t_end > 0)) std::abort();
   if (tolerance && !(*tolerance >= 1e-15 && *tolerance <= 1e-2)) std::abort();
   if (request->resume && !request->csv) std::abort();

@@ -43,7 +43,8 @@ check(libkreisel-dev DEPENDS "${runtime}.*libeigen3-dev \\(>= 3\\.4\\)"
     ${LIBDIR}/cmake/kreisel/kreisel-config.cmake ${LIBDIR}/pkgconfig/kreisel-dynamics.pc
     ${LIBDIR}/libkreisel.a ${LIBDIR}/libkreisel.so)
 check(kreisel DEPENDS "libstdc\\+\\+6"
-  HOLDS bin/simulate share/doc/kreisel/README.md share/doc/kreisel/docs/site/pictures/deviation.svg
+  HOLDS bin/kreisel libexec/kreisel/simulate share/man/man1/kreisel-simulate.1.gz
+    share/bash-completion/completions/kreisel share/doc/kreisel/README.md share/doc/kreisel/docs/site/pictures/deviation.svg
     share/doc/kreisel/examples/scenes/gyrocompass.toml)
 
 # The runtime package holds nothing that a second version of it would overwrite.
@@ -51,4 +52,11 @@ file(GLOB_RECURSE held RELATIVE ${OUT}/${runtime} ${OUT}/${runtime}/*)
 list(FILTER held EXCLUDE REGEX "/libkreisel\\.so\\.[0-9.]+$|^usr/share/doc/${runtime}/")
 if(held)
   message(SEND_ERROR "${runtime} also holds ${held}")
+endif()
+
+# The command finds its programs wherever the package is.
+execute_process(COMMAND ${OUT}/root/usr/bin/kreisel simulate --version
+  OUTPUT_VARIABLE version COMMAND_ERROR_IS_FATAL ANY)
+if(NOT version MATCHES "^kreisel simulate [0-9.]+\n$")
+  message(SEND_ERROR "kreisel simulate --version prints ${version}")
 endif()

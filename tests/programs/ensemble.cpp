@@ -150,6 +150,22 @@ BOOST_AUTO_TEST_CASE(lists_failed_members) {
   BOOST_TEST(outcome.out.find("1 of 3 members, 2 failed") != std::string::npos, outcome.out);
 }
 
+// The file leaves the damping at its default, 0. The rate decays by it: w = w_0 exp(-d t/C).
+BOOST_AUTO_TEST_CASE(varies_keys_that_the_file_leaves_out) {
+  const test::Scratch folder;
+  const auto file = folder.write(
+      "s.toml",
+      "[[body]]\nname = \"wheel\"\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 1\n"
+      "inertia = [2, 2, 3]\ninitial = { rate = 5 }\n[solve]\nt_end = 2\n");
+  const test::Outcome outcome = run(file.string() +
+                                    " --vary body.wheel.damping=linear\\(0.3,0.6\\) --members 2 "
+                                    "--set body.wheel.initial.rate=4 --json");
+  BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+  const json rate = test::parsed(outcome.out).at("columns").at("wheel.rate");
+  BOOST_TEST(std::abs(rate.at("greatest").get<double>() - 4 * std::exp(-0.2)) < 1e-9);
+  BOOST_TEST(std::abs(rate.at("least").get<double>() - 4 * std::exp(-0.4)) < 1e-9);
+}
+
 // Rounding alone exceeds 1e-15.
 BOOST_AUTO_TEST_CASE(missed_tolerances_exit_with_4) {
   const test::Outcome outcome = run(scene("double_pendulum") +
@@ -196,7 +212,10 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
   const std::pair<std::string, std::string> cases[] = {
       {scene("wheel_spun_up"), "--vary is required"},
       {"none.toml --vary 'x=normal(0,1)'", "none.toml: cannot be read"},
-      {wheel + "'body.wheel.mas=normal(0,1)'", "no 'mas' in the file (did you mean 'mass'?)"},
+      {wheel + "'body.wheel.mas=normal(0,1)'",
+       "'wheel'.mas: is no key here (did you mean 'mass'?)"},
+      {wheel + "'body.wheel.stiffness*=normal(0,1)'",
+       "has no number at body.wheel.stiffness: vary it"},
       {wheel + "'body.weel.mass=normal(0,1)'", "no 'weel' in the file (did you mean 'wheel'?)"},
       {wheel + "'body.wheel.inertia[3]=normal(0,1)'", "no '[3]' in the file"},
       {wheel + "'title=normal(0,1)'", "title: is no number"},
@@ -204,7 +223,8 @@ BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
       {wheel + "'solve.t_end=normal(0,x)'", "is not a finite number"},
       {wheel + "'solve.t_end=normal(0,-1)'", "the deviation must not be below 0"},
       {wheel + "solve.t_end", "wanted KEY=normal"},
-      {wheel + "'body.wheel.mass=normal(1,0)' 'body[0].mass=normal(1,0)'", "is named twice"},
+      {wheel + "'body.wheel.mass=normal(1,0)' 'body[0].mass=normal(1,0)'",
+       "body[0].mass: is given twice"},
       {wheel + "'body.wheel.mass=normal(1,0)' --t-end -1", "--t-end must be above 0"}};
   for (const auto& [words, reason] : cases) {
     const test::Outcome outcome = run(words + csv);

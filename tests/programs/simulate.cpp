@@ -570,6 +570,20 @@ BOOST_AUTO_TEST_CASE(a_number_that_is_not_finite_exits_with_3) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(values_are_set_on_the_command_line) {
+  const Scratch folder;
+  const std::string file = folder.write("scene.toml", two_rods).string();
+  const std::string set = " --set body[0].mass=2 --set 'solve.t_end=0.5 s' --json";
+  const Outcome by_file = run(file + set);
+  const Outcome by_pipe = test::run("cat " + file + " | " KREISEL_SIMULATE " -" + set);
+  BOOST_REQUIRE_MESSAGE(by_file.status == 0, by_file.err);
+  const json found = test::parsed(by_file.out);
+  BOOST_TEST(found.at("final").at("t") == 0.5);
+  BOOST_TEST(found.at("final") == test::parsed(by_pipe.out).at("final"));
+  const Outcome plain = run(file + " --t-end 0.5 --json");
+  BOOST_TEST(found.at("final") != test::parsed(plain.out).at("final"));
+}
+
 BOOST_AUTO_TEST_CASE(help_lists_the_exit_statuses) {
   const Outcome help = run("--help");
   BOOST_TEST(help.status == 0);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <dynamics/file/scene_numbers.hpp>
+#include <dynamics/file/scene_setting.hpp>
 #include <dynamics/file/unit.hpp>
 
 #include <support/scene_text.hpp>
@@ -253,12 +253,15 @@ BOOST_AUTO_TEST_CASE(are_refused_where_none_belongs) {
   BOOST_TEST(found == "s.toml:6:18: body 'a'.force.rate: must be a number, not true or false");
 }
 
-BOOST_AUTO_TEST_CASE(vary_in_ensembles) {
-  const SceneNumbers numbers("a = '5 mm' # b\nc = [\"2 rpm\", 3]\n", {"c[0]", "a"});
-  BOOST_TEST(numbers.values() == (std::vector<double>{12 * degree, 0.005}));
-  BOOST_TEST(numbers.with({0.25, 0.5}) == "a = 0.5 # b\nc = [0.25, 3]\n");
-  for (const char* const text : {"a = 'x'", "a = '5 xx'", "a = \"5 \\u006dm\"", "a = '''5 mm'''"}) {
-    BOOST_CHECK_THROW(SceneNumbers(text, {"a"}), InvalidInput);
+BOOST_AUTO_TEST_CASE(are_read_at_keys_of_a_scene) {
+  const std::string text = "a = '5 mm'\nb_deg = '2 deg'\nc = [\"2 rpm\", 3]\n";
+  BOOST_TEST(number_in_scene(text, "a").value() == 0.005);
+  BOOST_TEST(number_in_scene(text, "c[0]").value() == 12 * degree);
+  BOOST_TEST(!number_in_scene(text, "d.e"));
+  BOOST_CHECK_THROW((void)number_in_scene(text, "c[2]"), InvalidInput);
+  BOOST_CHECK_THROW((void)number_in_scene(text, "b_deg"), InvalidInput);
+  for (const char* const wrong : {"a = 'x'", "a = '5 xx'", "a = true"}) {
+    BOOST_CHECK_THROW((void)number_in_scene(wrong, "a"), InvalidInput);
   }
 }
 
