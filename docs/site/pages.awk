@@ -1,6 +1,64 @@
 #!/usr/bin/awk -f
-# Doxygen reads our pages through this: to it a ' ends a code span, unless the span has two
-# backquotes on each side.
-/^```/ { fenced = !fenced }
-!fenced && !/^```/ { gsub(/`[^`]+`/, "`&`") }
-{ print }
+# Doxygen reads our pages through this. It gives headings the names that links use, joins links that
+# are broken over two lines, drops links to sources, and doubles the backquotes of code, in which a ' would end the code.
+
+# The name of a heading in links, as GitHub makes it, after the name of the page.
+function anchor(page, heading) {
+  heading = tolower(heading)
+  gsub(/[^a-z0-9 _-]/, "", heading)
+  gsub(/ /, "-", heading)
+  return page "_" heading
+}
+# The line with links to headings, page.md#name or #name, as Doxygen's references.
+function with_references(line,    before, link, page) {
+  before = ""
+  while (match(line, /\]\([A-Za-z0-9_.\/-]*#[a-z0-9_-]+\)/)) {
+    link = substr(line, RSTART + 2, RLENGTH - 3)
+    page = this_page
+    if (link !~ /^#/) {
+      page = link
+      sub(/\.md#.*/, "", page)
+      sub(/.*\//, "", page)
+    }
+    sub(/.*#/, "", link)
+    before = before substr(line, 1, RSTART + 1) "@ref " page "_" link ")"
+    line = substr(line, RSTART + RLENGTH)
+  }
+  return before line
+}
+# The line without links to sources and scenes, which are no pages.
+function without_sources(line,    before, link) {
+  before = ""
+  while (match(line, /\[[^][]*\]\(\.\.\/[^()]*\.(hpp|cpp|toml|csv|py)\)/)) {
+    link = substr(line, RSTART + 1, RLENGTH - 1)
+    sub(/\]\(.*/, "", link)
+    before = before substr(line, 1, RSTART - 1) link
+    line = substr(line, RSTART + RLENGTH)
+  }
+  return before line
+}
+function write(line) {
+  line = without_sources(line)
+  gsub(/`[^`]+`/, "`&`", line)
+  print with_references(line)
+}
+FNR == 1 {
+  this_page = FILENAME
+  sub(/\.md$/, "", this_page)
+  sub(/.*\//, "", this_page)
+}
+/^```/ { fenced = !fenced; print; next }
+fenced || /^    / { print; next }
+/^##+ / {
+  heading = $0
+  sub(/^#+ +/, "", heading)
+  write($0 " {#" anchor(this_page, heading) "}")
+  next
+}
+{
+  held = held == "" ? $0 : held " " $0
+  if (held ~ /\[[^][]*$/ || held ~ /\]\([^()]*$/) next
+  write(held)
+  held = ""
+}
+END { if (held != "") write(held) }
