@@ -54,6 +54,13 @@ if(held)
   message(SEND_ERROR "${runtime} also holds ${held}")
 endif()
 
+file(GLOB python ${OUT}/python3-kreisel_*.deb)
+if(python)
+  check(python3-kreisel DEPENDS "python3 \\(>= 3\\.[0-9]+\\)"
+    HOLDS lib/python3/dist-packages/kreisel/__init__.py
+      lib/python3/dist-packages/kreisel/_kreisel*.so lib/python3/dist-packages/kreisel/py.typed)
+endif()
+
 # The command finds its programs wherever the package is.
 execute_process(COMMAND ${OUT}/root/usr/bin/kreisel simulate --version
   OUTPUT_VARIABLE version COMMAND_ERROR_IS_FATAL ANY)

@@ -44,7 +44,8 @@ class Index {
 function excerpt(text, query) {
   const wanted = new Set(words_of(query));
   const at = [...text.matchAll(/[A-Za-z0-9]+/g)].find(([word]) => wanted.has(root(word.toLowerCase())));
-  const begin = Math.max(0, (at ? at.index : 0) - 60);
+  const about = Math.max(0, (at ? at.index : 0) - 60);
+  const begin = about > 0 ? text.indexOf(" ", about) + 1 : 0;
   const part = text.slice(begin, begin + 200);
   return `${begin > 0 ? "... " : ""}${part}${begin + 200 < text.length ? " ..." : ""}`;
 }
