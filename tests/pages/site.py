@@ -23,6 +23,12 @@ FOUND = []  # what is wrong
 def build(doxygen, doxyfile, folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.parent.mkdir(parents=True, exist_ok=True)
+    gallery = pathlib.Path(doxyfile).parent / "gallery_text"
+    subprocess.run([ROOT / "script/gallery", gallery], check=True)
+    shown = (gallery / "gallery.md").read_text()
+    for scene in (ROOT / "examples/scenes").glob("*.toml"):
+        if f"/{scene.name} --plot" not in shown:
+            FOUND.append(f"the gallery lacks {scene.name}")
     run = subprocess.run([doxygen, doxyfile], capture_output=True, text=True, check=True)
     FOUND.extend(line for line in run.stderr.splitlines() if "warning: " in line)
     subprocess.run([ROOT / "script/search_index", folder / "search_sections.js", folder], check=True)
