@@ -102,6 +102,7 @@ class SceneReader {
     (void)root_.has("output");
     root_.finish();
     scene_.signal_logs = logs_.read();
+    scene_.frequencies = logs_.frequencies();
     mistakes_.throw_any();
     return std::move(scene_);
   }

@@ -182,6 +182,7 @@ struct SceneFile {
   bool constraint_forces = false;
   bool terms = false;
   std::vector<SceneSignalLog> signal_logs = {};
+  std::vector<double> frequencies = {};  ///< rad/s, of the terms of functions of time
   /// The same scene with other logs of functions of time.
   std::function<SceneFile(std::vector<SceneSignalLog>)> with_signal_logs = nullptr;
 

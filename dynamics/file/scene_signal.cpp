@@ -52,6 +52,7 @@ template <class Value>
       term.refuse(term.has("frequency") ? "frequency" : "frequency_deg",
                   "must not be below 0; the other direction is an 'amplitude' of the other sign");
     }
+    if (SignalLogs* const signals = table.signal_logs()) signals->add_frequency(frequency);
     terms.push_back({amplitude, frequency, term.angle("phase", dimension::angle).value_or(0)});
     term.finish();
   }

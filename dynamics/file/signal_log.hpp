@@ -10,7 +10,8 @@
 
 namespace kreisel::detail {
 
-/// The logs of the functions of time in a scene, in the order in which they are read.
+/// The logs and the frequencies of the functions of time in a scene, in the order in which they are
+/// read.
 class SignalLogs {
  public:
   /// Paths are relative to `folder`. Logs in `given` replace those of the files.
@@ -32,11 +33,16 @@ class SignalLogs {
   void add(SceneSignalLog log) { read_.push_back(std::move(log)); }
   [[nodiscard]] const std::vector<SceneSignalLog>& read() const { return read_; }
 
+  /// The frequencies of all oscillations, in rad/s, as they are read.
+  void add_frequency(double frequency) { frequencies_.push_back(frequency); }
+  [[nodiscard]] const std::vector<double>& frequencies() const { return frequencies_; }
+
  private:
   std::filesystem::path folder_;
   std::vector<SceneSignalLog> given_;
   std::array<double, 2> run_ = {0, 0};
   std::vector<SceneSignalLog> read_;
+  std::vector<double> frequencies_;
 };
 
 }  // namespace kreisel::detail
