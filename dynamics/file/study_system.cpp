@@ -71,9 +71,9 @@ SampledTransition StudySystem::sampled_transition(const Vector& y) const {
   return kreisel::sampled_transition<ControlledSystem<SceneGuide>>(*bodies_, begin_, y);
 }
 
-LinearPlant StudySystem::plant(const Vector& y, std::vector<PlantInput> inputs,
+LinearPlant StudySystem::plant(double t, const Vector& y, std::vector<PlantInput> inputs,
                                std::vector<PlantOutput> outputs) const {
-  return linear_plant<SceneGuide>(*bodies_, begin_, y, std::move(inputs), std::move(outputs));
+  return linear_plant<SceneGuide>(*bodies_, t, y, std::move(inputs), std::move(outputs));
 }
 
 StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {

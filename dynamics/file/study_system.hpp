@@ -84,8 +84,8 @@ class StudySystem {
   [[nodiscard]] bool has_samples() const;
   [[nodiscard]] SampledTransition sampled_transition(const Vector& y) const;
 
-  /// The linear plant about a steady state.
-  [[nodiscard]] LinearPlant plant(const Vector& y, std::vector<PlantInput> inputs,
+  /// The linear plant about a state at the time t.
+  [[nodiscard]] LinearPlant plant(double t, const Vector& y, std::vector<PlantInput> inputs,
                                   std::vector<PlantOutput> outputs) const;
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;

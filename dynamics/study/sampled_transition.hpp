@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,8 @@ struct SampledTransition {
 
 namespace detail {
 
-/// The shortest common multiple of the periods, up to 1000 times the longest.
-///
-/// Throws : InvalidInput if there is none
-[[nodiscard]] inline double common_period(const std::vector<double>& periods) {
+/// The shortest common multiple of periods, up to 1000 times the longest; nothing if there is none.
+[[nodiscard]] inline std::optional<double> common_multiple(const std::vector<double>& periods) {
   const double longest = *std::max_element(periods.begin(), periods.end());
   for (int n = 1; n <= 1000; ++n) {
     const double all = n * longest;
@@ -37,6 +36,12 @@ namespace detail {
     });
     if (fits) return all;
   }
+  return std::nullopt;
+}
+
+/// Throws : InvalidInput if the periods have no common multiple
+[[nodiscard]] inline double common_period(const std::vector<double>& periods) {
+  if (const auto all = common_multiple(periods)) return *all;
   throw InvalidInput(
       "the periods of the controllers have no common multiple up to 1000 times the "
       "longest: the linear equations of the loop are not periodic");

@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(a_plant_responds_by_its_formula) {
   const StudySystem system(file);
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(3);
   const auto plant =
-      system.plant(rest,
+      system.plant(system.begin(), rest,
                    {plant_input(file, "joint.arm"), plant_input(file, "servo.reference"),
                     plant_input(file, "load.arm.torque.z"), plant_input(file, "guide.yaw"),
                     plant_input(file, "guide.angular_velocity.z")},
@@ -227,7 +227,7 @@ BOOST_AUTO_TEST_CASE(a_plant_responds_to_its_guide) {
     const auto H =
         system
             .plant(
-                rest,
+                system.begin(), rest,
                 {plant_input(file, "guide.pitch"), plant_input(file, "guide.origin_acceleration.x"),
                  plant_input(file, "load.rod.torque.y"), plant_input(file, "load.rod.force.x")},
                 {plant_output(file, "rod.angle"), plant_output(file, "force.x")})
@@ -251,8 +251,8 @@ BOOST_AUTO_TEST_CASE(a_sampled_plant_responds_as_a_run) {
   const SceneFile file = scene(servo(keys));
   const StudySystem system(file);
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(system.start_of(file).size());
-  const auto plant =
-      system.plant(rest, {plant_input(file, "servo.reference")}, {plant_output(file, "arm.angle")});
+  const auto plant = system.plant(system.begin(), rest, {plant_input(file, "servo.reference")},
+                                  {plant_output(file, "arm.angle")});
   // A period of the sine is eight samples, so the regime repeats.
   const double w = M_PI;
   const std::complex<double> H = plant.response(w)(0, 0);
