@@ -146,7 +146,7 @@ void define_scene(py::module_& m) {
       .def_readwrite("terms", &RunOptions::terms);
 }
 
-using Sweep = std::pair<std::string, std::vector<double>>;
+using Sweep = std::tuple<std::string, std::vector<double>, std::vector<double>>;
 using ResponseWords = std::tuple<std::string, std::string, std::vector<double>>;
 
 std::string analyze_scene(const SceneText& scene, const std::optional<Sweep>& campbell,
@@ -154,7 +154,10 @@ std::string analyze_scene(const SceneText& scene, const std::optional<Sweep>& ca
                           std::optional<double> period) {
   scene_analysis::AnalysisRequest request;
   request.period = period;
-  if (campbell) request.campbell = {campbell->first, campbell->second};
+  if (campbell) {
+    const auto& [body, speeds, orders] = *campbell;
+    request.campbell = {body, speeds, orders};
+  }
   if (response) {
     const auto& [input, output, frequencies] = *response;
     request.response = {input, output, frequencies};

@@ -1,6 +1,7 @@
 #include "study.hpp"
 
 #include <programs/analyze/output.hpp>
+#include <programs/analyze/response_output.hpp>
 #include <programs/pendulum_deviation/request.hpp>
 #include <utility>
 

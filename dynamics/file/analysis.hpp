@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <dynamics/file/linear_motion.hpp>
+#include <dynamics/file/periodic_motions.hpp>
+#include <dynamics/file/periodic_response.hpp>
+#include <dynamics/file/scene_sweep.hpp>
 #include <dynamics/file/steady_motions.hpp>
 #include <dynamics/file/study_system.hpp>
 #include <dynamics/study/margins.hpp>
@@ -19,7 +23,8 @@ namespace kreisel::scene_analysis {
 /// A rotor whose speed is swept.
 struct Sweep {
   std::string body;
-  std::vector<double> speeds;  ///< rad/s, against its carrier
+  std::vector<double> speeds;        ///< rad/s, against its carrier
+  std::vector<double> orders = {1};  ///< of critical speeds: frequency/speed
 };
 
 /// A response that is requested.
@@ -35,44 +40,6 @@ struct AnalysisRequest {
   std::optional<double> period = {};  ///< s, of the coefficients
 };
 
-enum class Verdict { stable, marginal, unstable };
-
-/// The linear equations about a steady motion.
-struct Linear {
-  /// Slowest first; of two conjugate modes the one with root.imag() > 0. Shapes have all
-  /// directions.
-  std::vector<kreisel::GyroscopicMode> modes;
-  std::vector<std::string> names;      ///< of the directions
-  std::vector<std::string> left_out;   ///< directions that are given or on which nothing depends
-  std::vector<std::string> dependent;  ///< directions that follow from the others by constraints
-  int rates = 0;                       ///< number of rates: directions of coordinates come first
-  double sample_period = 0;            ///< s, common to all controllers; 0: none is sampled
-  int dead_beats = 0;                  ///< number of roots that die within it
-  std::string frame;                   ///< in which the modes are observed: "against the guide", ..
-  bool has_rotors = false;             ///< so that modes have a kind
-  Verdict verdict = Verdict::marginal;
-};
-
-/// Modes that form a curve, one or none for each speed.
-using Curve = std::vector<std::optional<kreisel::GyroscopicMode>>;
-
-struct Campbell {
-  std::string body;
-  std::vector<double> speeds;
-  bool has_rotors = false;
-  std::vector<Curve> curves;
-};
-
-/// The stability of a periodic motion.
-struct Floquet {
-  double period = 0;
-  std::string reason;  ///< why there are no multipliers
-  Eigen::VectorXd start;
-  double residual = 0;                     ///< of the return after a period
-  std::vector<kreisel::Mode> multipliers;  ///< greatest first; both of two conjugate ones
-  Verdict verdict = Verdict::marginal;
-};
-
 /// The response of an output to an input, at increasing frequencies.
 struct Response {
   kreisel::PlantInput input;
@@ -81,16 +48,19 @@ struct Response {
   std::vector<std::complex<double>> values;  ///< output per input
   std::optional<double> bandwidth;
   std::optional<kreisel::LoopMargins> margins;  ///< of a loop that is open at this joint force
-  bool is_first_harmonic = false;               ///< a controller is sampled
+  std::vector<std::complex<double>> loop;       ///< gain of the open loop, if there are margins
+  std::optional<kreisel::HarmonicResponse>
+      harmonics;                   ///< about a periodic motion; `values` are those of w
+  bool is_first_harmonic = false;  ///< a controller is sampled
 };
 
 /// An equilibrium and the linear equations about it.
 struct Rest {
   kreisel::steady_motion::Equilibrium equilibrium;
-  Linear linear;
+  kreisel::LinearMotion linear;
 
   /// The verdict by the roots; if they do not decide, stable if the potential energy has a minimum.
-  Verdict stability = Verdict::marginal;
+  kreisel::Verdict stability = kreisel::Verdict::marginal;
   double distance = 0;  ///< greatest distance of a coordinate from the file's start
 };
 
@@ -98,9 +68,10 @@ struct Analysis {
   std::vector<Rest> equilibria;  ///< stable ones first, then by their distance from the start
   int starts = 0;                ///< number of starts of the search
   kreisel::Steady steady;
-  std::optional<Linear> linear;
-  std::optional<Campbell> campbell;
-  std::optional<Floquet> floquet;
+  std::optional<kreisel::LinearMotion> linear;
+  std::optional<kreisel::SceneSweep> campbell;
+  std::optional<kreisel::FloquetMotion> floquet;
+  std::vector<kreisel::WhirlingMode> floquet_modes;
   std::optional<Response> response;
   kreisel::PrecessionCheck precession;
   std::vector<std::string> notes;  ///< on the limits of this program

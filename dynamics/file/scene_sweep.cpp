@@ -99,14 +99,14 @@ Index speed_of(const StudySystem& system, const std::string& body) {
   const BodyTree& tree = system.tree();
   const auto is = [&body](const auto& other) { return other.name == body; };
   if (std::none_of(tree.bodies().begin(), tree.bodies().end(), is)) {
-    throw InvalidInput("--campbell: body '" + body + "' does not exist");
+    throw InvalidInput("sweep of a speed: body '" + body + "' does not exist");
   }
   const int index = tree.index(body);
   const BodyDescription& b = tree.body(index);
   const bool turns = b.joint.kind == JointKind::revolute &&
                      (b.rotor ? b.rotor->mode != RotorMode::torque : b.rule == JointRule::driven);
   if (!turns) {
-    throw InvalidInput("--campbell: body '" + body +
+    throw InvalidInput("sweep of a speed: body '" + body +
                        "' is neither a free or regulated rotor nor driven at a constant rate");
   }
   return tree.coordinates() + tree.place(index).v;

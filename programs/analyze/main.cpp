@@ -7,6 +7,7 @@
 #include "../shared/exit_status.hpp"
 #include "output.hpp"
 #include "request.hpp"
+#include "response_output.hpp"
 
 using namespace kreisel;
 using namespace kreisel::scene_analysis;
@@ -18,7 +19,7 @@ int run(const Request& request) {
   const kreisel::StudySystem system(with_longer_guide(scene, request));
   const Analysis analysis = analyze(system, scene, request);
   const Result result{scene, system, analysis};
-  if (request.response_file) write_response(result, *request.response_file);
+  if (request.response_file) write_response(*analysis.response, *request.response_file);
   if (request.state_space) write_state_space(result, *request.state_space);
   if (request.plot) draw(result, *request.plot);
   if (request.json) {

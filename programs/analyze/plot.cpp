@@ -1,3 +1,5 @@
+#include "plot.hpp"
+
 #include <fmt/core.h>
 #include <fmt/ostream.h>
 
@@ -9,13 +11,13 @@
 #include <vector>
 
 #include "../shared/gnuplot.hpp"
-#include "output.hpp"
+#include "modes_output.hpp"
 
 using namespace kreisel;
 using namespace kreisel::scene_analysis;
+using namespace kreisel::scene_analysis;
 
 using gnuplot::quoted;
-using kreisel::GyroscopicMode;
 
 namespace {
 
@@ -30,11 +32,6 @@ constexpr Look looks[] = {{"nutation", "nutation", "#0072b2", 7},
                           {"precession", "precession", "#d55e00", 5},
                           {"oscillation", "oscillation", "#009e73", 9},
                           {"", "root", "#000000", 2}};
-
-std::string title_of(const Result& result, const std::string& what) {
-  const std::string& title = result.scene.title;
-  return quoted(title.empty() ? what : title + ": " + what);
-}
 
 /// Writes a block of gnuplot's data for each look, never an empty one; `rows` writes those of the
 /// k-th.
@@ -63,7 +60,7 @@ std::string points(const std::vector<bool>& shown, double size) {
   return list;
 }
 
-std::string roots(const Result& result, const Linear& linear) {
+std::string roots(const Result& result, const LinearMotion& linear) {
   std::ostringstream s;
   std::vector<bool> shown(std::size(looks), false);
   write_blocks(s, [&](std::size_t k) {
@@ -93,53 +90,10 @@ std::string roots(const Result& result, const Linear& linear) {
   return s.str();
 }
 
-std::string campbell_lines(const Result& result, const Campbell& campbell) {
-  std::ostringstream s;
-  std::vector<bool> shown(std::size(looks), false);
-  s << "$lines << END\n";
-  for (const Curve& curve : campbell.curves) {
-    for (std::size_t i = 0; i < curve.size(); ++i) {
-      if (curve[i]) {
-        fmt::print(s, "{:.9g} {:.9g}\n", campbell.speeds[i], curve[i]->root.imag());
-      } else {
-        s << '\n';
-      }
-    }
-    s << '\n';
-  }
-  s << "END\n$growing << END\nNaN NaN\n";
-  bool grows = false;
-  for (const Curve& curve : campbell.curves) {
-    for (std::size_t i = 0; i < curve.size(); ++i) {
-      if (!curve[i] || curve[i]->root.real() <= curve[i]->error) continue;
-      grows = true;
-      fmt::print(s, "{:.9g} {:.9g}\n", campbell.speeds[i], curve[i]->root.imag());
-    }
-  }
-  s << "END\n";
-  write_blocks(s, [&](std::size_t k) {
-    for (const Curve& curve : campbell.curves) {
-      for (std::size_t i = 0; i < curve.size(); ++i) {
-        if (!curve[i] || !looks_so(*curve[i], campbell.has_rotors, k)) continue;
-        shown[k] = true;
-        fmt::print(s, "{:.9g} {:.9g}\n", campbell.speeds[i], curve[i]->root.imag());
-      }
-    }
-  });
-  s << gnuplot::style << "set key outside right top\nset format '%.4g'\nset autoscale xfix\n"
-    << "set yrange [0:*]\nset offsets 0, 0, graph 0.05, 0\nset ylabel 'frequency [rad/s]'\n"
-    << "set xlabel " << quoted("speed of " + campbell.body + " [rad/s]") << "\nset title "
-    << title_of(result, "Campbell diagram") << '\n';
-  s << "plot $lines with lines lc rgb '#999999' notitle, "
-    << (grows ? "$growing with points pt 6 ps 1.6 lw 2 lc rgb '#cc0000' title 'grows', " : "")
-    << points(shown, 0.6) << "\nunset output\n";
-  return s.str();
-}
-
-std::string multipliers(const Result& result, const Floquet& floquet) {
+std::string multipliers(const Result& result, const FloquetMotion& floquet) {
   std::ostringstream s;
   s << "$multipliers << END\n";
-  for (const kreisel::Mode& m : floquet.multipliers) {
+  for (const Mode& m : floquet.multipliers) {
     fmt::print(s, "{:.9g} {:.9g}\n", m.root.real(), m.root.imag());
   }
   s << "END\n"
@@ -155,6 +109,11 @@ std::string multipliers(const Result& result, const Floquet& floquet) {
 
 }  // namespace
 
+std::string title_of(const Result& result, const std::string& what) {
+  const std::string& title = result.scene.title;
+  return quoted(title.empty() ? what : title + ": " + what);
+}
+
 void draw(const Result& result, const std::filesystem::path& folder) {
   gnuplot::open_folder(folder);
   const Analysis& a = result.analysis;
@@ -162,7 +121,8 @@ void draw(const Result& result, const std::filesystem::path& folder) {
     gnuplot::draw(folder / "roots", 560, roots(result, *a.linear));
   }
   if (a.campbell && !a.campbell->curves.empty())
-    gnuplot::draw(folder / "campbell", 560, campbell_lines(result, *a.campbell));
+    gnuplot::draw(folder / "campbell", 560, campbell_script(result, *a.campbell));
+  if (a.response) gnuplot::draw(folder / "response", 720, response_script(result, *a.response));
   if (a.floquet && !a.floquet->multipliers.empty()) {
     gnuplot::draw(folder / "multipliers", 640, multipliers(result, *a.floquet));
   }

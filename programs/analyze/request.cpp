@@ -1,5 +1,7 @@
 #include "request.hpp"
 
+#include <sstream>
+
 #include <motor/error.hpp>
 
 #include "../shared/command_line.hpp"
@@ -67,6 +69,20 @@ std::vector<double> frequencies(const std::string& text) {
   return result;
 }
 
+/// The orders of "1,2".
+std::vector<double> orders(const std::string& text) {
+  std::vector<double> result;
+  std::istringstream all(text);
+  for (std::string one; std::getline(all, one, ',');) {
+    result.push_back(kreisel::finite_number("--orders", one));
+    if (!(result.back() > 0)) {
+      throw InvalidInput("--orders " + text + ": an order is frequency/speed and must be above 0");
+    }
+  }
+  if (result.empty()) throw InvalidInput("--orders: wanted numbers, as 1,2");
+  return result;
+}
+
 }  // namespace
 
 std::optional<Request> read_request(int argc, char** argv) {
@@ -80,6 +96,7 @@ std::optional<Request> read_request(int argc, char** argv) {
   std::string scene;
   std::string body;
   std::string sweep;
+  std::string order_list;
   std::string plot;
   std::string input;
   std::string output;
@@ -90,20 +107,27 @@ std::optional<Request> read_request(int argc, char** argv) {
       ->required()
       ->type_name("SCENE.toml");
   scene_options::add_settings(app, request.solve);
-  app.add_option("--campbell", body, "how the roots go with the speed of this body")
+  app.add_option("--campbell", body, "modes, whirl and critical speeds over the speed of this body")
       ->type_name("BODY");
   app.add_option("--speeds", sweep, "of it, rad/s against what carries it")->type_name("FROM:TO:N");
+  app.add_option("--orders", order_list,
+                 "critical speeds, where the frequency of a mode is this multiple of the speed [1]")
+      ->type_name("N,N,..");
   app.add_option_function<std::string>(
          "--period",
          [&request](const std::string& text) {
            request.period = kreisel::finite_number("--period", text);
            if (!(*request.period > 0)) throw InvalidInput("--period must be above 0");
          },
-         "s, of the coefficients: Floquet multipliers [that of a harmonic guide of one frequency]")
+         "s, of the coefficients: Floquet multipliers [found from joints at constant rates and "
+         "from "
+         "functions of time]")
       ->type_name("NUMBER");
-  app.add_option("--response", input,
-                 "the amplitude and phase that this input causes: joint.BODY, "
-                 "load.BODY.torque.x, CONTROLLER.reference, guide.roll, ..")
+  app.add_option(
+         "--response", input,
+         "the amplitude and phase that this input causes: joint.BODY, "
+         "load.BODY.torque.x, CONTROLLER.reference, guide.roll, .., or unbalance.ROTOR, whose "
+         "speed is then the frequency")
       ->type_name("INPUT");
   app.add_option("--to", output, "in this output: a column of a joint, a sensor or a controller")
       ->type_name("OUTPUT");
@@ -134,6 +158,8 @@ std::optional<Request> read_request(int argc, char** argv) {
   if (!csv.empty() && !any) throw InvalidInput("--csv FILE needs --response");
   if (!csv.empty()) request.response_file = csv;
   if (!state_space.empty()) request.state_space = state_space;
+  if (!order_list.empty() && body.empty()) throw InvalidInput("--orders needs --campbell");
   if (!body.empty()) request.campbell = Sweep{body, speeds(sweep)};
+  if (!order_list.empty()) request.campbell->orders = orders(order_list);
   return request;
 }

@@ -17,12 +17,16 @@ inline constexpr const char* style =
     "set tics tc rgb '#333333'\n";
 
 /// A gnuplot string that shows the text as it is. Punctuation is written by its code, so that an
-/// apostrophe at the beginning or a backquote, which runs a command, has no meaning.
+/// apostrophe at the beginning or a backquote, which runs a command, has no meaning. gnuplot reads
+/// digits after a code as part of it: they are written by their codes, too.
 inline std::string quoted(const std::string& text) {
   std::string result = "\"";
+  bool after_code = false;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x80 || c == ' ' || std::isalnum(byte) != 0) {
+    const bool is_plain = byte >= 0x80 || c == ' ' || std::isalnum(byte) != 0;
+    after_code = !is_plain || (after_code && std::isdigit(byte) != 0);
+    if (!after_code) {
       result += c;
     } else {
       result += fmt::format("\\{:03o}", byte < 0x20 || byte == 0x7f ? ' ' : byte);

@@ -139,7 +139,8 @@ class Scene:
                  tolerance: float | None = None,
                  progress: Callable[[float], object] | None = None) -> Ensemble: ...
     def analyze(self, *, campbell: str | None = None, speeds: Iterable[float] | None = None,
-                period: float | None = None, response: str | None = None, to: str | None = None,
+                orders: Iterable[float] = (1,), period: float | None = None,
+                response: str | None = None, to: str | None = None,
                 frequencies: Iterable[float] | None = None) -> dict[str, Any]: ...
     def state_space(self) -> dict[str, Any]: ...
 

@@ -160,11 +160,12 @@ class Scene:
             _warn(f"{found.missed} of {members} members did not reach the tolerance")
         return Ensemble(found)
 
-    def analyze(self, *, campbell=None, speeds=None, period=None, response=None, to=None,
-                frequencies=None):
+    def analyze(self, *, campbell=None, speeds=None, orders=(1,), period=None, response=None,
+                to=None, frequencies=None):
         """Equilibria, steady motion, roots and stability; returns the object of analyze --json.
 
         campbell, speeds           a rotor and its speeds, rad/s against its carrier
+        orders                     of critical speeds: frequency/speed
         period                     s, of the coefficients: Floquet multipliers
         response, to, frequencies  an input, an output and frequencies, rad/s, rising
 
@@ -172,6 +173,8 @@ class Scene:
         Frequencies and growth rates are in rad/s and 1/s. Raises InvalidInput and ComputationFailed.
         """
         sweep = _together("campbell", "speeds", campbell, speeds)
+        if sweep is not None:
+            sweep += ([float(n) for n in orders],)
         if len({response is None, to is None, frequencies is None}) > 1:
             raise InvalidInput("response, to and frequencies go together")
         asked = None if response is None else (response, to, [float(w) for w in frequencies])
