@@ -125,11 +125,13 @@ bool opens_loop(const kreisel::SceneFile& scene, const kreisel::PlantInput& inpu
 }
 
 /// The response about the periodic motion.
-Response harmonics_of(const StudySystem& system, const std::optional<FloquetMotion>& motion,
-                      const Steady& steady, Response response) {
+Response harmonics_of(const StudySystem& system, const Analysis& analysis, Response response) {
+  const std::optional<FloquetMotion>& motion = analysis.floquet;
   if (!motion || !motion->exists()) {
-    throw ComputationFailed("--response: no steady motion: " + steady.reason +
-                            (motion ? "; no periodic motion: " + motion->reason : std::string()));
+    std::string why = "--response: no steady motion: " + analysis.steady.reason;
+    if (motion) why += "; no periodic motion: " + motion->reason;
+    if (!motion && !analysis.notes.empty()) why += "; " + analysis.notes.back();
+    throw ComputationFailed(why);
   }
   response.harmonics =
       harmonic_response(system, *motion, response.input, response.output, response.frequencies);
@@ -164,7 +166,7 @@ Response response_of(const StudySystem& system, const SceneFile& scene, const An
   }
   response.input = plant_input(scene, request.input);
   if (!steady.exists()) {
-    return harmonics_of(system, analysis.floquet, steady, std::move(response));
+    return harmonics_of(system, analysis, std::move(response));
   }
   const LinearPlant plant =
       system.plant(system.begin(), steady.state, {response.input}, {response.output});

@@ -59,6 +59,9 @@ class PeriodicModes {
         unsteady_(std::move(unsteady)) {}
 
   [[nodiscard]] double period(double speed) const {
+    if (speed == 0) {
+      throw ComputationFailed("--campbell: a rotor at rest gives no period; leave out 0 rad/s");
+    }
     VectorXd y = guess_;
     y[speed_] = speed;
     const FoundPeriod found = find_period(system_, scene_, y);

@@ -1,6 +1,6 @@
 #pragma once
 
-/// All studies of a scene: equilibria, linear equations, spectra, stability with periodic
+/// All studies of a scene: equilibria, linear equations, spectra, whirl, stability with periodic
 /// coefficients, precession equations, increments of inertial units, and pruning.
 
 #include <dynamics/study/campbell.hpp>
@@ -8,6 +8,7 @@
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
+#include <dynamics/study/harmonic_response.hpp>
 #include <dynamics/study/increments.hpp>
 #include <dynamics/study/linear_error.hpp>
 #include <dynamics/study/linear_plant.hpp>
@@ -19,7 +20,9 @@
 #include <dynamics/study/precession_gimbals.hpp>
 #include <dynamics/study/prune.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
+#include <dynamics/study/rotor_sweep.hpp>
 #include <dynamics/study/sampled_transition.hpp>
 #include <dynamics/study/spectrum.hpp>
 #include <dynamics/study/stability_boundaries.hpp>
 #include <dynamics/study/transition.hpp>
+#include <dynamics/study/whirl.hpp>

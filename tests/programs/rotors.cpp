@@ -445,12 +445,63 @@ BOOST_AUTO_TEST_CASE(harmonics_are_those_of_multiblades) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(harmonics_are_drawn_and_tabled) {
+  const Scratch folder;
+  const Outcome outcome =
+      analyze(Helicopter().scene(7),
+              "--response 'joint.blade 1' --to x.displacement --frequencies 2:40:7 " +
+                  ("--plot " + folder.path().string()) + " --csv " +
+                  (folder.path() / "table.csv").string());
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(folder.read("response.svg").find("<svg") != std::string::npos);
+  const std::string table = folder.read("table.csv");
+  BOOST_TEST(table.starts_with("frequency,amplitude,phase,amplitude -3,phase -3,"), table);
+  BOOST_TEST(std::count(table.begin(), table.end(), '\n') == 8);
+}
+
 BOOST_AUTO_TEST_CASE(sweeps_without_a_period_are_refused) {
   const Helicopter craft;
   const std::string pulse = "force = { points = [[0.1, 0], [0.2, 1], [0.3, 0]] }\n";
   const Outcome outcome = analyze(craft.scene(10) + pulse, "--campbell rotor --speeds 5:9:3");
   BOOST_TEST(outcome.status == 3);
   BOOST_TEST(outcome.err.find("jumps or bends at 0.1 s") != std::string::npos, outcome.err);
+  const Outcome response = analyze(craft.scene(10) + pulse,
+                                   "--response joint.x --to x.displacement --frequencies 1:9:3");
+  BOOST_TEST(response.status == 3);
+  BOOST_TEST(response.err.find("jumps or bends at 0.1 s") != std::string::npos, response.err);
+  const Outcome rest = analyze(craft.scene(10), "--campbell rotor --speeds 0:9:3");
+  BOOST_TEST(rest.status == 3);
+  BOOST_TEST(rest.err.find("leave out 0 rad/s") != std::string::npos, rest.err);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(attitude_held_by_a_wheel)
+
+// The torque u on the wheel has the reaction -u on the body, whose moment is J without the wheel's:
+// J s^2 + P + D s/(1 + tau s) = 0.
+BOOST_AUTO_TEST_CASE(has_the_roots_of_its_loop) {
+  const double J = 5, P = 2, D = 3, tau = 0.1;
+  const std::string scene =
+      body("craft", "guide", about_z, 10, {4, 4, J}) +
+      body("wheel", "craft", about_z, 1, {0.1, 0.1, 0.15},
+           "rotor = { mode = \"torque\", torque = 0 }") +
+      "[[sensor]]\nname = \"star\"\nkind = \"joint\"\njoint = \"craft\"\n"
+      "[[controller]]\nname = \"hold\"\nreads = [\"star.angle\"]\ndrives = [\"wheel\"]\n"
+      "law = { kind = \"pid\", proportional = -2, derivative = -3, filter = 0.1 }\n";
+  const auto law = [&](Complex s) { return P + D * s / (1.0 + tau * s); };
+  const json result =
+      answer(scene, "--response hold.reference --to craft.angle --frequencies 0.01:100:20");
+  BOOST_TEST(result["linear"]["roots"].size() >= 2U);
+  for (const json& root : result["linear"]["roots"]) {
+    const Complex s(root["growth_rate"].get<double>(), root["frequency"].get<double>());
+    BOOST_TEST(std::abs((J * s * s + law(s)) * (1.0 + tau * s)) < 1e-10);
+  }
+  for (const json& row : result["response"]["rows"]) {
+    const Complex s(0, row["frequency"].get<double>());
+    const Complex found = std::polar(row["amplitude"].get<double>(), row["phase"].get<double>());
+    BOOST_TEST(std::abs(found - law(s) / (J * s * s + law(s))) < 1e-12);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
