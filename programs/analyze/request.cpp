@@ -1,5 +1,8 @@
 #include "request.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <sstream>
 
 #include <motor/error.hpp>
@@ -10,8 +13,6 @@
 
 using namespace kreisel;
 using namespace kreisel::scene_analysis;
-
-using kreisel::InvalidInput;
 
 namespace {
 
@@ -66,6 +67,9 @@ std::vector<double> frequencies(const std::string& text) {
     result[static_cast<std::size_t>(i)] = range.from * std::exp(ratio * i / (range.count - 1));
   }
   result.back() = range.to;
+  if (std::adjacent_find(result.begin(), result.end(), std::greater_equal<>()) != result.end()) {
+    throw InvalidInput("--frequencies " + text + ": FROM and TO lie too close for N frequencies");
+  }
   return result;
 }
 

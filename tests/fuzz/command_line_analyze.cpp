@@ -1,4 +1,4 @@
-// The command line of analyze. Speeds of a sweep are finite numbers.
+// The command line of analyze. Speeds of a sweep are finite numbers, frequencies rise from above 0.
 
 #include <cmath>
 #include <cstdlib>
@@ -11,7 +11,17 @@ void examine(int argc, char** argv) {
   const std::optional<Request> request = read_request(argc, argv);
   if (!request) return;
   if (request->period && !(*request->period > 0)) std::abort();
+  if (request->response) {
+    double before = 0;
+    for (const double w : request->response->frequencies) {
+      if (!(w > before && std::isfinite(w))) std::abort();
+      before = w;
+    }
+  }
   if (!request->campbell) return;
+  for (const double order : request->campbell->orders) {
+    if (!(order > 0 && std::isfinite(order))) std::abort();
+  }
   if (request->campbell->body.empty() || request->campbell->speeds.size() < 2) std::abort();
   for (const double speed : request->campbell->speeds) {
     if (!std::isfinite(speed)) std::abort();
