@@ -32,7 +32,8 @@ std::vector<PlantInput> forces_across(const BodyTree& tree, int body) {
   const auto [first, second] =
       detail::plane_directions({.kind = JointKind::planar, .axis = rotor.joint.axis});
   for (const Vector3<double>& e : {first, second}) {
-    inputs.push_back({"", "N", PlantInput::BodyForce{carrier, Motor<>{e, at.cross(e)}}});
+    const Actuator force{"", "N", Actuator::BodyForce{carrier, {e, at.cross(e)}}};
+    inputs.push_back({force.name, force.unit, force});
   }
   return inputs;
 }

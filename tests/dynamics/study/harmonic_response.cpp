@@ -26,7 +26,7 @@ std::vector<LinearPlant> samples(int count, const A& a, const B& b, const C& c, 
     const double t = period * j / count;
     LinearPlant plant;
     plant.names = {"x"};
-    plant.inputs = {{"u", "N", PlantInput::JointForce{0}}};
+    plant.inputs = {{"u", "N", Actuator{.kind = Actuator::JointForce{0}}}};
     plant.outputs = {{"y", "m", PlantOutput::OfController{0, 0}}};
     plant.A = Eigen::MatrixXd::Constant(1, 1, a(t));
     plant.C = Eigen::MatrixXd::Constant(1, 1, c(t));
