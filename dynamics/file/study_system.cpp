@@ -80,6 +80,15 @@ StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {
   return bodies_->steady_rates(t, y);
 }
 
+std::function<void(double, const StudySystem::Vector&, StudySystem::Vector&)> StudySystem::field()
+    const {
+  if (has_samples()) {
+    return [this](double t, const Vector& y, Vector& result) { result = rates(t, y); };
+  }
+  auto w = std::make_shared<Bodies::Workspace>(bodies_->workspace());
+  return [this, w](double t, const Vector& y, Vector& result) { bodies_->rates(t, y, result, *w); };
+}
+
 StudySystem::Vector StudySystem::assembled(const Vector& y) const { return bodies_->assembled(y); }
 
 Eigen::MatrixXd StudySystem::constraint_slopes(const Vector& y, const Eigen::MatrixXd& E) const {

@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <concepts>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,6 +90,9 @@ class StudySystem {
                                   std::vector<PlantOutput> outputs) const;
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
+
+  /// rates() with scratch memory of its own, for many evaluations in one thread.
+  [[nodiscard]] std::function<void(double t, const Vector& y, Vector& rates)> field() const;
 
   /// As BodySystem has them.
   [[nodiscard]] Vector assembled(const Vector& y) const;
