@@ -1,19 +1,17 @@
-#include <unsupported/Eigen/MatrixFunctions>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <dynamics/file/approximation.hpp>
-#include <dynamics/file/gimbal_motion.hpp>
 #include <dynamics/file/measured.hpp>
-#include <dynamics/file/steady_motions.hpp>
+#include <dynamics/file/model_motion.hpp>
 #include <dynamics/solve/error_measure.hpp>
-#include <dynamics/solve/output_times.hpp>
+#include <dynamics/study/model_bound.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -22,123 +20,51 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// States of the linear equations about a steady motion, at times since the start.
-class LinearMotion {
- public:
-  static constexpr const char* method = "matrix exponential";
+/// The part of the tolerance below which the error of a model need not be resolved.
+constexpr double unresolved = 0.01;
 
-  explicit LinearMotion(const SceneFile& scene) : system_(scene) {
-    const VectorXd start = joined(start_of(scene));
-    const Steady steady = steady_motion::find_steady(system_, scene, start);
-    if (!steady.exists()) {
-      throw InvalidInput("model 'linear': no steady motion to be linear about: " + steady.reason);
-    }
-    about_ = steady_motion::linearized(system_, system_.begin(), steady.state);
-  }
-
-  /// Throws : ComputationFailed if the states overflow
-  [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
-                                             const std::vector<double>& times) const {
-    const Tangent tangent = steady_motion::tangent_of(system_, about_.state);
-    VectorXd eta = tangent.between(about_.state, start);
-    double before = 0;
-    std::vector<VectorXd> result;
-    for (const double t : times) {
-      eta = ((t - before) * about_.A).exp() * eta;
-      before = t;
-      const VectorXd steady = tangent.moved(about_.state, VectorXd(t * about_.rate));
-      result.push_back(tangent.moved(steady, eta));
-      if (!result.back().allFinite()) {
-        throw ComputationFailed("model 'linear': the motion grows beyond all numbers");
-      }
-    }
-    return result;
-  }
-
- private:
-  StudySystem system_;
-  steady_motion::Linearization about_;
-};
-
-/// States of the precession equations, at times since the start.
-class PrecessionMotion {
- public:
-  static constexpr const char* method = "technical equations, verner98";
-
-  explicit PrecessionMotion(const SceneFile& scene) : system_(scene) {}
-
-  /// Throws : InvalidInput, ComputationFailed
-  [[nodiscard]] std::vector<VectorXd> states(const VectorXd& start,
-                                             const std::vector<double>& times) const {
-    return system_.technical(start, times);
-  }
-
- private:
-  StudySystem system_;
-};
-
-template <class Motion>
 class Approximation final : public SceneSolver {
  public:
   Approximation(const SceneFile& scene, std::unique_ptr<SceneSolver> exact)
-      : exact_(std::move(exact)), motion_(scene) {}
+      : exact_(std::move(exact)),
+        system_(scene),
+        approximation_(approximation_of(scene, system_)),
+        discontinuities_(scene.discontinuities),
+        compares_(scene.compare) {}
 
-  [[nodiscard]] Trajectory<JointState> solve(const SolveOptions& options, const JointState& start,
+  [[nodiscard]] Trajectory<JointState> solve(const SolveOptions& given, const JointState& start,
                                              const OnOutput& on_output) const override {
     const auto clock = std::chrono::steady_clock::now();
-    Trajectory<JointState> result = exact_->solve(options, start);
-    if (result.report.status != RunStatus::complete) return result;
-    std::vector<double> since = result.times;
-    for (double& t : since) t -= options.begin;
-    const std::vector<VectorXd> states = motion_.states(joined(start), since);
-    ErrorMeasure<Measured> distance({tree().blocks()}, options.absolute_scale);
-    // Relative to the sizes of the whole exact run: an approximation may start with other rates.
-    distance.note_sizes(result.report.sizes);
-    if (result.report.sizes.empty()) note_way(distance, options, result.times.back(), start);
+    const SolveOptions options = detail::with_output_times(given);
+    const VectorXd y = joined(start);
+    const ModelMotion motion = approximation_.motion(y, options.output_times);
+    Trajectory<JointState> result;
     RunReport& report = result.report;
-    report.method = Motion::method;
-    const auto at_start = conserved(options.begin, start);
-    for (auto& invariant : report.invariants) invariant.largest = 0;
-    const Eigen::Index coordinates = tree().coordinates();
-    std::size_t done = 0;
+    report.method = approximation_.method;
+    report.tolerance = options.tolerance;
+    report.message = motion.message;
+    result.errors = bounds(motion, y, options, report);
     model_error_ = 0;
-    for (; done < states.size() && report.status == RunStatus::complete; ++done) {
-      JointState& state = result.states[done];
-      const VectorXd exact = joined(state);
-      VectorXd y = states[done];
-      for (const auto& rotor : tree().rotors()) y[rotor.link.q] = exact[rotor.link.q];
-      const double off = distance(y, exact);
-      result.errors[done] += off;
-      model_error_ = std::max(model_error_, off);
-      report.error_estimate = std::max(report.error_estimate, result.errors[done]);
-      state = {y.head(coordinates), y.tail(tree().rates())};
-      const double t = result.times[done];
-      const auto now = conserved(t, state);
-      for (std::size_t k = 0; k < report.invariants.size(); ++k) {
-        double& largest = report.invariants[k].largest;
-        largest = std::max(largest, std::abs(now[k].second - at_start[k].second));
-      }
-      if (on_output && on_output(t, state) == OutputAction::stop) {
-        report.status = RunStatus::cancelled;
-        report.message = "stopped by on_output";
-      }
+    for (std::size_t i = 0; i < result.errors.size(); ++i) {
+      model_error_ = std::max(model_error_, result.errors[i]);
+      result.errors[i] += motion.integration_error;
+      result.times.push_back(options.output_times[i]);
+      result.states.push_back(system_.joints_of(motion.states[i]));
     }
-    if (done < result.times.size() && report.status == RunStatus::complete) {
-      report.status = RunStatus::failed;
-      report.message =
-          "the motion is no longer slow against the nutations, which the precession "
-          "equations leave out";
-    }
-    result.times.resize(done);
-    result.states.resize(done);
-    result.errors.resize(done);
+    report.error_estimate = model_error_ + motion.integration_error;
+    report.error_parts.truncation = motion.integration_error;
     report.tolerance_kept = report.error_estimate <= options.tolerance;
+    if (!report.message.empty()) report.status = RunStatus::failed;
+    note_invariants(result, options.begin, start);
+    show(result, on_output);
+    distance_ = compares_ ? std::optional(distance(result, options, start)) : std::nullopt;
     report.run_time =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return result;
   }
 
   [[nodiscard]] double model_error() const override { return model_error_; }
+  [[nodiscard]] std::optional<double> model_distance() const override { return distance_; }
 
   [[nodiscard]] const BodyTree& tree() const override { return exact_->tree(); }
   [[nodiscard]] JointReactions reactions(double t, const JointState& state) const override {
@@ -168,45 +94,96 @@ class Approximation final : public SceneSolver {
   }
 
  private:
-  /// Records the sizes at evenly spaced times from begin to end. A closed form reports no sizes.
-  void note_way(ErrorMeasure<Measured>& distance, SolveOptions options, double end,
-                const JointState& start) const {
-    options.output_times = linspace(options.begin, end, 65);
-    options.t_end.reset();
-    options.output_step.reset();
-    for (const JointState& state : exact_->solve(options, start).states) {
-      distance(joined(state), joined(state));
+  /// The bounds of the model's error at the outputs, as far as they are known.
+  [[nodiscard]] std::vector<double> bounds(const ModelMotion& motion, const VectorXd& start,
+                                           const SolveOptions& options, RunReport& report) const {
+    std::vector<double> times = options.output_times;
+    times.resize(motion.states.size());
+    if (times.empty() || !motion.samples) return std::vector<double>(times.size(), 0);
+    std::vector<double> stops = motion.stops;
+    stops.insert(stops.end(), discontinuities_.begin(), discontinuities_.end());
+    const ModelBound bound(system_, options.begin, motion.begin, system_.blocks());
+    ModelDistance found = bound.run(
+        start, motion.samples, times, motion.states, stops,
+        {.tolerance = unresolved * options.tolerance, .absolute_scale = options.absolute_scale});
+    if (!found.message.empty()) report.message = found.message;
+    report.effort.evaluations = found.evaluations;
+    report.all_evaluations = found.evaluations;
+    report.sizes = std::move(found.sizes);
+    return std::move(found.bounds);
+  }
+
+  void note_invariants(Trajectory<JointState>& run, double begin, const JointState& start) const {
+    for (const auto& [name, value] : conserved(begin, start)) {
+      run.report.invariants.push_back({name, value, 0});
+    }
+    for (std::size_t i = 0; i < run.states.size(); ++i) {
+      const auto now = conserved(run.times[i], run.states[i]);
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        InvariantDrift& drift = run.report.invariants[k];
+        drift.largest = std::max(drift.largest, std::abs(now[k].second - drift.start));
+      }
     }
   }
 
+  /// Calls on_output, which may end the run.
+  static void show(Trajectory<JointState>& run, const OnOutput& on_output) {
+    if (!on_output) return;
+    for (std::size_t i = 0; i < run.states.size(); ++i) {
+      if (on_output(run.times[i], run.states[i]) == OutputAction::proceed) continue;
+      run.times.resize(i + 1);
+      run.states.resize(i + 1);
+      run.errors.resize(i + 1);
+      run.report.status = RunStatus::cancelled;
+      run.report.message = "stopped by on_output";
+      return;
+    }
+  }
+
+  /// The greatest distance from the exact motion, which is computed.
+  [[nodiscard]] double distance(const Trajectory<JointState>& run, const SolveOptions& options,
+                                const JointState& start) const {
+    const Trajectory<JointState> exact = exact_->solve(options, start);
+    ErrorMeasure<Measured> measure({system_.blocks()}, options.absolute_scale);
+    measure.note_sizes(run.report.sizes);
+    double result = 0;
+    const std::size_t count = std::min(run.states.size(), exact.states.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      result = std::max(result, measure(joined(run.states[i]), joined(exact.states[i])));
+    }
+    return result;
+  }
+
   std::unique_ptr<SceneSolver> exact_;
-  Motion motion_;
+  StudySystem system_;
+  SceneApproximation approximation_;
+  std::vector<double> discontinuities_;
+  bool compares_;
   mutable double model_error_ = 0;
+  mutable std::optional<double> distance_;
 };
+
+[[noreturn]] void refuse(const SceneFile& scene, const char* what) {
+  throw InvalidInput("model '" + std::string(name(scene.model)) + "' is for " + what +
+                     "; take model 'small' or 'exact'");
+}
 
 }  // namespace
 
 std::unique_ptr<SceneSolver> make_approximation(const SceneFile& scene,
                                                 std::unique_ptr<SceneSolver> exact) {
-  if (scene.model != SceneModel::exact && !scene.discontinuities.empty()) {
-    throw InvalidInput("model '" + std::string(name(scene.model)) +
-                       "' is for forces that do not jump; take model 'exact'");
+  if (scene.model == SceneModel::exact) return exact;
+  if (scene.model != SceneModel::small) {
+    if (!scene.discontinuities.empty()) refuse(scene, "forces that do not jump");
+    if (!scene.constraints.empty()) refuse(scene, "scenes without constraints");
+    if (!scene.controllers.empty()) refuse(scene, "scenes without controllers");
   }
-  if (scene.model != SceneModel::exact && !scene.constraints.empty()) {
-    throw InvalidInput("model '" + std::string(name(scene.model)) +
-                       "' is for scenes without constraints; take model 'exact'");
+  const auto is_sampled = [](const Controller& controller) { return controller.period > 0; };
+  if (std::any_of(scene.controllers.begin(), scene.controllers.end(), is_sampled)) {
+    throw InvalidInput(
+        "model 'small' is for continuous controllers, and one has a period; take model 'exact'");
   }
-  switch (scene.model) {
-    case SceneModel::linear:
-      return std::make_unique<Approximation<LinearMotion>>(scene, std::move(exact));
-    case SceneModel::precession:
-      return std::make_unique<Approximation<PrecessionMotion>>(scene, std::move(exact));
-    case SceneModel::foeppl:
-    case SceneModel::fuchs_weigand:
-      return std::make_unique<Approximation<GimbalMotion>>(scene, std::move(exact));
-    case SceneModel::exact: break;
-  }
-  return exact;
+  return std::make_unique<Approximation>(scene, std::move(exact));
 }
 
 }  // namespace kreisel

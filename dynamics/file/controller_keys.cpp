@@ -323,9 +323,11 @@ void read_controllers(Section& root, bool sound, SceneFile& scene) {
     const std::size_t before = section.mistakes();
     Controller controller = reader.read(section, name);
     section.finish();
-    if (scene.model != SceneModel::exact) {
-      section.refuse_all(std::string("needs the model 'exact', not '") +
-                         kreisel::name(scene.model) + "'");
+    const bool is_linear = scene.model == SceneModel::small && controller.period == 0;
+    if (scene.model != SceneModel::exact && !is_linear) {
+      section.refuse_all(
+          std::string("needs the model 'exact', or 'small' without a period, not '") +
+          kreisel::name(scene.model) + "'");
     }
     if (sound && section.mistakes() == before) {
       append_memory(section, controller, scene);

@@ -8,10 +8,10 @@
 
 namespace kreisel {
 
-/// Coordinates and rates of joints as one vector.
+/// Coordinates and rates of joints, and the memory of controllers, as one vector.
 [[nodiscard]] inline Eigen::VectorXd joined(const JointState& state) {
-  Eigen::VectorXd y(state.coordinates.size() + state.rates.size());
-  y << state.coordinates, state.rates;
+  Eigen::VectorXd y(state.coordinates.size() + state.rates.size() + state.memory.size());
+  y << state.coordinates, state.rates, state.memory;
   return y;
 }
 

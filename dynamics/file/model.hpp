@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,8 +28,10 @@ class SceneSolver {
                                                      const JointState& start,
                                                      const OnOutput& on_output = nullptr) const = 0;
 
-  /// The error of the model's equations in the latest run; 0 for the exact equations.
+  /// The bound of the error of the model's equations in the latest run; 0 for the exact equations.
   [[nodiscard]] virtual double model_error() const { return 0; }
+  /// The distance from the exact motion in that run, if it was compared.
+  [[nodiscard]] virtual std::optional<double> model_distance() const { return std::nullopt; }
 
   [[nodiscard]] virtual const BodyTree& tree() const = 0;
   [[nodiscard]] virtual JointReactions reactions(double t, const JointState& state) const = 0;

@@ -169,12 +169,16 @@ class SceneReader {
 
   void read_model(Section& solve) {
     using enum SceneModel;
-    const SceneModel models[] = {exact, linear, precession, foeppl, fuchs_weigand};
+    const SceneModel models[] = {exact, linear, small, precession, foeppl, fuchs_weigand};
     std::vector<std::string> names;
     for (const SceneModel model : models) names.emplace_back(name(model));
     const std::string chosen = solve.choice("model", names);
     for (const SceneModel model : models) {
       if (chosen == name(model)) scene_.model = model;
+    }
+    scene_.compare = solve.flag("compare");
+    if (scene_.compare && scene_.model == exact) {
+      solve.refuse("compare", "compares an approximation with the exact motion; give a 'model'");
     }
   }
 

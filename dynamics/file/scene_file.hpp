@@ -128,6 +128,7 @@ struct JointStart {
 enum class SceneModel {
   exact,
   linear,        ///< about the steady motion at or next to the start
+  small,         ///< about the start's position, on any guide: SmallMotion
   precession,    ///< technical equations, without nutations
   foeppl,        ///< small oscillations of a Cardan gyro with a symmetric rotor
   fuchs_weigand  ///< small oscillations with a rotor of any moments at constant speed
@@ -138,6 +139,7 @@ enum class SceneModel {
   switch (model) {
     case SceneModel::exact: return "exact";
     case SceneModel::linear: return "linear";
+    case SceneModel::small: return "small";
     case SceneModel::precession: return "precession";
     case SceneModel::foeppl: return "foeppl";
     case SceneModel::fuchs_weigand: return "fuchs-weigand";
@@ -172,6 +174,7 @@ struct SceneFile {
   double tolerance = 1e-10;
   Method method = Method::automatic;
   SceneModel model = SceneModel::exact;
+  bool compare = false;              ///< an approximation with the exact motion
   std::vector<double> output_times;  ///< in order, within [t_begin, t_end]
   std::vector<double>
       discontinuities;         ///< times of jumps of forces, in order, within (t_begin, t_end]

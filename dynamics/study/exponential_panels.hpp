@@ -45,6 +45,9 @@ class ExponentialPanels {
   /// The polynomial at the nodes and, in the last column, at the end of its panel.
   [[nodiscard]] KREISEL_API static Eigen::MatrixXd values(const Eigen::MatrixXd& coefficients);
 
+  /// The derivative of the polynomial by the fraction of the panel, at the same places.
+  [[nodiscard]] KREISEL_API static Eigen::MatrixXd derivatives(const Eigen::MatrixXd& coefficients);
+
   /// x at the nodes and, in the last column, at the end of a panel of length h.
   [[nodiscard]] KREISEL_API Eigen::MatrixXd solution(double h, const Eigen::VectorXd& start,
                                                      const Eigen::MatrixXd& coefficients) const;

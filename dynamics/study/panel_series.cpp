@@ -17,6 +17,10 @@ constexpr int nodes = ExponentialPanels::nodes;
 /// The part of the time below which a panel is short by a kink or a jump of the function.
 constexpr double shortest_smooth = 1e-6;
 
+/// Coefficients up to so many times the rounding of the function may be rounding of its own parts,
+/// as of an ill-conditioned mass matrix. They are, if a shorter panel does not make them smaller.
+constexpr double amplified_rounding = 1e5;
+
 /// The greatest change of a function over times that differ by rounding.
 VectorXd rounding_of(const PanelSeries::Function& function, double begin, double end) {
   VectorXd result;
@@ -29,6 +33,10 @@ VectorXd rounding_of(const PanelSeries::Function& function, double begin, double
     }
   }
   return result;
+}
+
+VectorXd last_two(const MatrixXd& coefficients) {
+  return coefficients.rightCols(2).cwiseAbs().rowwise().sum();
 }
 
 /// The last two coefficients, times their ratio to the two before: an estimate of those left out.
@@ -53,7 +61,9 @@ VectorXd truncation(const MatrixXd& coefficients, const VectorXd& rounding) {
 PanelSeries::PanelSeries(const Function& function, double begin, double end,
                          const std::vector<double>& breaks, VectorXd rounding, double relative) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const VectorXd most_rounding = amplified_rounding * rounding;
   rounding += rounding_of(function, begin, end);
+  VectorXd of_longer;  // the last two coefficients of the panel that was halved
   VectorXd size = VectorXd::Zero(rounding.size());
   std::vector<double> stops = breaks;
   std::erase_if(stops, [end](double t) { return t >= end; });
@@ -67,14 +77,21 @@ PanelSeries::PanelSeries(const Function& function, double begin, double end,
     }
     size = size.cwiseMax(values.cwiseAbs().rowwise().maxCoeff());
     const MatrixXd coefficients = ExponentialPanels::coefficients(values);
+    const VectorXd last = last_two(coefficients);
+    for (Eigen::Index i = 0; i < of_longer.size(); ++i) {
+      const bool falls = last[i] < of_longer[i] / 2;
+      if (!falls && last[i] <= most_rounding[i]) rounding[i] = std::max(rounding[i], last[i]);
+    }
     const VectorXd off = truncation(coefficients, 8 * (rounding + epsilon * size));
     // Panels too short to matter may contain a kink or a jump.
     const double shortness = std::max(1.0, shortest_smooth * (end - begin) / h);
     const VectorXd allowed = shortness * shortness * relative * size;
     if ((off.array() > allowed.array()).any()) {
       panels.halve();
+      of_longer = last;
       continue;
     }
+    of_longer.resize(0);
     panels_.push_back({t, h, coefficients});
     panels.advance((off.array() <= std::ldexp(1.0, -nodes) * allowed.array()).all());
   }

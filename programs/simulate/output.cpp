@@ -71,8 +71,7 @@ std::vector<TermLine> equation_terms(const Result& result, bool kept) {
   return terms;
 }
 
-/// The parts of the error, each at its maximum. The error of the exact run beside an approximation
-/// is in the sum alone.
+/// The parts of the error, each at its maximum.
 struct ErrorSources {
   double integration = 0;
   double log = 0;
@@ -199,6 +198,9 @@ std::vector<TermLine> terms_dropped(const Result& result) {
     terms.push_back(
         {"what is not linear", "in the departure from the steady motion next to the start"});
   }
+  if (scene.model == kreisel::SceneModel::small) {
+    terms.push_back({"what is not linear", "in the departure from the position of the start"});
+  }
   if (scene.model == kreisel::SceneModel::precession) {
     terms.push_back(
         {"nutations",
@@ -256,11 +258,12 @@ ordered_json summary(const Result& result) {
         {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
   }
   const ErrorSources parts = error_sources(result);
-  const ordered_json error{{"integration", json(parts.integration)},
-                           {"truncation", json(r.error_parts.truncation)},
-                           {"rounding", json(r.error_parts.rounding)},
-                           {"log", json(parts.log)},
-                           {"model", json(parts.model)}};
+  ordered_json error{{"integration", json(parts.integration)},
+                     {"truncation", json(r.error_parts.truncation)},
+                     {"rounding", json(r.error_parts.rounding)},
+                     {"log", json(parts.log)},
+                     {"model", json(parts.model)}};
+  if (const auto distance = result.model.model_distance()) error["distance"] = json(*distance);
   const auto whole = [](double count) { return static_cast<long long>(count); };
   return {{"title", result.scene.title},
           {"method", r.method},
@@ -327,6 +330,10 @@ void print_summary(const Result& result) {
   if (logged) {
     fmt::print("          error_of_integration {:.1e}\n          error_of_log {:.1e}\n",
                parts.integration, parts.log);
+  }
+  if (const auto distance = result.model.model_distance()) {
+    fmt::print("          error_of_model {:.1e} at most, {:.1e} by comparison\n", parts.model,
+               *distance);
   }
   for (const auto& [name, start, largest] : r.invariants) {
     fmt::print("constant  {} = {:.15g}, off by up to {:.1e}\n", kreisel::printable(name, 120),

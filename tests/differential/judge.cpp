@@ -338,9 +338,8 @@ class Judge {
       const JointValues* const y = state_at(answer, reference_.times[i]);
       if (y != nullptr) off = std::max(off, distance(*y, reference_.others[i]));
     }
-    if (std::abs(off - model_error) <= 0.05 * std::max(off, model_error) + 10 * answer.tolerance) {
-      return;
-    }
+    const double slack = 10 * answer.tolerance;
+    if (off <= 1.2 * model_error + slack && off >= 0.1 * model_error - slack) return;
     add("model " + scene_.model + " reports another error",
         fmt::format("{:.3g}, and is off by {:.3g}", model_error, off));
   }
