@@ -208,6 +208,8 @@ class Errors(unittest.TestCase):
             scene().with_values({"body.rod.mass": -1})
         with self.assertRaisesRegex(kreisel.SceneMistakes, r"body\.rud\.mass.*did you mean 'rod'"):
             scene().with_values({"body.rud.mass": 1})
+        with self.assertRaisesRegex(kreisel.SceneMistakes, "is no key"):
+            scene().with_values({"": 1})
 
     def test_a_missed_tolerance_is_a_warning(self):
         with self.assertWarns(kreisel.ToleranceMissed):

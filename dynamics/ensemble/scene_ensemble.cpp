@@ -14,7 +14,7 @@ namespace kreisel {
 namespace {
 
 /// A number in TOML, exact to the last bit. Integers of TOML have 64 bits.
-std::string toml(double x) {
+std::string toml_number(double x) {
   std::array<char, 32> digits{};
   char* const begin = digits.data();
   char* const end = begin + digits.size();
@@ -70,7 +70,7 @@ SolveRequest SceneEnsemble::with(const std::vector<double>& numbers) const {
   std::size_t i = 0;
   for (const Variation& variation : request_.variations) {
     for (const std::string& key : variation.keys) {
-      solve.settings.push_back({key, toml(numbers[i++]), "--vary " + variation.text});
+      solve.settings.push_back({key, toml_number(numbers[i++]), "--vary " + variation.text});
     }
   }
   return solve;

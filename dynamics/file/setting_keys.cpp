@@ -134,6 +134,12 @@ void add(toml::table* table, std::string_view rest, toml::node&& value) {
   table->insert(toml::key(rest, place), std::move(value));
 }
 
+/// True if the text is words with one dot between each.
+bool is_path(std::string_view text) {
+  const std::string dotted = '.' + std::string(text) + '.';
+  return dotted.find("..") == std::string::npos && text.find_first_of("[]") == std::string::npos;
+}
+
 void replace(const Walk& walk, toml::node&& value) {
   if (toml::table* const table = walk.parent->as_table()) {
     table->insert_or_assign(walk.word, std::move(value));
@@ -157,13 +163,12 @@ void apply(const SceneSetting& setting, toml::table& root, Mistakes& mistakes) {
   if (std::count(setting.key.begin(), setting.key.end(), '.') > deepest) {
     return refuse("is nested more than 64 deep; no scene is");
   }
+  if (setting.key.empty() || setting.key.back() == '.') return refuse("is no key");
   const Walk walk = walk_along(root, setting.key);
   if (walk.rest.empty() && walk.node->source().path) return refuse("is given twice");
   if (walk.rest.empty()) return replace(walk, std::move(value));
   toml::table* const table = walk.node->as_table();
-  const bool is_path = walk.rest.find_first_of("[]") == std::string_view::npos &&
-                       walk.rest.find("..") == std::string_view::npos && walk.rest.back() != '.';
-  if (table == nullptr || !is_path) return refuse(not_in_file(walk));
+  if (table == nullptr || !is_path(walk.rest)) return refuse(not_in_file(walk));
   add(table, walk.rest, std::move(value));
 }
 

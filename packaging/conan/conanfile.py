@@ -24,7 +24,8 @@ class Kreisel(ConanFile):
 
     def export_sources(self):
         root = os.path.join(self.recipe_folder, "..", "..")
-        for pattern in ("CMakeLists.txt", "README.md", "LICENSE", "motor/*", "dynamics/*", "docs/*", "examples/*",
+        for pattern in ("CMakeLists.txt", "README.md", "LICENSE", "CHANGELOG.md",
+                        "CONTRIBUTING.md", "motor/*", "dynamics/*", "docs/*", "examples/*",
                         "programs/*", "packaging/*"):
             copy(self, pattern, root, self.export_sources_folder)
 

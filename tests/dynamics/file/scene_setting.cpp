@@ -74,6 +74,7 @@ BOOST_AUTO_TEST_CASE(mistakes_name_setting_and_key) {
       {"gravity.vector[-1]=1", "there is no '[-1]' in the file"},
       {"gravity.vector.x=1", "there is no 'x' in the file"},
       {"solve..t_end=1", "there is no '.t_end' in the file"},
+      {"body.=1", "--set body.=1: body.: is no key"},
       {"body.a.mass=[[1", "--set body.a.mass=[[1: is no TOML"},
       {"body.a.mass=it's", "--set body.a.mass=it's: is no TOML"},
       {"body.a.mass=1\nbody=2", "give one value"}};
