@@ -10,8 +10,8 @@ namespace kreisel {
 /// An approximation computes states by its own equations and all else by the exact equations. Its
 /// error is that of ModelBound. The exact motion is computed only for SceneFile::compare.
 ///
-/// linear        : eta' = A eta about a steady motion.
-/// small         : paper 002 section 8 about the position of the start, SmallMotion.
+/// linear        : about a steady motion
+/// small         : about the position of the start, SmallMotion
 /// precession    : technical equations, which have no angles of rotors
 /// foeppl        : paper 002 (50), FoepplGyro
 /// fuchs-weigand : paper 002 (49), UnsymmetricRotor

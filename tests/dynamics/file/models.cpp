@@ -51,7 +51,7 @@ class RandomScene {
     const int bodies = 1 + below(3);
     for (int i = 0; i < bodies; ++i) result += body(i);
     if (chance(0.5)) result += rotor(bodies - 1);
-    return result + solve_part("small", between(0.5, 20));
+    return result + solve_part("small", between(0.5, 8));
   }
 
  private:
@@ -129,7 +129,7 @@ std::string tilted(double off) {
 
 BOOST_AUTO_TEST_SUITE(models_of_a_scene_file)
 
-// true error / bound in [0.1, 1] for 95 % and never above 1.2. KREISEL_RANDOM_SCENES sets their number.
+// true error / bound in [0.1, 1] for 95 % and never above 1.2. KREISEL_RANDOM_SCENES sets another number.
 BOOST_AUTO_TEST_CASE(bounds_of_random_scenes) {
   const char* const asked = std::getenv("KREISEL_RANDOM_SCENES");
   const int count = asked != nullptr ? std::atoi(asked) : 300;

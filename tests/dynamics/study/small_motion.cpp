@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(a_pendulous_gyrocompass_has_its_period) {
   const double slow =
       std::sqrt(2 * c / (b + std::sqrt(b * b - 4 * outer_moment * inner_moment * c)));
   BOOST_TEST(std::abs(w - slow) < 1e-8 * slow, w / slow - 1);
-  // The law of the course leaves out A B/H^2 of w^2: 3.4e-7.
+  // The law without A leaves out A B/H^2 of w^2, 3.4e-7.
   BOOST_TEST(std::abs(w - std::sqrt(u * (B + H * u) / H)) < 4e-7 * w);
 }
 
