@@ -143,7 +143,9 @@ class Approximation final : public SceneSolver {
   /// The greatest distance from the exact motion, which is computed.
   [[nodiscard]] double distance(const Trajectory<JointState>& run, const SolveOptions& options,
                                 const JointState& start) const {
-    const Trajectory<JointState> exact = exact_->solve(options, start);
+    SolveOptions plain = options;
+    plain.offer_checkpoint = nullptr;  // those of a file of rows belong to the approximation
+    const Trajectory<JointState> exact = exact_->solve(plain, start);
     ErrorMeasure<Measured> measure({system_.blocks()}, options.absolute_scale);
     measure.note_sizes(run.report.sizes);
     double result = 0;
