@@ -190,7 +190,7 @@ Response response_of(const StudySystem& system, const SceneFile& scene, const An
 /// motion.
 FoundPeriod period_of(const StudySystem& system, const SceneFile& scene,
                       const AnalysisRequest& request, const VectorXd& start, const Steady& steady) {
-  if (request.period) return {*request.period, ""};
+  if (request.period) return {*request.period, "", true};
   return steady.exists() ? FoundPeriod{} : find_period(system, scene, start);
 }
 
@@ -209,6 +209,13 @@ void add_multipliers(const StudySystem& system, const SceneFile& scene,
         has_link<scene_guide::Harmonic>(scene) || scene.guide_follows_log() || scene.forces_change;
     if (changes && !found.reason.empty()) refuse(found.reason + "; --period gives one by hand");
     return;
+  }
+  const bool is_quick = found.is_only && scene.frequencies.empty();
+  if (!request.period && !request.response && !is_quick) {
+    return refuse(
+        fmt::format("{}the period is {:.9g} s, and --period {:.17g} computes them",
+                    found.is_only ? "" : "the equations change with several frequencies; ",
+                    found.period, found.period));
   }
   if (system.has_samples()) return refuse("controllers are sampled");
   if (const double misses = field_misses(system, start, found.period); misses > 1e-9) {

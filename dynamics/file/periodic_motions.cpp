@@ -60,7 +60,10 @@ FoundPeriod common_period_of(const std::vector<double>& frequencies) {
   if (periods.empty()) {
     return {0, "no joint at a constant rate and no oscillating function of time gives one"};
   }
-  if (const auto period = detail::common_multiple(periods)) return {*period, ""};
+  if (const auto period = detail::common_multiple(periods)) {
+    const auto is_whole = [&period](double own) { return own > 0.99 * *period; };
+    return {*period, "", std::all_of(periods.begin(), periods.end(), is_whole)};
+  }
   return {0,
           "the equations change with several frequencies, and their periods have no common "
           "multiple up to 1000 times the longest"};

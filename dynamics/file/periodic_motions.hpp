@@ -15,8 +15,9 @@ namespace kreisel {
 
 /// The period of a scene's equations.
 struct FoundPeriod {
-  double period = 0;   ///< s; 0: none is found
-  std::string reason;  ///< why there is none
+  double period = 0;     ///< s; 0: none is found
+  std::string reason;    ///< why there is none
+  bool is_only = false;  ///< it is that of all parts: no common multiple of several
 };
 
 /// The period that follows from the scene: the shortest common multiple of all periods in it. They
