@@ -57,7 +57,7 @@ class Approximation final : public SceneSolver {
     if (!report.message.empty()) report.status = RunStatus::failed;
     note_invariants(result, options.begin, start);
     show(result, on_output);
-    distance_ = compares_ ? std::optional(distance(result, options, start)) : std::nullopt;
+    distance_ = compares_ ? distance(result, options, start) : std::nullopt;
     report.run_time =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return result;
@@ -140,12 +140,14 @@ class Approximation final : public SceneSolver {
     }
   }
 
-  /// The greatest distance from the exact motion, which is computed.
-  [[nodiscard]] double distance(const Trajectory<JointState>& run, const SolveOptions& options,
-                                const JointState& start) const {
+  /// The greatest distance from the exact motion, which is computed; nothing if its run ends early.
+  [[nodiscard]] std::optional<double> distance(const Trajectory<JointState>& run,
+                                               const SolveOptions& options,
+                                               const JointState& start) const {
     SolveOptions plain = options;
     plain.offer_checkpoint = nullptr;  // those of a file of rows belong to the approximation
     const Trajectory<JointState> exact = exact_->solve(plain, start);
+    if (exact.report.status != RunStatus::complete) return std::nullopt;
     ErrorMeasure<Measured> measure({system_.blocks()}, options.absolute_scale);
     measure.note_sizes(run.report.sizes);
     double result = 0;
