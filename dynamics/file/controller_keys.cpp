@@ -323,8 +323,9 @@ void read_controllers(Section& root, bool sound, SceneFile& scene) {
     const std::size_t before = section.mistakes();
     Controller controller = reader.read(section, name);
     section.finish();
-    const bool is_linear = scene.model == SceneModel::small && controller.period == 0;
-    if (scene.model != SceneModel::exact && !is_linear) {
+    if (scene.model == SceneModel::small && controller.period > 0) {
+      section.refuse_all("needs the model 'exact', because it has a period");
+    } else if (scene.model != SceneModel::exact && scene.model != SceneModel::small) {
       section.refuse_all(
           std::string("needs the model 'exact', or 'small' without a period, not '") +
           kreisel::name(scene.model) + "'");

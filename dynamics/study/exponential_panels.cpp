@@ -15,9 +15,8 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr int nodes = ExponentialPanels::nodes;
-using Square = Eigen::Matrix<double, nodes, nodes>;
-using Numbers = Eigen::Matrix<double, nodes, 1>;
+using AtNodes = Eigen::Matrix<double, panel_nodes, panel_nodes>;
+using Fractions = ExponentialPanels::Fractions;
 
 /// P_0 .. P_n at x in [-1, 1].
 template <int n>
@@ -31,17 +30,17 @@ Eigen::Matrix<double, n + 1, 1> legendre(double x) {
 
 /// Gauss nodes and weights on [0, 1], by Newton's method.
 struct Gauss {
-  Numbers node;
-  Numbers weight;
+  Fractions node;
+  Fractions weight;
 
   Gauss() {
-    for (int i = 0; i < nodes; ++i) {
-      double x = -std::cos(std::numbers::pi * (i + 0.75) / (nodes + 0.5));
+    for (int i = 0; i < panel_nodes; ++i) {
+      double x = -std::cos(std::numbers::pi * (i + 0.75) / (panel_nodes + 0.5));
       double slope = 0;
       for (int step = 0; step < 8; ++step) {
-        const auto P = legendre<nodes>(x);
-        slope = nodes * (x * P[nodes] - P[nodes - 1]) / (x * x - 1);
-        x -= P[nodes] / slope;
+        const auto P = legendre<panel_nodes>(x);
+        slope = panel_nodes * (x * P[panel_nodes] - P[panel_nodes - 1]) / (x * x - 1);
+        x -= P[panel_nodes] / slope;
       }
       node[i] = (1 + x) / 2;
       weight[i] = 1 / ((1 - x * x) * slope * slope);
@@ -55,32 +54,32 @@ const Gauss& gauss() {
 }
 
 /// Column j has P_0 .. P_m-1 at the place in [from, to] of node j.
-Square polynomials(double from, double to) {
-  Square P;
-  for (int j = 0; j < nodes; ++j) {
+AtNodes polynomials(double from, double to) {
+  AtNodes P;
+  for (int j = 0; j < panel_nodes; ++j) {
     const double place = from + (to - from) * gauss().node[j];
-    P.col(j) = legendre<nodes>(2 * place - 1).template head<nodes>();
+    P.col(j) = legendre<panel_nodes>(2 * place - 1).template head<panel_nodes>();
   }
   return P;
 }
 
 /// Values at the nodes, as rows, to coefficients: (2 k + 1) w_j P_k(x_j).
-const Square& to_coefficients() {
-  static const Square matrix = [] {
-    Square m = gauss().weight.asDiagonal() * polynomials(0, 1).transpose();
-    for (int k = 0; k < nodes; ++k) m.col(k) *= 2 * k + 1;
+const AtNodes& to_coefficients() {
+  static const AtNodes matrix = [] {
+    AtNodes m = gauss().weight.asDiagonal() * polynomials(0, 1).transpose();
+    for (int k = 0; k < panel_nodes; ++k) m.col(k) *= 2 * k + 1;
     return m;
   }();
   return matrix;
 }
 
 /// Row k has the coefficients of P_k on the part [from, to] of its panel.
-Square restriction(double from, double to) { return polynomials(from, to) * to_coefficients(); }
+AtNodes restriction(double from, double to) { return polynomials(from, to) * to_coefficients(); }
 
 /// e^(B s), and W_k(s) for polynomials on [0, s].
 struct Weights {
   MatrixXd exponential;
-  std::array<MatrixXd, nodes> W;
+  std::array<MatrixXd, panel_nodes> W;
 };
 
 /// The Taylor series for |B| s < 1/2:  W_k = sum_p s^(p+1) B^p (-1)^k p!/((p-k)! (p+k+1)!).
@@ -99,7 +98,7 @@ Weights short_weights(const MatrixXd& B, double s) {
     }
     // p!/((p-k)! (p+k+1)!) for k = 0, 1, ..
     double share = 1 / (factorial * (p + 1));
-    for (int k = 0; k <= std::min(p, nodes - 1); ++k) {
+    for (int k = 0; k <= std::min(p, panel_nodes - 1); ++k) {
       result.W[std::size_t(k)] += (k % 2 == 0 ? s : -s) * share * power;
       share *= double(p - k) / (p + k + 2);
     }
@@ -107,25 +106,27 @@ Weights short_weights(const MatrixXd& B, double s) {
   return result;
 }
 
-std::array<MatrixXd, nodes> combined(const Square& shares, const std::array<MatrixXd, nodes>& W) {
-  std::array<MatrixXd, nodes> result;
-  for (int k = 0; k < nodes; ++k) {
+std::array<MatrixXd, panel_nodes> combined(const AtNodes& shares,
+                                           const std::array<MatrixXd, panel_nodes>& W) {
+  std::array<MatrixXd, panel_nodes> result;
+  for (int k = 0; k < panel_nodes; ++k) {
     result[std::size_t(k)] = MatrixXd::Zero(W[0].rows(), W[0].cols());
-    for (int l = 0; l < nodes; ++l) result[std::size_t(k)] += shares(k, l) * W[std::size_t(l)];
+    for (int l = 0; l < panel_nodes; ++l)
+      result[std::size_t(k)] += shares(k, l) * W[std::size_t(l)];
   }
   return result;
 }
 
 Weights weights(const MatrixXd& B, double s) {
-  static const Square left = restriction(0, 0.5);
-  static const Square right = restriction(0.5, 1);
+  static const AtNodes left = restriction(0, 0.5);
+  static const AtNodes right = restriction(0.5, 1);
   const double size = B.cwiseAbs().colwise().sum().maxCoeff() * s;
   const int doublings = size > 0.5 ? static_cast<int>(std::ceil(std::log2(2 * size))) : 0;
   Weights result = short_weights(B, std::ldexp(s, -doublings));
   for (int i = 0; i < doublings; ++i) {
     const auto of_left = combined(left, result.W);
     const auto of_right = combined(right, result.W);
-    for (std::size_t k = 0; k < nodes; ++k) {
+    for (std::size_t k = 0; k < panel_nodes; ++k) {
       result.W[k].noalias() = result.exponential * of_left[k];
       result.W[k] += of_right[k];
     }
@@ -167,17 +168,17 @@ MatrixXd ExponentialPanels::on_part(const MatrixXd& coefficients, double from, d
 }
 
 MatrixXd ExponentialPanels::values(const MatrixXd& coefficients) {
-  static const Square at_nodes = polynomials(0, 1);
-  MatrixXd result(coefficients.rows(), nodes + 1);
-  result.leftCols(nodes) = coefficients * at_nodes;
-  result.col(nodes) = coefficients.rowwise().sum();  // P_k(1) = 1
+  static const AtNodes at_nodes = polynomials(0, 1);
+  MatrixXd result(coefficients.rows(), panel_nodes + 1);
+  result.leftCols(panel_nodes) = coefficients * at_nodes;
+  result.col(panel_nodes) = coefficients.rowwise().sum();  // P_k(1) = 1
   return result;
 }
 
 MatrixXd ExponentialPanels::derivatives(const MatrixXd& coefficients) {
   // P_k' = sum over j = k - 1, k - 3, .. of (2 j + 1) P_j, and the chain rule's 2.
-  MatrixXd of_derivative = MatrixXd::Zero(coefficients.rows(), nodes);
-  for (int k = 1; k < nodes; ++k) {
+  MatrixXd of_derivative = MatrixXd::Zero(coefficients.rows(), panel_nodes);
+  for (int k = 1; k < panel_nodes; ++k) {
     for (int j = k - 1; j >= 0; j -= 2) {
       of_derivative.col(j) += 2 * (2 * j + 1) * coefficients.col(k);
     }
@@ -188,7 +189,7 @@ MatrixXd ExponentialPanels::derivatives(const MatrixXd& coefficients) {
 MatrixXd ExponentialPanels::solution(double h, const VectorXd& start,
                                      const MatrixXd& coefficients) const {
   const Propagator& of = propagator(h);
-  MatrixXd x(start.size(), nodes + 1);
+  MatrixXd x(start.size(), panel_nodes + 1);
   const Eigen::Map<const VectorXd> force(coefficients.data(), coefficients.size());
   Eigen::Map<VectorXd> all(x.data(), x.size());
   all.noalias() = of.of_start * start;
@@ -200,7 +201,7 @@ VectorXd ExponentialPanels::contribution(const Propagator& of, const MatrixXd& c
                                          int k) const {
   const Eigen::Index n = A_.rows();
   VectorXd result = VectorXd::Zero(n);
-  for (int i = 0; i <= nodes; ++i) {
+  for (int i = 0; i <= panel_nodes; ++i) {
     const VectorXd even = of.of_force.block(i * n, k * n, n, n) * coefficients.col(k);
     const VectorXd odd = of.of_force.block(i * n, (k + 1) * n, n, n) * coefficients.col(k + 1);
     result = result.cwiseMax(even.cwiseAbs() + odd.cwiseAbs());
@@ -210,8 +211,8 @@ VectorXd ExponentialPanels::contribution(const Propagator& of, const MatrixXd& c
 
 VectorXd ExponentialPanels::truncation(double h, const MatrixXd& coefficients) const {
   const Propagator& of = propagator(h);
-  const VectorXd last = contribution(of, coefficients, nodes - 2);
-  const VectorXd before = contribution(of, coefficients, nodes - 4);
+  const VectorXd last = contribution(of, coefficients, panel_nodes - 2);
+  const VectorXd before = contribution(of, coefficients, panel_nodes - 4);
   VectorXd result = last;
   for (Eigen::Index i = 0; i < last.size(); ++i) {
     if (last[i] < before[i]) result[i] *= last[i] / before[i];
@@ -225,16 +226,17 @@ const ExponentialPanels::Propagator& ExponentialPanels::propagator(double h) con
   if (near != known_.end() && near->first <= h * (1 + 1e-12)) return near->second;
   if (known_.size() >= 256) known_.clear();
   const Eigen::Index n = A_.rows();
-  Propagator result{MatrixXd((nodes + 1) * n, n), MatrixXd((nodes + 1) * n, nodes * n)};
+  Propagator result{MatrixXd((panel_nodes + 1) * n, n),
+                    MatrixXd((panel_nodes + 1) * n, panel_nodes * n)};
   const auto unbalanced = [this](const MatrixXd& M) {
     return MatrixXd(balance_.asDiagonal() * M * balance_.cwiseInverse().asDiagonal());
   };
-  for (int i = 0; i <= nodes; ++i) {
-    const double fraction = i < nodes ? fractions()[i] : 1;
+  for (int i = 0; i <= panel_nodes; ++i) {
+    const double fraction = i < panel_nodes ? fractions()[i] : 1;
     const Weights own = weights(balanced_, fraction * h);
     const auto W = combined(restriction(0, fraction), own.W);
     result.of_start.middleRows(i * n, n) = unbalanced(own.exponential);
-    for (int k = 0; k < nodes; ++k) {
+    for (int k = 0; k < panel_nodes; ++k) {
       result.of_force.block(i * n, k * n, n, n) = unbalanced(W[std::size_t(k)]);
     }
   }

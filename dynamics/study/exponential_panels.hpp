@@ -10,6 +10,9 @@
 
 namespace kreisel {
 
+/// Gauss nodes of a panel.
+inline constexpr int panel_nodes = 12;
+
 /// Solutions of  x' = A x + g(t)  on panels of the time axis, for any A h: fast oscillations and
 /// stiff decay need no short panels.
 ///
@@ -21,12 +24,11 @@ namespace kreisel {
 ///
 /// Units  : those of x and the time
 /// Error  : rounding, 1e-16 |A| h of x, |A| after balancing
-/// Cost   : nodes (nodes + 1) n^2 products for each panel. The matrices of a length h are computed
+/// Cost   : panel_nodes (panel_nodes + 1) n^2 products for each panel. The matrices of a length h are computed
 ///          once, by doubling from a length with |A| s < 1/2
 class ExponentialPanels {
  public:
-  static constexpr int nodes = 12;
-  using Fractions = Eigen::Matrix<double, nodes, 1>;
+  using Fractions = Eigen::Matrix<double, panel_nodes, 1>;
 
   KREISEL_API explicit ExponentialPanels(const Eigen::MatrixXd& A);
 

@@ -13,12 +13,11 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr int nodes = ExponentialPanels::nodes;
 constexpr int fewest_panels = 16;
 constexpr int most_panels = 16384;
 
 /// The last two coefficients, relative to the greatest value of each component.
-constexpr double resolved = 1e-11;
+constexpr double resolution = 1e-11;
 
 /// A component smaller than this part of the greatest one counts as that large.
 constexpr double smallest_part = 1e-6;
@@ -53,15 +52,15 @@ bool InterpolatedMotion::interpolate(const States& states, int panels) {
   VectorXd last = size;
   coefficients_.clear();
   for (int i = 0; i < panels; ++i) {
-    MatrixXd values(size.size(), nodes);
-    for (int j = 0; j < nodes; ++j) values.col(j) = all[std::size_t(i * nodes + j)];
+    MatrixXd values(size.size(), panel_nodes);
+    for (int j = 0; j < panel_nodes; ++j) values.col(j) = all[std::size_t(i * panel_nodes + j)];
     size = size.cwiseMax(values.cwiseAbs().rowwise().maxCoeff());
     coefficients_.push_back(ExponentialPanels::coefficients(values));
     last = last.cwiseMax(coefficients_.back().rightCols(2).cwiseAbs().rowwise().maxCoeff());
   }
   // Components that are rounding beside the others need no resolution.
   const VectorXd counted = size.cwiseMax(smallest_part * size.maxCoeff());
-  return (last.array() <= resolved * counted.array()).all();
+  return (last.array() <= resolution * counted.array()).all();
 }
 
 std::vector<double> InterpolatedMotion::stops() const {
@@ -82,7 +81,7 @@ MotionSampler InterpolatedMotion::sampler() const {
     const MatrixXd values = ExponentialPanels::values(part);
     const MatrixXd rates = ExponentialPanels::derivatives(part) / h;
     MotionSamples result;
-    for (int j = 0; j <= nodes; ++j) {
+    for (int j = 0; j <= panel_nodes; ++j) {
       result.states.emplace_back(values.col(j));
       result.rates.push_back(tangent_rate(tangent, values.col(j), rates.col(j)));
     }

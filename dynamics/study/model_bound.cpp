@@ -15,7 +15,6 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr int nodes = ExponentialPanels::nodes;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// The factor of |e| in the bound: e is known to 3 %.
@@ -81,7 +80,7 @@ class DeviationRun {
   /// Solves a panel on which the model has these samples.
   Outcome attempt(double t, double h, const MotionSamples& model) {
     VectorXd force_size = VectorXd::Zero(e_.size());
-    MatrixXd g = MatrixXd::Zero(e_.size(), nodes);
+    MatrixXd g = MatrixXd::Zero(e_.size(), panel_nodes);
     x_ = steps_.solution(h, e_, g);
     double before = std::numeric_limits<double>::infinity();
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
@@ -95,18 +94,18 @@ class DeviationRun {
       before = change;
       if (left > allowed) continue;
       clear_rounding(g, force_size);
-      off_ = off_by(steps_.truncation(h, g), model.states[nodes]);
+      off_ = off_by(steps_.truncation(h, g), model.states[panel_nodes]);
       if (off_ > allowed) return Outcome::too_long;
-      return off_ <= std::ldexp(allowed, -nodes) && sweep <= 3 ? Outcome::fits_twice
-                                                               : Outcome::fits;
+      return off_ <= std::ldexp(allowed, -panel_nodes) && sweep <= 3 ? Outcome::fits_twice
+                                                                     : Outcome::fits;
     }
     return Outcome::too_long;
   }
 
   /// Takes over the panel.
   void proceed(const MotionSamples& model) {
-    e_ = x_.col(nodes);
-    for (int j = 0; j <= nodes; ++j) {
+    e_ = x_.col(panel_nodes);
+    for (int j = 0; j <= panel_nodes; ++j) {
       greatest_ = std::max(greatest_, distance(model.states[std::size_t(j)], x_.col(j)));
     }
     doubt_ += off_;
@@ -128,8 +127,8 @@ class DeviationRun {
  private:
   /// e' - A e at the nodes, as columns, for the deviations x_.
   MatrixXd remainders(double t, double h, const MotionSamples& model, VectorXd& size) {
-    MatrixXd result(e_.size(), nodes);
-    for (int j = 0; j < nodes; ++j) {
+    MatrixXd result(e_.size(), panel_nodes);
+    for (int j = 0; j < panel_nodes; ++j) {
       const VectorXd& y = model.states[std::size_t(j)];
       const VectorXd e = x_.col(j);
       const VectorXd rate = field_(t + h * ExponentialPanels::fractions()[j], tangent_.moved(y, e));
@@ -137,20 +136,21 @@ class DeviationRun {
       result.col(j) =
           rate_of_move(tangent_, model.rates[std::size_t(j)], rate, e) - steps_.matrix() * e;
     }
-    evaluations_ += nodes;
+    evaluations_ += panel_nodes;
     return result;
   }
 
   /// The error that a panel may add, in the measure.
   double allowance(double t, double h, const MotionSamples& model) {
-    const double now = std::max(greatest_, distance(model.states[nodes], x_.col(nodes)));
+    const double now =
+        std::max(greatest_, distance(model.states[panel_nodes], x_.col(panel_nodes)));
     const double share = std::max(h / (t + h - begin_), at_a_jump);
     return share * std::max(options_.accuracy * now, options_.tolerance);
   }
 
   double difference(const MotionSamples& model, const MatrixXd& a, const MatrixXd& b) {
     double result = 0;
-    for (const int j : {nodes / 2, nodes}) {
+    for (const int j : {panel_nodes / 2, panel_nodes}) {
       const VectorXd& y = model.states[std::size_t(j)];
       result = std::max(
           result, between(tangent_.moved(y, VectorXd(a.col(j))), tangent_.moved(y, b.col(j))));
@@ -159,7 +159,7 @@ class DeviationRun {
   }
 
   double off_by(const VectorXd& error, const VectorXd& y) {
-    const VectorXd end = x_.col(nodes);
+    const VectorXd end = x_.col(panel_nodes);
     return between(tangent_.moved(y, end), tangent_.moved(y, VectorXd(end + error)));
   }
 
@@ -228,7 +228,7 @@ ModelDistance ModelBound::run(const VectorXd& start, const MotionSampler& motion
     }
     run.proceed(model);
     const bool at_stop = panels.advance(outcome == Outcome::fits_twice);
-    if (at_stop) note(panels.done() ? times.back() : panels.begin(), model.states[nodes]);
+    if (at_stop) note(panels.done() ? times.back() : panels.begin(), model.states[panel_nodes]);
   }
   for (std::size_t i = 0; i < exact.size(); ++i) {
     result.bounds.push_back(caution * run.between(outputs[i], exact[i]) + doubts[i]);

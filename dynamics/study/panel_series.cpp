@@ -12,8 +12,6 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr int nodes = ExponentialPanels::nodes;
-
 /// The part of the time below which a panel is short by a kink or a jump of the function.
 constexpr double shortest_smooth = 1e-6;
 
@@ -44,8 +42,8 @@ VectorXd truncation(const MatrixXd& coefficients, const VectorXd& rounding) {
   const auto size = [&](int k) {
     return VectorXd(coefficients.col(k).cwiseAbs() + coefficients.col(k + 1).cwiseAbs());
   };
-  VectorXd last = size(nodes - 2);
-  const VectorXd before = size(nodes - 4);
+  VectorXd last = size(panel_nodes - 2);
+  const VectorXd before = size(panel_nodes - 4);
   for (Eigen::Index i = 0; i < last.size(); ++i) {
     if (last[i] <= rounding[i]) {
       last[i] = 0;
@@ -71,8 +69,8 @@ PanelSeries::PanelSeries(const Function& function, double begin, double end,
   for (PanelSequence panels(begin, stops); !panels.done();) {
     const double t = panels.begin();
     const double h = panels.length();
-    MatrixXd values(size.size(), nodes);
-    for (int j = 0; j < nodes; ++j) {
+    MatrixXd values(size.size(), panel_nodes);
+    for (int j = 0; j < panel_nodes; ++j) {
       values.col(j) = function(t + h * ExponentialPanels::fractions()[j]);
     }
     size = size.cwiseMax(values.cwiseAbs().rowwise().maxCoeff());
@@ -93,7 +91,7 @@ PanelSeries::PanelSeries(const Function& function, double begin, double end,
     }
     of_longer.resize(0);
     panels_.push_back({t, h, coefficients});
-    panels.advance((off.array() <= std::ldexp(1.0, -nodes) * allowed.array()).all());
+    panels.advance((off.array() <= std::ldexp(1.0, -panel_nodes) * allowed.array()).all());
   }
   error_ = relative * size + 8 * (rounding + epsilon * size);
 }
@@ -105,7 +103,7 @@ MatrixXd PanelSeries::at_nodes(double t, double h) const {
   const double from = (t - panel.begin) / panel.length;
   const MatrixXd part =
       ExponentialPanels::on_part(panel.coefficients, from, from + h / panel.length);
-  return ExponentialPanels::values(part).leftCols(nodes);
+  return ExponentialPanels::values(part).leftCols(panel_nodes);
 }
 
 std::vector<double> PanelSeries::stops() const {

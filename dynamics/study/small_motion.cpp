@@ -13,8 +13,7 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr int nodes = ExponentialPanels::nodes;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double last_digit = std::numeric_limits<double>::epsilon();
 
 /// The parts of the run at which A is tested: without a common divisor, so that no period hides.
 constexpr double tested_parts[] = {0.03, 0.11, 0.23, 0.49, 0.71, 0.83, 0.97};
@@ -57,11 +56,11 @@ class SmallRun {
       return (off_.array() <= part * relative_ * size.array()).all();
     };
     if (!fits(1)) return Outcome::too_long;
-    return fits(std::ldexp(1.0, -nodes)) ? Outcome::fits_twice : Outcome::fits;
+    return fits(std::ldexp(1.0, -panel_nodes)) ? Outcome::fits_twice : Outcome::fits;
   }
 
   SmallSolution::Panel proceed() {
-    eta_ = x_.col(nodes);
+    eta_ = x_.col(panel_nodes);
     size_ = size_.cwiseMax(x_.cwiseAbs().rowwise().maxCoeff());
     error_ += off_;
     return panel_;
@@ -87,7 +86,7 @@ class SmallRun {
     double before = std::numeric_limits<double>::infinity();
     for (int sweep = 0; sweep < 40; ++sweep) {
       MatrixXd force = f;
-      for (int j = 0; j < nodes; ++j) {
+      for (int j = 0; j < panel_nodes; ++j) {
         const Eigen::Map<const MatrixXd> change(all.col(j).data(), n, n);
         force.col(j) += change * x_.col(j);
       }
@@ -95,9 +94,9 @@ class SmallRun {
       const MatrixXd next = steps_.solution(h, eta_, g_);
       const double off = greatest_change(next);
       x_ = next;
-      if (off <= 4 * epsilon) return true;
+      if (off <= 4 * last_digit) return true;
       // Rounding ends the convergence.
-      if (sweep > 1 && !(off < before)) return off <= 1e3 * epsilon;
+      if (sweep > 1 && !(off < before)) return off <= 1e3 * last_digit;
       before = off;
     }
     return false;
@@ -150,7 +149,7 @@ VectorXd rounding_of(const std::vector<MatrixXd>& equations) {
   const double force = size.col(n).maxCoeff();
   size.leftCols(n) = rows.replicate(1, n);
   size.col(n).setConstant(force);
-  return 2 * epsilon * Eigen::Map<const VectorXd>(size.data(), size.size());
+  return 2 * last_digit * Eigen::Map<const VectorXd>(size.data(), size.size());
 }
 
 }  // namespace
@@ -270,14 +269,14 @@ class PanelSampler {
     const MatrixXd eta = steps_->solution(h, eta_, g);
     const MatrixXd rates = steps_->matrix() * eta + ExponentialPanels::values(g);
     MotionSamples result;
-    for (int j = 0; j <= nodes; ++j) {
-      const double time = t + h * (j < nodes ? ExponentialPanels::fractions()[j] : 1);
+    for (int j = 0; j <= panel_nodes; ++j) {
+      const double time = t + h * (j < panel_nodes ? ExponentialPanels::fractions()[j] : 1);
       result.states.push_back(nominal_->tangent().moved(nominal_->at(time), VectorXd(eta.col(j))));
       result.rates.push_back(
           rate_of_moved(nominal_->tangent(), nominal_->rate(), eta.col(j), rates.col(j)));
     }
     end_ = t + h;
-    eta_at_end_ = eta.col(nodes);
+    eta_at_end_ = eta.col(panel_nodes);
     return result;
   }
 
@@ -294,7 +293,7 @@ class PanelSampler {
     } else if (t != begin_) {
       const double length = t - panel.begin;
       const MatrixXd g = ExponentialPanels::on_part(panel.g, 0, length / panel.length);
-      eta_ = steps_->solution(length, panel.eta, g).col(nodes);
+      eta_ = steps_->solution(length, panel.eta, g).col(panel_nodes);
     }
     begin_ = t;
   }

@@ -14,8 +14,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* verdicts[] = {"stable", "marginal", "unstable"};
-
 double damping_ratio(const std::complex<double>& root) {
   return root.real() != 0 ? -root.real() / std::abs(root) : 0;
 }
@@ -110,6 +108,11 @@ void print_limits(const SceneSweep& sweep) {
 
 }  // namespace
 
+const char* name(Verdict verdict) {
+  static constexpr const char* verdicts[] = {"stable", "marginal", "unstable"};
+  return verdicts[static_cast<int>(verdict)];
+}
+
 const char* kind(const GyroscopicMode& mode, bool has_rotors) {
   static constexpr const char* kinds[] = {"nutation", "precession", "oscillation"};
   const bool oscillates = mode.root.imag() > mode.error;
@@ -151,7 +154,7 @@ ordered_json roots_json(const LinearMotion& linear) {
 }
 
 ordered_json json(const LinearMotion& linear) {
-  ordered_json result = {{"verdict", verdicts[static_cast<int>(linear.verdict)]},
+  ordered_json result = {{"verdict", name(linear.verdict)},
                          {"frame", linear.frame},
                          {"roots", roots_json(linear)},
                          {"left_out", linear.left_out}};
@@ -195,7 +198,7 @@ ordered_json json(const SceneSweep& sweep) {
 }
 
 void print(const LinearMotion& linear) {
-  fmt::print("\nlinear equations there: {}\n", verdicts[static_cast<int>(linear.verdict)]);
+  fmt::print("\nlinear equations there: {}\n", name(linear.verdict));
   if (!linear.modes.empty()) {
     fmt::print("  roots as seen {}\n  {:>16} {:>18} {:>14} {:>12}  {:12} {:9} {}\n",
                printable(linear.frame), "growth, 1/s", "frequency, rad/s", "Hz", "damping", "kind",

@@ -10,6 +10,9 @@
 #include <dynamics/file/periodic_motions.hpp>
 #include <dynamics/file/scene_sweep.hpp>
 
+/// "stable", "marginal" or "unstable".
+[[nodiscard]] const char* name(kreisel::Verdict verdict);
+
 /// "nutation", "precession" or "oscillation"; "" without rotors or without oscillation.
 [[nodiscard]] const char* kind(const kreisel::GyroscopicMode& mode, bool has_rotors);
 

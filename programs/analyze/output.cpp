@@ -21,10 +21,6 @@ using ::json;
 using ::print;
 using joint_tables::json;
 
-const char* const verdicts[] = {"stable", "marginal", "unstable"};
-
-const char* name(Verdict verdict) { return verdicts[static_cast<int>(verdict)]; }
-
 JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
   return result.system.joints_of(state);
 }

@@ -18,17 +18,17 @@ using gnuplot::quoted;
 namespace {
 
 /// Okabe and Ito's colours and a mark for each sense of whirl.
-struct Look {
+struct WhirlLook {
   Whirl whirl;
   const char* name;
   const char* colour;
   int point;
 };
-constexpr Look looks[] = {{Whirl::forward, "forward whirl", "#0072b2", 7},
-                          {Whirl::backward, "backward whirl", "#d55e00", 5},
-                          {Whirl::mixed, "mixed whirl", "#cc79a7", 11},
-                          {Whirl::plane, "plane", "#009e73", 9},
-                          {Whirl::none, "no whirl", "#000000", 2}};
+constexpr WhirlLook whirl_looks[] = {{Whirl::forward, "forward whirl", "#0072b2", 7},
+                                     {Whirl::backward, "backward whirl", "#d55e00", 5},
+                                     {Whirl::mixed, "mixed whirl", "#cc79a7", 11},
+                                     {Whirl::plane, "plane", "#009e73", 9},
+                                     {Whirl::none, "no whirl", "#000000", 2}};
 
 /// Calls `use` with speed and mode of every point.
 template <class Use>
@@ -96,12 +96,14 @@ std::string campbell_script(const Result& result, const SceneSweep& sweep) {
                    [](const WhirlingMode& mode) { return mode.root.real() > mode.error; })) {
     list += ", $growing with points pt 6 ps 1.6 lw 2 lc rgb '#cc0000' title 'grows'";
   }
-  for (std::size_t k = 0; k < std::size(looks); ++k) {
-    const auto is_so = [k](const WhirlingMode& mode) { return mode.whirl.sense == looks[k].whirl; };
+  for (std::size_t k = 0; k < std::size(whirl_looks); ++k) {
+    const auto is_so = [k](const WhirlingMode& mode) {
+      return mode.whirl.sense == whirl_looks[k].whirl;
+    };
     const std::string block = fmt::format("look{}", k);
     if (!write_points(s, block, sweep, is_so)) continue;
     list += fmt::format(", ${} with points pt {} ps 0.6 lc rgb '{}' title {}", block,
-                        looks[k].point, looks[k].colour, quoted(looks[k].name));
+                        whirl_looks[k].point, whirl_looks[k].colour, quoted(whirl_looks[k].name));
   }
   if (!sweep.critical.empty()) {
     s << "$critical << END\n";

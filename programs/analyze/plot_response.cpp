@@ -71,8 +71,7 @@ std::vector<BodeCurve> curves_of(const Response& response) {
   for (int k = -HarmonicResponse::harmonics; k <= HarmonicResponse::harmonics; ++k) {
     curves.push_back({k == 0 ? "at w" : fmt::format("at w {:+d} W", k)});
     for (const auto& row : response.harmonics->values) {
-      curves.back().values.push_back(
-          row[static_cast<std::size_t>(k + HarmonicResponse::harmonics)]);
+      curves.back().values.push_back(*(row.begin() + HarmonicResponse::harmonics + k));
     }
   }
   return curves;

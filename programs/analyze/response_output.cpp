@@ -28,8 +28,7 @@ ordered_json harmonics_json(const Response& response, std::size_t row) {
   const HarmonicResponse& all = *response.harmonics;
   ordered_json list = ordered_json::array();
   for (int k = -HarmonicResponse::harmonics; k <= HarmonicResponse::harmonics; ++k) {
-    const std::complex<double>& H =
-        all.values[row][static_cast<std::size_t>(k + HarmonicResponse::harmonics)];
+    const std::complex<double>& H = *(all.values[row].begin() + HarmonicResponse::harmonics + k);
     list.push_back(
         {{"k", k},
          {"frequency", response.frequencies[row] + k * 2 * std::numbers::pi / all.period},

@@ -626,8 +626,8 @@ BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
       {body + body + run, "s.toml:9:8: body 'a'.name: is used by an earlier body"},
       {body + "[solve]\nt_end = 0\n", "s.toml:8:9: solve.t_end: 0 must be above 0"},
       {body + "[solve]\nt_end = 1\nmodel = \"lineal\"\n",
-       "s.toml:9:9: solve.model: 'lineal' is none of 'exact', 'linear', 'precession', 'foeppl' or "
-       "'fuchs-weigand' (did you mean 'linear'?)"},
+       "s.toml:9:9: solve.model: 'lineal' is none of 'exact', 'linear', 'small', 'precession', "
+       "'foeppl' or 'fuchs-weigand' (did you mean 'linear'?)"},
       {body + "[solve]\nt_end = 1\noutput_times = [0.5, 0.5]\n", "does not increase"},
       {body + "[solve]\nt_end = 1\noutput_step = 1e-9\n", "more than ten million rows"},
   };

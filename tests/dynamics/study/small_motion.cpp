@@ -71,8 +71,8 @@ BOOST_AUTO_TEST_CASE(a_panel_may_be_long) {
     MatrixXd A(2, 2);
     A << 0, 1, -w * w, 0;
     const ExponentialPanels panels(A);
-    MatrixXd force = MatrixXd::Zero(2, ExponentialPanels::nodes);
-    for (int j = 0; j < ExponentialPanels::nodes; ++j) {
+    MatrixXd force = MatrixXd::Zero(2, panel_nodes);
+    for (int j = 0; j < panel_nodes; ++j) {
       force(1, j) = std::sin(p * h * ExponentialPanels::fractions()[j]);
     }
     const MatrixXd g = ExponentialPanels::coefficients(force);
@@ -80,8 +80,8 @@ BOOST_AUTO_TEST_CASE(a_panel_may_be_long) {
     const double wanted =
         1e-3 * std::cos(w * h) + (std::sin(p * h) - p / w * std::sin(w * h)) / (w * w - p * p);
     // Rounding of the phase w h, and the polynomial's error, below 1e-16.
-    BOOST_TEST(std::abs(x(0, ExponentialPanels::nodes) - wanted) < 1e-3 * (1e-15 * w * h + 1e-13),
-               w << ": " << x(0, ExponentialPanels::nodes) - wanted);
+    BOOST_TEST(std::abs(x(0, panel_nodes) - wanted) < 1e-3 * (1e-15 * w * h + 1e-13),
+               w << ": " << x(0, panel_nodes) - wanted);
     BOOST_TEST(panels.truncation(h, g).maxCoeff() < 1e-12);
   }
 }
@@ -236,10 +236,9 @@ BOOST_AUTO_TEST_CASE(an_interpolated_motion_has_its_rates) {
   };
   const InterpolatedMotion motion(Tangent(1, {}), states, 0, 20);
   const MotionSamples samples = motion.sampler()(3.75, 0.25);
-  for (std::size_t j = 0; j <= ExponentialPanels::nodes; ++j) {
-    const double part = j < ExponentialPanels::nodes
-                            ? ExponentialPanels::fractions()[static_cast<Eigen::Index>(j)]
-                            : 1;
+  for (std::size_t j = 0; j <= panel_nodes; ++j) {
+    const double part =
+        j < panel_nodes ? ExponentialPanels::fractions()[static_cast<Eigen::Index>(j)] : 1;
     const double t = 3.75 + 0.25 * part;
     const double x = std::exp(std::sin(t));
     BOOST_TEST(std::abs(samples.states[j][0] - x) < 1e-11);
