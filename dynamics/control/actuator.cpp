@@ -78,8 +78,9 @@ std::vector<Actuator> load_actuators(const BodyTree& tree, int body) {
     (k < 3 ? unit.resultant : unit.moment)[k % 3] = 1;
     const std::string axis(1, "xyz"[k % 3]);
     const std::string what = k < 3 ? ".force." : ".torque.";
-    result.push_back({"load." + tree.body(body).name + what + axis, k < 3 ? "N" : "N m",
-                      Actuator::BodyForce{body, unit}});
+    std::string name = "load.";
+    name.append(tree.body(body).name).append(what).append(axis);
+    result.push_back({name, k < 3 ? "N" : "N m", Actuator::BodyForce{body, unit}});
   }
   return result;
 }

@@ -153,7 +153,7 @@ VectorXd balance_of(const MatrixXd& A) {
 }  // namespace
 
 ExponentialPanels::ExponentialPanels(const MatrixXd& A)
-    : A_(A),
+    : matrix_(A),
       balance_(balance_of(A)),
       balanced_(balance_.cwiseInverse().asDiagonal() * A * balance_.asDiagonal()) {}
 
@@ -199,7 +199,7 @@ MatrixXd ExponentialPanels::solution(double h, const VectorXd& start,
 
 VectorXd ExponentialPanels::contribution(const Propagator& of, const MatrixXd& coefficients,
                                          int k) const {
-  const Eigen::Index n = A_.rows();
+  const Eigen::Index n = matrix_.rows();
   VectorXd result = VectorXd::Zero(n);
   for (int i = 0; i <= panel_nodes; ++i) {
     const VectorXd even = of.of_force.block(i * n, k * n, n, n) * coefficients.col(k);
@@ -225,7 +225,7 @@ const ExponentialPanels::Propagator& ExponentialPanels::propagator(double h) con
   const auto near = known_.lower_bound(h * (1 - 1e-12));
   if (near != known_.end() && near->first <= h * (1 + 1e-12)) return near->second;
   if (known_.size() >= 256) known_.clear();
-  const Eigen::Index n = A_.rows();
+  const Eigen::Index n = matrix_.rows();
   Propagator result{MatrixXd((panel_nodes + 1) * n, n),
                     MatrixXd((panel_nodes + 1) * n, panel_nodes * n)};
   const auto unbalanced = [this](const MatrixXd& M) {

@@ -32,7 +32,7 @@ class ExponentialPanels {
 
   KREISEL_API explicit ExponentialPanels(const Eigen::MatrixXd& A);
 
-  [[nodiscard]] const Eigen::MatrixXd& matrix() const { return A_; }
+  [[nodiscard]] const Eigen::MatrixXd& matrix() const { return matrix_; }
 
   /// The nodes of a panel, as fractions of its length in (0, 1).
   [[nodiscard]] KREISEL_API static const Fractions& fractions();
@@ -72,7 +72,7 @@ class ExponentialPanels {
 
   [[nodiscard]] const Propagator& propagator(double h) const;
 
-  Eigen::MatrixXd A_;
+  Eigen::MatrixXd matrix_;
   Eigen::VectorXd balance_;   ///< A = D B D^-1, D diagonal
   Eigen::MatrixXd balanced_;  ///< B
   mutable std::map<double, Propagator> known_ = {};

@@ -58,14 +58,16 @@ PeriodicPlant::PeriodicPlant(double period, const std::vector<LinearPlant>& samp
     : period_(period), most_(static_cast<int>(samples.size()) / 4) {
   check(period, samples);
   inputs_ = static_cast<Index>(samples[0].inputs.size());
-  A_ = coefficients(samples, most_, [](const LinearPlant& p) -> const MatrixXd& { return p.A; });
-  C_ = coefficients(samples, most_, [](const LinearPlant& p) -> const MatrixXd& { return p.C; });
+  states_ =
+      coefficients(samples, most_, [](const LinearPlant& p) -> const MatrixXd& { return p.A; });
+  outputs_ =
+      coefficients(samples, most_, [](const LinearPlant& p) -> const MatrixXd& { return p.C; });
   for (std::size_t i = 0; i < samples[0].columns.size(); ++i) {
     columns_.push_back({samples[0].columns[i].input, samples[0].columns[i].power});
-    B_.push_back(coefficients(samples, most_,
-                              [i](const LinearPlant& p) -> MatrixXd { return p.columns[i].B; }));
-    D_.push_back(coefficients(samples, most_,
-                              [i](const LinearPlant& p) -> MatrixXd { return p.columns[i].D; }));
+    forces_.push_back(coefficients(
+        samples, most_, [i](const LinearPlant& p) -> MatrixXd { return p.columns[i].B; }));
+    direct_.push_back(coefficients(
+        samples, most_, [i](const LinearPlant& p) -> MatrixXd { return p.columns[i].D; }));
   }
 }
 
@@ -89,21 +91,21 @@ std::vector<MatrixXcd> PeriodicPlant::response(double w, int harmonics) const {
     throw InvalidInput("response: at most " + std::to_string(most_) +
                        " harmonics: take more samples of the period");
   }
-  const Index n = at(A_, 0).rows();
+  const Index n = at(states_, 0).rows();
   const int blocks = 2 * most_ + 1;
   MatrixXcd balance(n * blocks, n * blocks);
   for (int l = 0; l < blocks; ++l) {
-    for (int m = 0; m < blocks; ++m) balance.block(n * l, n * m, n, n) = -at(A_, l - m);
+    for (int m = 0; m < blocks; ++m) balance.block(n * l, n * m, n, n) = -at(states_, l - m);
     const double rate = w + (l - most_) * 2 * std::numbers::pi / period_;
     balance.block(n * l, n * l, n, n).diagonal().array() += Complex(0, rate);
   }
-  const MatrixXcd X = balance.partialPivLu().solve(stacked(B_, w));
-  const MatrixXcd direct = stacked(D_, w);
+  const MatrixXcd X = balance.partialPivLu().solve(stacked(forces_, w));
+  const MatrixXcd direct = stacked(direct_, w);
   std::vector<MatrixXcd> result;
   for (int l = most_ - harmonics; l <= most_ + harmonics; ++l) {
-    const Index rows = at(C_, 0).rows();
+    const Index rows = at(outputs_, 0).rows();
     MatrixXcd H = direct.middleRows(rows * l, rows);
-    for (int m = 0; m < blocks; ++m) H += at(C_, l - m) * X.middleRows(n * m, n);
+    for (int m = 0; m < blocks; ++m) H += at(outputs_, l - m) * X.middleRows(n * m, n);
     if (!H.allFinite()) {
       throw ComputationFailed("response: an undamped resonance lies at the frequency of " +
                               std::to_string(w) + " rad/s");

@@ -46,7 +46,8 @@ class PeriodicPlant {
   using Coefficients = std::vector<Eigen::MatrixXcd>;
 
   [[nodiscard]] const Eigen::MatrixXcd& at(const Coefficients& of, int k) const {
-    return of[static_cast<std::size_t>(k + 2 * most_)];
+    const int middle = 2 * most_;
+    return *(of.begin() + middle + k);
   }
 
   /// The part of an input's column in all harmonics |l| <= K: one above the other.
@@ -56,10 +57,10 @@ class PeriodicPlant {
   int most_;  ///< K
   Eigen::Index inputs_;
   std::vector<LinearPlant::Column> columns_;  ///< without matrices
-  Coefficients A_;
-  Coefficients C_;
-  std::vector<Coefficients> B_;  ///< for each column
-  std::vector<Coefficients> D_;
+  Coefficients states_;                       ///< of A
+  Coefficients outputs_;                      ///< of C
+  std::vector<Coefficients> forces_;          ///< for each column
+  std::vector<Coefficients> direct_;
 };
 
 }  // namespace kreisel

@@ -48,12 +48,13 @@ bool InterpolatedMotion::interpolate(const States& states, int panels) {
     }
   }
   const std::vector<VectorXd> all = states(times);
+  auto next = all.begin();
   VectorXd size = VectorXd::Zero(all[0].size());
   VectorXd last = size;
   coefficients_.clear();
   for (int i = 0; i < panels; ++i) {
     MatrixXd values(size.size(), panel_nodes);
-    for (int j = 0; j < panel_nodes; ++j) values.col(j) = all[std::size_t(i * panel_nodes + j)];
+    for (int j = 0; j < panel_nodes; ++j) values.col(j) = *next++;
     size = size.cwiseMax(values.cwiseAbs().rowwise().maxCoeff());
     coefficients_.push_back(ExponentialPanels::coefficients(values));
     last = last.cwiseMax(coefficients_.back().rightCols(2).cwiseAbs().rowwise().maxCoeff());
@@ -64,9 +65,11 @@ bool InterpolatedMotion::interpolate(const States& states, int panels) {
 }
 
 std::vector<double> InterpolatedMotion::stops() const {
-  const auto panels = static_cast<double>(coefficients_.size());
+  const std::size_t panels = coefficients_.size();
   std::vector<double> result;
-  for (double i = 1; i <= panels; ++i) result.push_back(begin_ + (end_ - begin_) * i / panels);
+  for (std::size_t i = 1; i <= panels; ++i) {
+    result.push_back(begin_ + (end_ - begin_) * double(i) / double(panels));
+  }
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -54,7 +55,7 @@ VectorXd Spins::kept(const RuledDirections& ruled) const {
     done[static_cast<std::size_t>(v)] = true;
   }
   for (const int first : ruled.attitudes) {
-    for (int k = 0; k < 3; ++k) done[static_cast<std::size_t>(first + k)] = true;
+    std::fill_n(done.begin() + first, 3, true);
     const Eigen::Vector3d w = start.segment<3>(first);
     if (w.isZero(0)) continue;
     // A spin about the whole angular velocity, else about the axis of the body with most of it.

@@ -166,6 +166,7 @@ void SmallMotion::prepare(const Equations& equations, const PanelSeries::Functio
     before = t;
   }
   std::vector<MatrixXd> all;
+  all.reserve(times.size());
   for (const double t : times) all.push_back(equations(t));
   const Eigen::Index n = nominal_->rate().size();
   MatrixXd mean = MatrixXd::Zero(n, n);

@@ -158,8 +158,8 @@ struct Sums {
     const Eigen::VectorXcd d = body.displacement * shape.head(body.displacement.cols());
     double own = 0;
     double own_size = 0;
-    for (int end = 0; end < 2; ++end) {
-      const Ellipse ellipse(d.segment<3>(3 * end), body.axis);
+    for (const Eigen::Index end : {0, 3}) {
+      const Ellipse ellipse(d.segment<3>(end), body.axis);
       own += body.half_mass * ellipse.circulation(body.axis);
       own_size += body.half_mass * ellipse.size();
     }

@@ -59,7 +59,9 @@ Begin from_row(const kreisel::SceneSolver& model, const kreisel::SceneFile& scen
 
 /// The text of a scene with the values that replace some of it.
 std::string with_settings(std::string text, const kreisel::SolveRequest& request) {
-  for (const auto& [key, value, place] : request.settings) text += key + '=' + value + '\n';
+  for (const auto& [key, value, place] : request.settings) {
+    text.append(key).append("=").append(value).append("\n");
+  }
   return text;
 }
 
