@@ -114,13 +114,12 @@ bool lost_spin(const StudySystem& system, const VectorXd& start, const Steady& s
 }
 
 /// True if the input is the force that the output, of a controller, is.
-bool opens_loop(const kreisel::SceneFile& scene, const kreisel::PlantInput& input,
-                const kreisel::PlantOutput& output) {
-  const auto* const of = std::get_if<kreisel::PlantOutput::OfController>(&output.kind);
+bool opens_loop(const SceneFile& scene, const PlantInput& input, const PlantOutput& output) {
+  const auto* const of = std::get_if<PlantOutput::OfController>(&output.kind);
   if (of == nullptr) return false;
-  const kreisel::Controller& controller = scene.controllers[of->controller];
-  const kreisel::BodyTree tree(scene.bodies, scene.elements, scene.constraints);
-  const std::vector<kreisel::Actuator> driven = actuators(controller, tree);
+  const Controller& controller = scene.controllers[of->controller];
+  const BodyTree tree(scene.bodies, scene.elements, scene.constraints);
+  const std::vector<Actuator> driven = actuators(controller, tree);
   return input.name == driven[static_cast<std::size_t>(of->component)].name;
 }
 
@@ -128,7 +127,7 @@ bool opens_loop(const kreisel::SceneFile& scene, const kreisel::PlantInput& inpu
 Response harmonics_of(const StudySystem& system, const Analysis& analysis, Response response) {
   const std::optional<FloquetMotion>& motion = analysis.floquet;
   if (!motion || !motion->exists()) {
-    std::string why = "--response: no steady motion: " + analysis.steady.reason;
+    std::string why = "response: no steady motion: " + analysis.steady.reason;
     if (motion) why += "; no periodic motion: " + motion->reason;
     if (!motion && !analysis.notes.empty()) why += "; " + analysis.notes.back();
     throw ComputationFailed(why);
@@ -146,7 +145,7 @@ Response response_to_unbalance(const StudySystem& system, const SceneFile& scene
                                const Steady& steady, const std::string& body, Response response) {
   response.input = {"unbalance." + body, "kg m"};
   if (!steady.exists()) {
-    throw ComputationFailed("--response: no steady motion: " + steady.reason);
+    throw ComputationFailed("response: no steady motion: " + steady.reason);
   }
   response.values =
       unbalance_response(system, scene, body, response.output, response.frequencies, steady.state)
@@ -201,19 +200,19 @@ void add_multipliers(const StudySystem& system, const SceneFile& scene,
                      const AnalysisRequest& request, const VectorXd& start, Analysis& result) {
   const FoundPeriod found = period_of(system, scene, request, start, result.steady);
   const auto refuse = [&](const std::string& why) {
-    if (request.period) throw InvalidInput("--period: " + why);
+    if (request.period) throw InvalidInput("period: " + why);
     result.notes.push_back("no Floquet multipliers: " + why);
   };
   if (found.period == 0) {
     const bool changes =
         has_link<scene_guide::Harmonic>(scene) || scene.guide_follows_log() || scene.forces_change;
-    if (changes && !found.reason.empty()) refuse(found.reason + "; --period gives one by hand");
+    if (changes && !found.reason.empty()) refuse(found.reason + "; give the period");
     return;
   }
   const bool is_quick = found.is_only && scene.frequencies.empty();
   if (!request.period && !request.response && !is_quick) {
     return refuse(
-        fmt::format("{}the period is {:.9g} s, and --period {:.17g} computes them",
+        fmt::format("{}the period is {:.9g} s; give the period {:.17g} to compute them",
                     found.is_only ? "" : "the equations change with several frequencies; ",
                     found.period, found.period));
   }

@@ -43,7 +43,7 @@ class Approximation final : public SceneSolver {
     report.method = approximation_.method;
     report.tolerance = options.tolerance;
     report.message = motion.message;
-    result.errors = bounds_or_distances(motion, start, options, report);
+    result.errors = bounds(motion, y, options, report);
     model_error_ = 0;
     for (std::size_t i = 0; i < result.errors.size(); ++i) {
       model_error_ = std::max(model_error_, result.errors[i]);
@@ -94,22 +94,6 @@ class Approximation final : public SceneSolver {
   }
 
  private:
-  /// The bounds; or, where no panels follow the error, the distances from the exact motion.
-  [[nodiscard]] std::vector<double> bounds_or_distances(const ModelMotion& motion,
-                                                        const JointState& start,
-                                                        const SolveOptions& options,
-                                                        RunReport& report) const {
-    try {
-      return bounds(motion, joined(start), options, report);
-    } catch (const ComputationFailed&) {
-      std::vector<JointState> states;
-      for (const VectorXd& y : motion.states) states.push_back(system_.joints_of(y));
-      std::optional<std::vector<double>> found = distances(states, report.sizes, options, start);
-      if (!found) throw;
-      return *std::move(found);
-    }
-  }
-
   /// The bounds of the model's error at the outputs, as far as they are known.
   [[nodiscard]] std::vector<double> bounds(const ModelMotion& motion, const VectorXd& start,
                                            const SolveOptions& options, RunReport& report) const {
@@ -156,28 +140,20 @@ class Approximation final : public SceneSolver {
     }
   }
 
+  /// The greatest distance from the exact motion, which is computed; nothing if its run ends early.
   [[nodiscard]] std::optional<double> distance(const Trajectory<JointState>& run,
                                                const SolveOptions& options,
                                                const JointState& start) const {
-    const auto all = distances(run.states, run.report.sizes, options, start);
-    if (!all) return std::nullopt;
-    return all->empty() ? 0 : *std::max_element(all->begin(), all->end());
-  }
-
-  /// The distances from the exact motion, which is computed; nothing if its run ends early.
-  [[nodiscard]] std::optional<std::vector<double>> distances(const std::vector<JointState>& states,
-                                                             const std::vector<double>& sizes,
-                                                             const SolveOptions& options,
-                                                             const JointState& start) const {
     SolveOptions plain = options;
     plain.offer_checkpoint = nullptr;  // those of a file of rows belong to the approximation
     const Trajectory<JointState> exact = exact_->solve(plain, start);
     if (exact.report.status != RunStatus::complete) return std::nullopt;
     ErrorMeasure<Measured> measure({system_.blocks()}, options.absolute_scale);
-    measure.note_sizes(sizes);
-    std::vector<double> result(states.size());
-    for (std::size_t i = 0; i < std::min(states.size(), exact.states.size()); ++i) {
-      result[i] = measure(joined(states[i]), joined(exact.states[i]));
+    measure.note_sizes(run.report.sizes);
+    double result = 0;
+    const std::size_t count = std::min(run.states.size(), exact.states.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      result = std::max(result, measure(joined(run.states[i]), joined(exact.states[i])));
     }
     return result;
   }

@@ -32,8 +32,8 @@ class SteadyModes {
   [[nodiscard]] std::vector<WhirlingMode> operator()(double speed) {
     const Steady steady = at(speed);
     if (!steady.exists()) {
-      throw ComputationFailed(
-          fmt::format("--campbell: no steady motion at {:.9g} rad/s: {}", speed, steady.reason));
+      throw ComputationFailed(fmt::format("sweep of a speed: no steady motion at {:.9g} rad/s: {}",
+                                          speed, steady.reason));
     }
     guess_ = steady.state;
     return linear_motion(system_, steady.state).modes;
@@ -60,7 +60,8 @@ class PeriodicModes {
 
   [[nodiscard]] double period(double speed) const {
     if (speed == 0) {
-      throw ComputationFailed("--campbell: a rotor at rest gives no period; leave out 0 rad/s");
+      throw ComputationFailed(
+          "sweep of a speed: a rotor at rest gives no period; leave out 0 rad/s");
     }
     VectorXd y = guess_;
     y[speed_] = speed;
@@ -72,8 +73,8 @@ class PeriodicModes {
             ? fmt::format("after {:.9g} s the rates differ by {:.1e}", found.period, misses)
             : found.reason;
     throw ComputationFailed(
-        fmt::format("--campbell: no steady motion at {:.9g} rad/s: {}; and no period: {}", speed,
-                    unsteady_, why));
+        fmt::format("sweep of a speed: no steady motion at {:.9g} rad/s: {}; and no period: {}",
+                    speed, unsteady_, why));
   }
 
   [[nodiscard]] std::vector<WhirlingMode> operator()(double speed) {
@@ -81,8 +82,8 @@ class PeriodicModes {
     y[speed_] = speed;
     const FloquetMotion motion = floquet_motion(system_, y, period(speed));
     if (!motion.exists()) {
-      throw ComputationFailed(
-          fmt::format("--campbell: no periodic motion at {:.9g} rad/s: {}", speed, motion.reason));
+      throw ComputationFailed(fmt::format(
+          "sweep of a speed: no periodic motion at {:.9g} rad/s: {}", speed, motion.reason));
     }
     guess_ = motion.start;
     return floquet_modes(system_, motion);

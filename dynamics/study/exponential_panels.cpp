@@ -175,15 +175,15 @@ MatrixXd ExponentialPanels::values(const MatrixXd& coefficients) {
   return result;
 }
 
-MatrixXd ExponentialPanels::derivatives(const MatrixXd& coefficients) {
+MatrixXd ExponentialPanels::derivative(const MatrixXd& coefficients) {
   // P_k' = sum over j = k - 1, k - 3, .. of (2 j + 1) P_j, and the chain rule's 2.
-  MatrixXd of_derivative = MatrixXd::Zero(coefficients.rows(), panel_nodes);
+  MatrixXd result = MatrixXd::Zero(coefficients.rows(), panel_nodes);
   for (int k = 1; k < panel_nodes; ++k) {
     for (int j = k - 1; j >= 0; j -= 2) {
-      of_derivative.col(j) += 2 * (2 * j + 1) * coefficients.col(k);
+      result.col(j) += 2 * (2 * j + 1) * coefficients.col(k);
     }
   }
-  return values(of_derivative);
+  return result;
 }
 
 MatrixXd ExponentialPanels::solution(double h, const VectorXd& start,

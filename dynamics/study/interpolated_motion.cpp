@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include <dynamics/study/exponential_panels.hpp>
 #include <dynamics/study/interpolated_motion.hpp>
@@ -21,6 +23,17 @@ constexpr double resolution = 1e-11;
 
 /// A component smaller than this part of the greatest one counts as that large.
 constexpr double smallest_part = 1e-6;
+
+/// Replaces coefficients that may be rounding of values of these sizes by 0.
+MatrixXd without_rounding(MatrixXd coefficients, const VectorXd& size) {
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  for (Eigen::Index i = 0; i < coefficients.rows(); ++i) {
+    for (double& entry : coefficients.row(i)) {
+      if (std::abs(entry) <= rounding * size[i]) entry = 0;
+    }
+  }
+  return coefficients;
+}
 
 }  // namespace
 
@@ -56,7 +69,7 @@ bool InterpolatedMotion::interpolate(const States& states, int panels) {
     MatrixXd values(size.size(), panel_nodes);
     for (int j = 0; j < panel_nodes; ++j) values.col(j) = *next++;
     size = size.cwiseMax(values.cwiseAbs().rowwise().maxCoeff());
-    coefficients_.push_back(ExponentialPanels::coefficients(values));
+    coefficients_.push_back(without_rounding(ExponentialPanels::coefficients(values), size));
     last = last.cwiseMax(coefficients_.back().rightCols(2).cwiseAbs().rowwise().maxCoeff());
   }
   // Components that are rounding beside the others need no resolution.
@@ -74,15 +87,22 @@ std::vector<double> InterpolatedMotion::stops() const {
 }
 
 MotionSampler InterpolatedMotion::sampler() const {
-  return [tangent = tangent_, begin = begin_, end = end_, all = coefficients_](double t, double h) {
+  // Rates of a part are a part of the rates: their rounding does not grow with a shorter part.
+  std::vector<MatrixXd> slopes;
+  for (const MatrixXd& one : coefficients_) slopes.push_back(ExponentialPanels::derivative(one));
+  return [tangent = tangent_, begin = begin_, end = end_, all = coefficients_,
+          slopes = std::move(slopes)](double t, double h) {
     const auto panels = static_cast<double>(all.size());
     const double length = (end - begin) / panels;
     const double middle = std::floor((t + h / 2 - begin) / length);
     const auto i = static_cast<std::size_t>(std::clamp(middle, 0.0, panels - 1));
     const double from = (t - begin) / length - static_cast<double>(i);
-    const MatrixXd part = ExponentialPanels::on_part(all[i], from, from + h / length);
-    const MatrixXd values = ExponentialPanels::values(part);
-    const MatrixXd rates = ExponentialPanels::derivatives(part) / h;
+    const auto on_part = [&](const MatrixXd& coefficients) {
+      return ExponentialPanels::values(
+          ExponentialPanels::on_part(coefficients, from, from + h / length));
+    };
+    const MatrixXd values = on_part(all[i]);
+    const MatrixXd rates = on_part(slopes[i]) / length;
     MotionSamples result;
     for (int j = 0; j <= panel_nodes; ++j) {
       result.states.emplace_back(values.col(j));

@@ -46,7 +46,7 @@ struct ModelDistance {
 ///
 /// Source : the defect of an approximation, carried by the variational equations
 /// Error  : true error / bound in [0.1, 1] for >= 95 % of random scenes, below 1.2
-///          (tests/dynamics/study/model_bound.cpp)
+///          (tests/dynamics/file/models.cpp)
 class ModelBound {
  public:
   /// scene : Differentiable; it must outlive the bound

@@ -797,7 +797,7 @@ BOOST_AUTO_TEST_CASE(exit_status_is_2_or_3_for_errors) {
   }
   const Outcome none = run(scene("satellite") + " --campbell wheel --speeds 1:2:3");
   BOOST_TEST(none.status == 3);
-  BOOST_TEST(none.err.find("analyze: --campbell: no steady motion") == 0U, none.err);
+  BOOST_TEST(none.err.find("analyze: sweep of a speed: no steady motion") == 0U, none.err);
   BOOST_TEST(kreisel::test::run("( " + std::string(KREISEL_ANALYZE) + " " + good + " >/dev/full )")
                  .status == 3);
 }
