@@ -74,7 +74,7 @@ void add_small_pendulums(Random& r, Scene& scene) {
     if (r.chance(0.3)) add_damping(r, body, single_coordinates(body.kind));
     scene.bodies.push_back(body);
   }
-  scene.model = "linear";
+  scene.model = r.chance(0.5) ? "linear" : "small";
 }
 
 /// A fast rotor in rings; the inner ring has an unbalance.

@@ -322,7 +322,8 @@ class Judge {
     judge_model_error(answer, model_error);
     const bool is_small = model_error <= 0.1 && off > 1e4 * answer.tolerance;
     // Halves for third and second order; the nutations fall with the square of the speed.
-    const double most = scene_.model == "linear" || scene_.model == "precession" ? 0.35 : 0.2;
+    const bool is_second = scene_.model != "foeppl" && scene_.model != "fuchs-weigand";
+    const double most = is_second ? 0.35 : 0.2;
     if (!is_small || nearer_off <= most * off) return;
     add("model " + scene_.model + " has another order",
         fmt::format("off by {:.3g}, nearer by {:.3g}", off, nearer_off));
