@@ -418,6 +418,9 @@ bool RadauIntegrator::solve_stages(StiffField& field, const Compensated<double>&
   const double enough = std::max(accuracy_.relative / 20, rounding / 64);
   // Rounding in a stiff field ends the descent before rounding of the state does.
   const double stalled = 1e3 * std::max(accuracy_.relative / 20, rounding);
+  // The first change belongs to the guess, often to motions that one iteration solves. Others then
+  // shrink more slowly than the second change suggests: it proves no faster descent than this.
+  double shrank = 0.1;
   double change_before = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     for (int i = 0; i < stages(); ++i) {
@@ -437,7 +440,8 @@ bool RadauIntegrator::solve_stages(StiffField& field, const Compensated<double>&
     if (iteration > 1) {
       const double shrinks = change / change_before;
       if (shrinks >= 1) return change <= stalled;
-      if (shrinks / (1 - shrinks) * change <= enough) return true;
+      const double slowest = std::max(shrinks, std::exchange(shrank, shrinks));
+      if (slowest / (1 - slowest) * change <= enough) return true;
       const double at_the_end = std::pow(shrinks, most_iterations - iteration) * change;
       if (at_the_end > enough && change > stalled) return false;
     }
