@@ -70,7 +70,7 @@ namespace {
   Eigen::VectorXd error = part.col(s).cwiseMax(part.col(s - 1));
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     const double before = std::max(part(i, s - 2), part(i, s - 3));
-    const bool falls = error[i] <= smooth * before;
+    const bool falls = error[i] < smooth * before;
     error[i] *= falls ? std::pow(error[i] / before, static_cast<double>(s + 1) / 2) : 10;
   }
   return error;
