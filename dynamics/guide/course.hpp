@@ -275,6 +275,7 @@ class Course {
         const double ahead = reach(piece);
         const double next = std::min(stop, t + ahead);
         if (begins_.size() == most_pieces || end_ - t > 10 * most_pieces * ahead) {
+          if (reach(piece, 4) > 10 * ahead) refuse_bank(t);
           refuse("it turns, or its signals oscillate, by more than 4e4 rad");
         }
         if (!(next > t)) refuse("a turn rate or a speed is too great for any step of time");
@@ -299,13 +300,23 @@ class Course {
     return result;
   }
 
-  /// The time after which the last two terms of each series are 1e-17 of its size.
-  [[nodiscard]] static double reach(const Piece& c) {
+  static void refuse_bank(double t) {
+    std::ostringstream text;
+    text.precision(4);
+    text << "no bank is coordinated near t = " << t
+         << " s, where apparent gravity vanishes: let it climb with less acceleration, or give an "
+            "angle of bank";
+    refuse(text.str());
+  }
+
+  /// The time after which the last two terms of each series are 1e-17 of its size. The parts are those
+  /// of Numbers; the fifth is the bank.
+  [[nodiscard]] static double reach(const Piece& c, Eigen::Index parts = 5) {
     const auto size = [](const State& x, Eigen::Index part) {
       return part < 2 ? x.segment<3>(3 * part).norm() : std::abs(x[4 + part]);
     };
     double result = std::numeric_limits<double>::infinity();
-    for (Eigen::Index part = 0; part < 5; ++part) {
+    for (Eigen::Index part = 0; part < parts; ++part) {
       const std::size_t last = part < 4 ? degree : degree - 1;
       for (std::size_t k = last - 1; k <= last; ++k) {
         const double term = size(c[k], part);

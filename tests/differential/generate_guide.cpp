@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "generate_parts.hpp"
 
 namespace differential {
@@ -114,13 +116,25 @@ Link orbit(Random& r) {
   return link;
 }
 
+/// Limits the vertical acceleration to half of gravity's: in free fall no bank is coordinated.
+void limit_acceleration(Signal& climb) {
+  double most = 0;
+  for (const Series::Term& term : climb.series.terms) {
+    most += std::abs(term.amplitude.x() * term.frequency.radian());
+  }
+  for (Series::Term& term : climb.series.terms) term.amplitude *= 5 / std::max(most, 5.0);
+}
+
 /// Banks a vehicle without lateral apparent gravity. Its turn and climb are smooth then.
 void coordinate(Random& r, Vehicle& vehicle) {
   const auto along = [&r] { return Vector(sign(r) * Vector::UnitX()); };
   vehicle.is_coordinated = true;
   vehicle.bank = {};
   if (!vehicle.turn_rate.empty()) vehicle.turn_rate = smooth_signal(r, 0.1, along);
-  if (!vehicle.climb.empty()) vehicle.climb = smooth_signal(r, 1, along);
+  if (!vehicle.climb.empty()) {
+    vehicle.climb = smooth_signal(r, 1, along);
+    limit_acceleration(vehicle.climb);
+  }
   Jumps& jumps = vehicle.acceleration.jumps;
   jumps.is_broken_line = jumps.is_broken_line || !jumps.times.empty();
 }

@@ -261,6 +261,8 @@ BOOST_AUTO_TEST_CASE(is_refused_if_it_is_none) {
   check({.acceleration = Number::steps({{50, 1}}), .is_coordinated = true}, "acceleration jumps");
   check({.climb = -200}, "height at t = 100 s = -20000 m lies outside");
   check({.turn_rate = Number(0, 0, {{1, 1e7, 0}})}, "by more than 4e4 rad");
+  check({.speed = 10, .climb = Number(0, 0, {{3, 7.7, 0}}), .is_coordinated = true},
+        "where apparent gravity vanishes");
   const Course course({}, 100);
   BOOST_CHECK_THROW((void)course.at(-1e-9), InvalidInput);
   BOOST_CHECK_THROW((void)course.at(100.1), InvalidInput);
