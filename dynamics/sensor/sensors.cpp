@@ -2,17 +2,25 @@
 #include <utility>
 
 #include <dynamics/sensor/sensors.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 
 namespace {
 
-/// Apparent gravity on a mass at rest at a position in the guide, on guide axes.
-Vector3<double> apparent_gravity(const SystemKinematics& system, const Vector3<double>& place) {
+/// The direction of apparent gravity on a mass at rest at a position in the guide, on guide axes.
+Vector3<double> vertical(const SystemKinematics& system, const Vector3<double>& place) {
   const Vector3<double> zero = Vector3<double>::Zero();
   const PointReading<> rest{place, zero, zero};
-  return detail::gravitation(system, place) -
-         detail::seen_from_inertial(rest, system.guide).acceleration;
+  const Vector3<double> gravitation = detail::gravitation(system, place);
+  const Vector3<double> acceleration = detail::seen_from_inertial(rest, system.guide).acceleration;
+  const Vector3<double> apparent = gravitation - acceleration;
+  if (!(apparent.norm() > 1e-9 * (gravitation.norm() + acceleration.norm()))) {
+    throw ComputationFailed(
+        "azimuth: the guide falls freely, so that nothing gives the vertical; read the motion of a "
+        "point in its place");
+  }
+  return apparent.normalized();
 }
 
 /// The direction of the plumb line of this length that hangs from a point of the guide, by fixed
@@ -21,8 +29,7 @@ Vector3<double> plumb_line(const SystemKinematics& system, const Vector3<double>
                            double length) {
   Vector3<double> down = Vector3<double>::Zero();
   for (int i = 0; i < 50; ++i) {
-    const Vector3<double> before =
-        std::exchange(down, apparent_gravity(system, pivot + length * down).normalized());
+    const Vector3<double> before = std::exchange(down, vertical(system, pivot + length * down));
     if ((down - before).norm() <= 1e-15) break;
   }
   return down;

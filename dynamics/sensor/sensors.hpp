@@ -100,6 +100,7 @@ struct AttitudeSensor {
 /// Units  : rad
 /// Error  : of a plane swing of any size <= 1e-14; of the direction of the plumb line <= 2e-15 for
 ///          u^2 d <= g/2                            (tests/dynamics/sensor/sensors)
+/// Throws : ComputationFailed if the guide falls freely: apparent gravity is then below 1e-9 of its parts
 struct KREISEL_API AzimuthSensor {
   int body = 0;
   Vector3<double> at = Vector3<double>::Zero();

@@ -11,7 +11,9 @@ int frame(Random& r, const Scene& scene) {
   return r.below(static_cast<int>(scene.bodies.size()) + 2) - 2;
 }
 
-bool has_gravity(const Scene& scene) {
+bool has_vertical(const Scene& scene) {
+  const auto falls_freely = [](const Link& link) { return link.kind == LinkKind::orbit; };
+  if (std::ranges::any_of(scene.guide, falls_freely)) return false;
   if (scene.gravity != GravityKind::not_given) return scene.gravity != GravityKind::none;
   if (scene.guide.empty()) return false;
   const std::string& own = scene.guide.front().gravity;
@@ -49,7 +51,7 @@ Sensor sensor(Random& r, const Scene& scene) {
                         SensorKind::joint, SensorKind::azimuth});
   const bool is_fixed =
       scene.bodies[static_cast<std::size_t>(result.body)].kind == JointKind::fixed;
-  if (result.kind == SensorKind::azimuth && !has_gravity(scene)) result.kind = SensorKind::joint;
+  if (result.kind == SensorKind::azimuth && !has_vertical(scene)) result.kind = SensorKind::joint;
   if (result.kind == SensorKind::joint && is_fixed) result.kind = SensorKind::gyro;
   if (result.kind == SensorKind::joint) return result;
   if (result.kind == SensorKind::azimuth) {

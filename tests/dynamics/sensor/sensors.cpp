@@ -160,6 +160,17 @@ BOOST_AUTO_TEST_CASE(azimuth_about_the_plumb_line) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(azimuth_in_free_fall_has_no_vertical) {
+  const Vector g(0, 0, -9.8125);
+  const RotatingFrame<> falling{.origin_acceleration = g};
+  const BodySystem<RotatingFrame<>> system{falling, {hanging()}, UniformGravity<Inertial>{g}};
+  BodyWorkspace w = system.workspace();
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(7);
+  y[3] = 1;
+  const auto now = kinematics(system, 0, y, w);
+  BOOST_CHECK_THROW((void)AzimuthSensor({0, {0, 0, -1}})(now), ComputationFailed);
+}
+
 // Coning: the attitude (cos a/2; sin a/2 cos wt, sin a/2 sin wt, 0) has on its own axes the rate
 // w (-sin a sin wt, sin a cos wt, -2 sin^2 a/2).
 BOOST_AUTO_TEST_CASE(gyro_in_coning) {
