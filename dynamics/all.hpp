@@ -5,6 +5,7 @@
 
 #include <dynamics/control/controlled_system.hpp>
 #include <dynamics/ensemble/ensemble.hpp>
+#include <dynamics/exact/free_cardan_gyro.hpp>
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/gyrostat.hpp>
 #include <dynamics/exact/lagrange_top.hpp>
@@ -14,6 +15,8 @@
 #include <dynamics/gimbal/foeppl.hpp>
 #include <dynamics/gimbal/gyro_platform.hpp>
 #include <dynamics/gimbal/gyro_small_oscillations.hpp>
+#include <dynamics/gimbal/pendulous_gyro.hpp>
+#include <dynamics/gimbal/pendulous_oscillations.hpp>
 #include <dynamics/gimbal/unsymmetric_rotor.hpp>
 #include <dynamics/guide/analytic.hpp>
 #include <dynamics/guide/any_guide.hpp>

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/pendulum/physical_pendulum.hpp>
 #include <dynamics/solve/closed_form.hpp>
+#include <dynamics/solve/closed_form_parts.hpp>
 #include <dynamics/tree/tree.hpp>
 
 /// The closed form of systems that are only a pendulum or a top.
@@ -17,19 +20,9 @@ namespace kreisel::detail {
 
 /// The only body of a tree, if no joint force and no load acts on it.
 [[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
-  const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && tree.loaded().empty() &&
-                     tree.elements().empty() && tree.constraints().empty();
-  if (!alone || !tree.links().back().moved_by_forces()) return nullptr;
-  for (const JointForce& force : tree.forces()) {
-    if (force.stiffness != 0 || force.damping != 0 || force.constant != 0) return nullptr;
-  }
-  if (!tree.timed_forces().empty()) return nullptr;
-  return &tree.body(0);
+  const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && is_free_of_forces(tree);
+  return alone && tree.links().back().moved_by_forces() ? &tree.body(0) : nullptr;
 }
-
-/// The error per radian from the last digits of the description. Mass, arm, weight and tensor are
-/// products of its numbers.
-inline constexpr double of_inputs = std::numeric_limits<double>::epsilon();
 
 /// The orientation of a joint in long double, so that the conversion adds no error.
 [[nodiscard]] Eigen::Quaternion<exact::Real> orientation(const kreisel::Joint& joint) {
@@ -219,11 +212,114 @@ class FlightError {
   return ClosedForm<Eigen::VectorXd>{motion->name, at, error};
 }
 
+/// The motion of a free top, written on the axes of a guide that turns.
+class TopOnGuide {
+ public:
+  /// start : the top's attitude and angular velocity in the inertial frame
+  TopOnGuide(std::function<GuideAttitude(double)> guide, const Eigen::Quaterniond& joint,
+             const ClosedForm<EulerTop::State>& top, const Eigen::Quaterniond& near)
+      : guide_(std::move(guide)), joint_(joint), top_(top.at), near_(near) {}
+
+  [[nodiscard]] Eigen::VectorXd at(double t) const {
+    const EulerTop::State top = top_(t);
+    const auto [rotation, u] = guide_(t);
+    const Eigen::Quaterniond before = Eigen::Quaterniond(rotation) * joint_;
+    Eigen::Quaterniond q = before.conjugate() * top.attitude;
+    if (q.dot(near_) < 0) q.coeffs() = -q.coeffs();
+    Eigen::VectorXd y(7);
+    y << q.coeffs(), top.angular_velocity - (joint_ * q).conjugate() * u;
+    return y;
+  }
+
+  [[nodiscard]] GuideAttitude guide(double t) const { return guide_(t); }
+
+ private:
+  std::function<GuideAttitude(double)> guide_;
+  Eigen::Quaterniond joint_;
+  std::function<EulerTop::State(double)> top_;
+  Eigen::Quaterniond near_;
+};
+
+/// The error of a TopOnGuide, in the measure of RunReport::error_estimate.
+class TopOnGuideError {
+ public:
+  /// beside : the same motion with the angular velocity at the start perturbed by its rounding
+  TopOnGuideError(TopOnGuide motion, std::vector<TopOnGuide> beside,
+                  std::function<double(double, double)> of_top, double rate, double begin)
+      : motion_(std::move(motion)),
+        beside_(std::move(beside)),
+        of_top_(std::move(of_top)),
+        rate_(rate),
+        begin_(begin) {
+    note(begin);
+  }
+
+  [[nodiscard]] double operator()(double t, double smallest) {
+    constexpr double u = std::numeric_limits<double>::epsilon() / 2;
+    const Eigen::VectorXd y = note(t);
+    double turned = of_top_(t, smallest) + of_inputs * rate_ * std::abs(t - begin_) + 80 * u +
+                    of_inputs * turning_ * std::max(std::abs(t), std::abs(begin_));
+    double rate = 0;
+    for (const TopOnGuide& other : beside_) {
+      const Eigen::VectorXd off = other.at(t) - y;
+      turned += 2 * off.head(4).norm();
+      rate += off.tail(3).norm();
+    }
+    rate += turned * turning_ + 8 * u * (rate_ + turning_);
+    return std::max(turned, rate / std::max(size_, smallest));
+  }
+
+ private:
+  Eigen::VectorXd note(double t) {
+    Eigen::VectorXd y = motion_.at(t);
+    size_ = std::max(size_, y.tail(3).cwiseAbs().maxCoeff());
+    turning_ = std::max(turning_, motion_.guide(t).u.norm());
+    return y;
+  }
+
+  TopOnGuide motion_;
+  std::vector<TopOnGuide> beside_;
+  std::function<double(double, double)> of_top_;
+  double rate_;  ///< of the absolute rotation
+  double begin_;
+  double size_ = 0;     ///< the greatest rate against the guide so far
+  double turning_ = 0;  ///< the greatest angular velocity of the guide so far
+};
+
+std::optional<ClosedForm<Eigen::VectorXd>> closed_form_on_guide(
+    const BodyTree& tree, std::function<GuideAttitude(double)> guide, double begin,
+    const Eigen::VectorXd& y) {
+  const BodyDescription* body = lone_body(tree);
+  if (!body || body->joint.kind != JointKind::spherical || !y.allFinite()) return std::nullopt;
+  if (!body->inertia.value.first_moment.isZero(0)) return std::nullopt;
+  const auto turning = turning_body(*body, Vector3<double>::Zero());
+  if (!turning) return std::nullopt;
+  const Eigen::Quaterniond joint = body->joint.orientation.normalized();
+  const Eigen::Quaterniond start = Eigen::Quaterniond(Eigen::Vector4d(y.head<4>())).normalized();
+  const auto [rotation, u] = guide(begin);
+  const Eigen::Quaterniond attitude = Eigen::Quaterniond(rotation) * joint * start;
+  const Vector3<double> w = y.tail<3>() + (joint * start).conjugate() * u;
+  const auto top = kreisel::closed_form(turning->top, begin, {attitude, w});
+  if (!top) return std::nullopt;
+  const TopOnGuide motion(guide, joint, *top, start);
+  std::vector<TopOnGuide> beside;
+  const double rounding =
+      4 * std::numeric_limits<double>::epsilon() * (y.tail<3>().norm() + u.norm());
+  for (int i = 0; i < 3; ++i) {
+    const auto other = kreisel::closed_form(
+        turning->top, begin, {attitude, Vector3<double>(w + rounding * Vector3<double>::Unit(i))});
+    beside.emplace_back(guide, joint, *other, start);
+  }
+  return ClosedForm<Eigen::VectorXd>{top->name + ", on a moving guide",
+                                     [motion](double t) { return motion.at(t); },
+                                     TopOnGuideError(motion, beside, top->error, w.norm(), begin)};
+}
+
 std::optional<ClosedForm<Eigen::VectorXd>> closed_form(const BodyTree& tree,
                                                        const Vector3<double>& gravity, double begin,
                                                        const Eigen::VectorXd& y) {
   const BodyDescription* body = lone_body(tree);
-  if (!body) return std::nullopt;
+  if (!body) return gyro_motion(tree, begin, y);
   switch (body->joint.kind) {
     case JointKind::revolute: return pendulum_motion(*body, gravity, begin, y);
     case JointKind::spherical:
