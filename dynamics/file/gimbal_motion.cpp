@@ -1,12 +1,14 @@
 #include <Eigen/Geometry>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <variant>
 
 #include <dynamics/file/gimbal_motion.hpp>
+#include <dynamics/file/scene_system.hpp>
 #include <dynamics/step/integrator.hpp>
+#include <dynamics/tree/cardan_chain.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -16,15 +18,14 @@ using Eigen::Matrix3d, Eigen::Vector3d, Eigen::VectorXd;
 namespace {
 
 /// Rounding that adding, rotating and normalizing a few numbers may leave.
-constexpr double slack = 64 * std::numeric_limits<double>::epsilon();
+constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
 class Refusal {
  public:
   explicit Refusal(bool symmetric) : model_(symmetric ? "foeppl" : "fuchs-weigand") {}
 
   [[noreturn]] void operator()(const std::string& why) const {
-    throw InvalidInput("model '" + model_ + "' is of a gyro in two rings on a guide at rest; " +
-                       why);
+    throw InvalidInput("model '" + model_ + "' is of a gyro in two rings; " + why);
   }
   [[noreturn]] void operator()(const BodyDescription& body, const std::string& why) const {
     (*this)("body '" + body.name + "' " + why);
@@ -34,31 +35,22 @@ class Refusal {
   std::string model_;
 };
 
-/// Checks for a chain of joints whose axes meet in one point, with springs and friction alone.
-void check_joints(const SceneFile& scene, const Refusal& refuse) {
-  if (!scene.rests()) refuse("this guide moves");
-  if (scene.bodies.size() != 3) refuse("here are not three bodies");
+/// True if the speed of a rotor is prescribed.
+bool is_regulated(const BodyDescription& body) {
+  return body.rule == JointRule::driven || (body.rotor && body.rotor->mode == RotorMode::regulated);
+}
+
+/// Checks that springs and friction alone act in the joints of the rings.
+void check_forces(const SceneFile& scene, const Refusal& refuse) {
   if (!scene.elements.empty()) refuse("here are elements between bodies");
   for (std::size_t i = 0; i < 3; ++i) {
     const BodyDescription& body = scene.bodies[i];
     const bool rotor = i == 2;
-    if (body.joint.kind != JointKind::revolute) refuse(body, "is on no revolute joint");
-    if (body.parent != (i == 0 ? "guide" : scene.bodies[i - 1].name)) {
-      refuse(body, "is not held by the body before it");
-    }
-    if (i > 0 && !body.joint.position.isZero(0)) {
-      refuse(body, "has its joint elsewhere than where the axes meet");
-    }
-    const Inertia<double>& T = body.inertia.value;
-    if (T.first_moment.norm() > slack * std::sqrt(T.mass * T.tensor.matrix().trace())) {
-      refuse(body, "has its centre of mass elsewhere than where the axes meet");
-    }
     if (body.rule == JointRule::held) refuse(body, "is locked");
     if (!rotor && body.rule != JointRule::forces) refuse(body, "has a drive");
     if (!rotor && body.rotor) refuse(body, "is a rotor that carries another");
     if (!body.loads.empty()) refuse(body, "has a load");
-    const bool regulated =
-        body.rule == JointRule::driven || (body.rotor && body.rotor->mode == RotorMode::regulated);
+    const bool regulated = is_regulated(body);
     if (body.rotor && body.rotor->torque != 0) refuse(body, "is a rotor that a torque speeds up");
     for (const JointForce& force : body.forces) {
       if (!rotor && force.rest != 0) refuse(body, "has a spring that is not slack at 0");
@@ -71,14 +63,26 @@ void check_joints(const SceneFile& scene, const Refusal& refuse) {
   }
 }
 
-/// Moments about three axes: outer ring, inner ring and, perpendicular to both, rotor.
-Vector3d principal(const BodyDescription& body, const Matrix3d& axes, const Refusal& refuse) {
-  const Matrix3d tensor = axes.transpose() * body.inertia.value.tensor.matrix() * axes;
-  Vector3d moments = tensor.diagonal();
-  if ((tensor - Matrix3d(moments.asDiagonal())).norm() > slack * moments.sum()) {
-    refuse(body, "has products of inertia about the three axes");
-  }
-  return moments;
+/// True for a rotor whose centre of mass lies on its axis, which is a principal axis.
+bool is_balanced(Inertia<> rotor) {
+  rotor.first_moment.z() = 0;
+  rotor.tensor.xy = 0;
+  return is_principal(rotor) && is_centred(rotor);
+}
+
+Vector3d moments(const Inertia<>& body) { return {body.tensor.xx, body.tensor.yy, body.tensor.zz}; }
+
+/// The guide and its uniform gravity, on gimbal axes.
+AnyGuide on_gimbal_axes(const AnyGuide& guide, const Matrix3d& axes) {
+  return AnyGuide([guide, axes](double t) {
+    FrameMotion<Guide, Inertial> now = guide(t);
+    now.X.value.rotation *= axes;
+    for (Motor<>* motor : {&now.V.value, &now.dV.value}) {
+      motor->resultant = axes.transpose() * motor->resultant;
+      motor->moment = axes.transpose() * motor->moment;
+    }
+    return now;
+  });
 }
 
 CardanBearing bearing(const BodyDescription& ring) {
@@ -100,50 +104,87 @@ std::vector<VectorXd> ring_oscillation(const Gyro& gyro, double t_begin, const V
   return result;
 }
 
+/// The scene's gyro with centres of mass anywhere, on its guide.
+///
+/// chain : its rotor is turned so that its angle is speed times time
+GimbalMotion::Pendulous pendulous(const SceneFile& scene, CardanChain chain,
+                                  const CardanBearings& bearings, double speed) {
+  const SceneBodies bodies = bodies_in_gravity(scene);
+  UniformGravity<Guide> on_guide;
+  UniformGravity<Inertial> inertial;
+  if (const auto* field = std::get_if<UniformGravity<Guide>>(&bodies.gravity)) {
+    on_guide.g = chain.axes.transpose() * field->g;
+  }
+  if (const auto* field = std::get_if<UniformGravity<Inertial>>(&bodies.gravity)) inertial = *field;
+  const double ahead = chain.sign * scene.start[2].coordinates.front() - speed * scene.t_begin;
+  const Matrix3d turned(Eigen::AngleAxisd(ahead, Vector3d::UnitZ()));
+  chain.rotor = {chain.rotor.mass, turned * chain.rotor.first_moment,
+                 chain.rotor.tensor.rotated(turned)};
+  return {{chain.rotor, chain.inner_ring, chain.outer_ring, chain.axes.transpose() * chain.point},
+          bearings,
+          speed,
+          on_gimbal_axes(make_guide(scene), chain.axes),
+          on_guide,
+          inertial};
+}
+
+/// Refuses what PendulousOscillations do not contain.
+void check_pendulous(const SceneFile& scene, const CardanChain& chain, bool symmetric,
+                     const Refusal& refuse) {
+  const BodyDescription& rotor = scene.bodies[2];
+  if (bodies_in_gravity(scene).gravitation) refuse("this gravity is not uniform");
+  if (symmetric && !is_balanced(chain.rotor)) {
+    refuse(rotor, "is not balanced; 'fuchs-weigand' takes it");
+  }
+  if (is_regulated(rotor)) return;
+  if (!scene.rests())
+    refuse(rotor, "is free, and this guide changes its speed; regulate the speed");
+  if (!is_balanced(chain.rotor)) {
+    refuse(rotor, "is free, and unbalance changes its speed; regulate the speed");
+  }
+}
+
 /// The model's equations with the numbers of this scene.
-std::variant<FoepplGyro<>, UnsymmetricRotor<>> gyro_of(const SceneFile& scene) {
+GimbalMotion::Gyro gyro_of(const SceneFile& scene) {
   const bool symmetric = scene.model == SceneModel::foeppl;
   const Refusal refuse(symmetric);
-  check_joints(scene, refuse);
-  // All on guide axes, at zero angles.
-  Matrix3d axes;
-  std::array<Matrix3d, 3> turned;
-  Matrix3d parent = Matrix3d::Identity();
-  for (int i = 0; i < 3; ++i) {
-    const Joint& joint = scene.bodies[std::size_t(i)].joint;
-    axes.col(i) = parent * joint.axis.normalized();
-    parent *= joint.orientation.normalized().toRotationMatrix();
-    turned[std::size_t(i)] = parent;
-  }
-  // The equations count the spin about outer x inner axis.
-  const Vector3d across = axes.col(0).cross(axes.col(1));
-  const double sign = across.dot(axes.col(2)) < 0 ? -1 : 1;
-  if ((across - sign * axes.col(2)).norm() > slack) refuse("these axes are not at right angles");
-  axes.col(2) = across;
-  const auto moments = [&](std::size_t i) {
-    return principal(scene.bodies[i], turned[i].transpose() * axes, refuse);
-  };
-  CardanMoments all{moments(2), moments(1), moments(0)};
+  const auto found = cardan_chain(scene.bodies);
+  if (const auto* reason = std::get_if<std::string>(&found)) refuse(*reason);
+  CardanChain chain = std::get<CardanChain>(found);
+  check_forces(scene, refuse);
   const CardanBearings bearings{bearing(scene.bodies[0]), bearing(scene.bodies[1])};
-  const double speed = sign * scene.start[2].rates.front();
-  if (!symmetric) return UnsymmetricRotor<>(all, bearings, speed);
-  Vector3d& rotor = all.rotor;
-  if (std::abs(rotor.x() - rotor.y()) > slack * rotor.sum()) {
-    refuse(scene.bodies[2], "is not symmetric about its axis; 'fuchs-weigand' takes it");
+  const double speed = chain.sign * scene.start[2].rates.front();
+  Symmetric3<>& rotor = chain.rotor.tensor;
+  if (symmetric) {
+    if (std::abs(rotor.xx - rotor.yy) > rounding * (rotor.xx + rotor.yy + rotor.zz)) {
+      refuse(scene.bodies[2], "is not symmetric about its axis; 'fuchs-weigand' takes it");
+    }
+    rotor.xx = rotor.yy = (rotor.xx + rotor.yy) / 2;
   }
-  rotor.x() = rotor.y() = (rotor.x() + rotor.y()) / 2;
-  return FoepplGyro<>(all, bearings, speed);
+  const auto is_plain = [](const Inertia<>& body) {
+    return is_principal(body) && is_centred(body);
+  };
+  if (!scene.rests() || !is_plain(chain.outer_ring) || !is_plain(chain.inner_ring) ||
+      !is_plain(chain.rotor)) {
+    check_pendulous(scene, chain, symmetric, refuse);
+    return pendulous(scene, chain, bearings, speed);
+  }
+  const CardanMoments all{moments(chain.rotor), moments(chain.inner_ring),
+                          moments(chain.outer_ring)};
+  if (symmetric) return FoepplGyro<>(all, bearings, speed);
+  return UnsymmetricRotor<>(all, bearings, speed);
 }
 
 }  // namespace
 
-GimbalMotion::GimbalMotion(const SceneFile& scene) : gyro_(gyro_of(scene)) {}
+GimbalMotion::GimbalMotion(const SceneFile& scene) : gyro_(gyro_of(scene)), begin_(scene.t_begin) {}
 
 std::vector<VectorXd> GimbalMotion::states(const VectorXd& start,
                                            const std::vector<double>& times) const {
   // The coefficients of the unsymmetric rotor belong to one that starts at the angle 0.
-  const bool periodic = std::holds_alternative<UnsymmetricRotor<>>(gyro_);
-  const double begin = periodic ? start[2] / start[5] : 0;
+  const double begin = std::holds_alternative<UnsymmetricRotor<>>(gyro_) ? start[2] / start[5]
+                       : std::holds_alternative<Pendulous>(gyro_)        ? begin_
+                                                                         : 0;
   return std::visit([&](const auto& gyro) { return ring_oscillation(gyro, begin, start, times); },
                     gyro_);
 }
