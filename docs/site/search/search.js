@@ -35,8 +35,11 @@ class Index {
       const count = counts.get(word) || 0;
       return sum + weights[i] * count * 2.2 / (count + 1.2 * (0.25 + 0.75 * length / this.mean));
     }, 0);
+    const of_page = new Map();  // at most two sections of a page are shown
     return this.sections.map((section) => ({ section, score: score(section) }))
-        .filter((found) => found.score > 0).sort((a, b) => b.score - a.score).slice(0, most);
+        .filter((found) => found.score > 0).sort((a, b) => b.score - a.score)
+        .filter(({ section: { page } }) => of_page.set(page, (of_page.get(page) || 0) + 1).get(page) <= 2)
+        .slice(0, most);
   }
 }
 
