@@ -10,6 +10,7 @@
 #include <motor/error.hpp>
 
 #include "interruptible.hpp"
+#include "motors.hpp"
 #include "scene.hpp"
 #include "study.hpp"
 
@@ -39,11 +40,11 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
-/// The result of a study that has no progress, as JSON text.
+/// The result of  study(stop, share)  as JSON text.
 template <class Study>
-std::string without_lock(const Study& study) {
+std::string without_lock(const py::object& progress, const Study& study) {
   std::string result;
-  run_interruptibly(py::none(), [&](const auto&, auto&) { result = study(); });
+  run_interruptibly(progress, [&](const auto& stop, auto& share) { result = study(stop, share); });
   return result;
 }
 
@@ -151,7 +152,7 @@ using ResponseWords = std::tuple<std::string, std::string, std::vector<double>>;
 
 std::string analyze_scene(const SceneText& scene, const std::optional<Sweep>& campbell,
                           const std::optional<ResponseWords>& response,
-                          std::optional<double> period) {
+                          std::optional<double> period, const py::object& progress) {
   scene_analysis::AnalysisRequest request;
   request.period = period;
   if (campbell) {
@@ -162,7 +163,10 @@ std::string analyze_scene(const SceneText& scene, const std::optional<Sweep>& ca
     const auto& [input, output, frequencies] = *response;
     request.response = {input, output, frequencies};
   }
-  return without_lock([&] { return analyze(scene, request); });
+  return without_lock(progress, [&](const std::stop_token& stop, std::atomic<double>& share) {
+    request.progress = [&share](double done) { share = done; };
+    return analyze(scene, request, stop);
+  });
 }
 
 }  // namespace
@@ -174,13 +178,17 @@ PYBIND11_MODULE(_kreisel, m) {
   define_records(m);
   define_report(m);
   define_scene(m);
+  define_motors(m);
   m.def("examine", &examine, py::call_guard<py::gil_scoped_release>());
   m.def("solve", &solve_scene);
   m.def("ensemble", &ensemble);
   m.def("analyze", &analyze_scene);
-  m.def("state_space",
-        [](const SceneText& scene) { return without_lock([&] { return state_space(scene); }); });
+  m.def("state_space", [](const SceneText& scene) {
+    return without_lock(py::none(),
+                        [&](const auto& stop, auto&) { return state_space(scene, stop); });
+  });
   m.def("pendulum_deviation", [](const std::map<std::string, std::string>& options) {
-    return without_lock([&] { return pendulum_deviation(options); });
+    return without_lock(py::none(),
+                        [&](const auto&, auto&) { return pendulum_deviation(options); });
   });
 }

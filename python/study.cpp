@@ -1,35 +1,41 @@
 #include "study.hpp"
 
-#include <programs/analyze/output.hpp>
-#include <programs/analyze/response_output.hpp>
-#include <programs/pendulum_deviation/request.hpp>
+#include <optional>
 #include <utility>
 
 #include <dynamics/file/finite_number.hpp>
+#include <dynamics/json/analysis.hpp>
+#include <dynamics/json/deviation.hpp>
 
 using namespace kreisel;
 using namespace kreisel::scene_analysis;
 
 namespace {
 
+/// Inputs are long double, so that decimals count as exact.
+using Real = long double;
+
 /// Computes the analysis and returns what `text_of` makes of it.
 template <class TextOf>
 std::string with_analysis(const SceneText& text, const AnalysisRequest& request,
-                          const TextOf& text_of) {
+                          const std::stop_token& stop, const TextOf& text_of) {
   const SceneFile scene = text.read();
-  const StudySystem system(with_longer_guide(scene, request));
+  StudySystem system(with_longer_guide(scene, request));
+  system.stop_by(stop);
   const Analysis analysis = kreisel::scene_analysis::analyze(system, scene, request);
-  return text_of(Result{scene, system, analysis}).dump();
+  return text_of(AnalysisResult{scene, system, analysis}).dump();
 }
 
 }  // namespace
 
-std::string analyze(const SceneText& scene, const AnalysisRequest& request) {
-  return with_analysis(scene, request, [](const Result& result) { return to_json(result); });
+std::string analyze(const SceneText& scene, const AnalysisRequest& request,
+                    const std::stop_token& stop) {
+  return with_analysis(scene, request, stop,
+                       [](const AnalysisResult& result) { return to_json(result); });
 }
 
-std::string state_space(const SceneText& scene) {
-  return with_analysis(scene, {}, state_space_json);
+std::string state_space(const SceneText& scene, const std::stop_token& stop) {
+  return with_analysis(scene, {}, stop, state_space_json);
 }
 
 std::string pendulum_deviation(const std::map<std::string, std::string>& options) {
@@ -65,5 +71,5 @@ std::string pendulum_deviation(const std::map<std::string, std::string>& options
   }
   check(site);
   pendulum.body = body.body();
-  return to_json(pendulum, Row{deviation_at(site, pendulum), {"", site}, 0}).dump();
+  return json_of(pendulum, site, deviation_at(site, pendulum), 0).dump();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <stop_token>
 #include <string>
 
 #include <dynamics/file/analysis.hpp>
@@ -9,16 +10,17 @@
 
 /// Studies whose results are the JSON objects of the programs, as text.
 
-/// The object of  analyze --json.
+/// The object of  analyze --json.  A stop ends it by ComputationFailed.
 ///
 /// Throws : kreisel::InvalidInput, kreisel::ComputationFailed
 [[nodiscard]] std::string analyze(const SceneText& scene,
-                                  const kreisel::scene_analysis::AnalysisRequest& request);
+                                  const kreisel::scene_analysis::AnalysisRequest& request,
+                                  const std::stop_token& stop);
 
 /// The object of  analyze --state-space.
 ///
 /// Throws : as analyze()
-[[nodiscard]] std::string state_space(const SceneText& scene);
+[[nodiscard]] std::string state_space(const SceneText& scene, const std::stop_token& stop);
 
 /// The object of  pendulum_deviation --json.  Options have the names of the command line, with _
 /// for -, and numbers as text, so that decimals count as exact.

@@ -11,6 +11,7 @@ import pickle
 import re
 import subprocess
 import sys
+import time
 import tempfile
 import unittest
 import warnings
@@ -231,6 +232,21 @@ class Progress(unittest.TestCase):
             raise StopIteration(share)
         with self.assertRaises(StopIteration):
             scene().solve(t_end=1e7, method="verner98", progress=stop)
+
+    def test_of_an_analysis(self):
+        """A sweep of ten thousand speeds takes minutes; a stop ends it within a second or two."""
+        rotor = kreisel.Scene(SCENES / "overhung_rotor.toml")
+        speeds, shares = [0.1 * i for i in range(10_000)], []
+
+        def stop(share):
+            shares.append(share)
+            if share > 0.1:
+                raise StopIteration(share)
+        begin = time.monotonic()
+        with self.assertRaises(StopIteration):
+            rotor.analyze(campbell="disc", speeds=speeds, progress=stop)
+        self.assertLess(time.monotonic() - begin, 30)
+        self.assertTrue(all(0 <= share <= 1 for share in shares))
 
 
 class WithoutNumpy(unittest.TestCase):

@@ -238,10 +238,14 @@ Analysis analyze(const StudySystem& system, const SceneFile& scene,
                  const AnalysisRequest& request) {
   const VectorXd start = detail::on_constraints(system, system.start_of(scene));
   if (system.tree().rates() == 0) throw InvalidInput("nothing in this scene can move");
+  const auto done = [&](double share) {
+    if (request.progress) request.progress(share);
+  };
   Analysis result;
   const bool swings = has_link<scene_guide::Harmonic>(scene);
   const bool logged = scene.guide_follows_log();
   const Equilibria equilibria = find_equilibria(system, scene, start);
+  done(0.1);
   result.starts = equilibria.starts;
   result.equilibria = rests(system, scene, equilibria, start);
   result.steady = find_steady(system, scene, start, equilibria);
@@ -254,9 +258,12 @@ Analysis analyze(const StudySystem& system, const SceneFile& scene,
   if (request.campbell) {
     const VectorXd& guess = result.steady.exists() ? result.steady.state : start;
     result.campbell = sweep_speed(system, scene, request.campbell->body, request.campbell->speeds,
-                                  {.orders = request.campbell->orders}, guess);
+                                  {.orders = request.campbell->orders}, guess,
+                                  [&](double share) { done(0.1 + 0.7 * share); });
   }
+  done(0.8);
   add_multipliers(system, scene, request, start, result);
+  done(0.9);
   if (request.response) {
     result.response = response_of(system, scene, result, *request.response);
   }

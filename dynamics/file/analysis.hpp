@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <complex>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct AnalysisRequest {
   std::optional<Sweep> campbell = {};
   std::optional<ResponseRequest> response = {};
   std::optional<double> period = {};  ///< s, of the coefficients
+  /// Called with about the share of the work that is done, in [0, 1].
+  std::function<void(double share)> progress = {};
 };
 
 /// The response of an output to an input, at increasing frequencies.

@@ -118,23 +118,30 @@ Index speed_of(const StudySystem& system, const std::string& body) {
 
 SceneSweep sweep_speed(const StudySystem& system, const SceneFile& scene, const std::string& body,
                        const std::vector<double>& speeds, const SweepOptions& options,
-                       const VectorXd& guess) {
+                       const VectorXd& guess, const std::function<void(double)>& progress) {
   const Index speed = speed_of(system, body);
   SteadyModes steady_modes(system, speed, guess, scene.duration());
   // At the speed 0 every rotor has a steady motion.
   const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const Steady fastest = steady_modes.at(*std::max_element(speeds.begin(), speeds.end(), smaller));
+  std::size_t count = 0;
+  const auto counted = [&](auto& modes) -> ModesAt {
+    return [&](double now) {
+      if (progress && count < speeds.size()) progress(double(count++) / double(speeds.size()));
+      return modes(now);
+    };
+  };
   SceneSweep sweep;
   sweep.is_periodic = !fastest.exists();
   if (sweep.is_periodic) {
     PeriodicModes periodic_modes(system, scene, speed, guess, fastest.reason);
     SweepOptions coarser = options;
     coarser.accuracy = std::max(options.accuracy, 1e-9);
-    static_cast<RotorSweep&>(sweep) = rotor_sweep(std::ref(periodic_modes), speeds, coarser);
+    static_cast<RotorSweep&>(sweep) = rotor_sweep(counted(periodic_modes), speeds, coarser);
     for (const double now : speeds) sweep.periods.push_back(periodic_modes.period(now));
     sweep.frame = "against the parent of each body";
   } else {
-    static_cast<RotorSweep&>(sweep) = rotor_sweep(std::ref(steady_modes), speeds, options);
+    static_cast<RotorSweep&>(sweep) = rotor_sweep(counted(steady_modes), speeds, options);
     sweep.has_rotors = !system.tree().rotors().empty();
     sweep.frame = linear_motion(system, fastest.state).frame;
   }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,14 @@ struct SceneSweep : RotorSweep {
 /// speed the steady motion is followed from the one before. If there is none at the greatest speed,
 /// the periodic motion is followed, with the period that find_period() gives.
 ///
-/// guess  : the state to begin with
+/// guess    : the state to begin with
+/// progress : called with the share of the speeds that is done, in [0, 1]
 /// Throws : InvalidInput if the body has no speed to sweep, naming the reason; ComputationFailed at
 ///          a speed without a steady or periodic motion; as rotor_sweep()
 [[nodiscard]] SceneSweep sweep_speed(const StudySystem& system, const SceneFile& scene,
                                      const std::string& body, const std::vector<double>& speeds,
-                                     const SweepOptions& options, const Eigen::VectorXd& guess);
+                                     const SweepOptions& options, const Eigen::VectorXd& guess,
+                                     const std::function<void(double)>& progress = {});
 
 /// The index of a body's speed in the state.
 ///

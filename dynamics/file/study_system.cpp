@@ -10,6 +10,7 @@
 #include <dynamics/study/precession_admissibility.hpp>
 #include <dynamics/study/precession_bodies.hpp>
 #include <dynamics/study/rotor_spectrum.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 
@@ -49,6 +50,10 @@ StudySystem::StudySystem(const SceneFile& scene) : begin_(scene.t_begin) {
 
 StudySystem::~StudySystem() = default;
 
+void StudySystem::check_stop() const {
+  if (stop_.stop_requested()) throw ComputationFailed("the study was stopped");
+}
+
 const BodyTree& StudySystem::tree() const { return bodies_->tree(); }
 
 std::vector<int> StudySystem::blocks() const { return bodies_->blocks(); }
@@ -77,6 +82,7 @@ LinearPlant StudySystem::plant(double t, const Vector& y, std::vector<PlantInput
 }
 
 StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {
+  check_stop();
   return bodies_->steady_rates(t, y);
 }
 
@@ -86,7 +92,10 @@ std::function<void(double, const StudySystem::Vector&, StudySystem::Vector&)> St
     return [this](double t, const Vector& y, Vector& result) { result = rates(t, y); };
   }
   auto w = std::make_shared<Bodies::Workspace>(bodies_->workspace());
-  return [this, w](double t, const Vector& y, Vector& result) { bodies_->rates(t, y, result, *w); };
+  return [this, w](double t, const Vector& y, Vector& result) {
+    check_stop();
+    bodies_->rates(t, y, result, *w);
+  };
 }
 
 StudySystem::Vector StudySystem::assembled(const Vector& y) const { return bodies_->assembled(y); }
@@ -98,7 +107,10 @@ Eigen::MatrixXd StudySystem::constraint_slopes(const Vector& y, const Eigen::Mat
 template <class Dual>
 requires(!std::same_as<Dual, double>)
     StudySystem::Numbers<Dual> StudySystem::rates(const Dual& t, const Numbers<Dual>& y)
-const { return bodies_->steady_rates(t, y); }
+const {
+  check_stop();
+  return bodies_->steady_rates(t, y);
+}
 
 using Duals = detail::Duals<detail::directions<StudySystem>>;
 template Eigen::Matrix<Duals, Eigen::Dynamic, 1> StudySystem::rates(

@@ -6,7 +6,9 @@
 #include <concepts>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dynamics/file/joints.hpp>
@@ -69,6 +71,9 @@ class StudySystem {
   StudySystem& operator=(const StudySystem&) = delete;
   ~StudySystem();
 
+  /// Every evaluation after a request of this stop throws ComputationFailed, which ends the study.
+  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+
   [[nodiscard]] const BodyTree& tree() const;
   /// The time of the start.
   [[nodiscard]] double begin() const { return begin_; }
@@ -121,7 +126,10 @@ class StudySystem {
 
  private:
   class Bodies;
+  void check_stop() const;
+
   double begin_;
+  std::stop_token stop_;
   std::unique_ptr<const Bodies> bodies_;
 };
 

@@ -18,7 +18,7 @@ int run(const Request& request) {
   const kreisel::SceneFile scene = kreisel::read_scene(request.scene, request.solve);
   const kreisel::StudySystem system(with_longer_guide(scene, request));
   const Analysis analysis = analyze(system, scene, request);
-  const Result result{scene, system, analysis};
+  const AnalysisResult result{scene, system, analysis};
   if (request.response_file) write_response(*analysis.response, *request.response_file);
   if (request.state_space) write_state_space(result, *request.state_space);
   if (request.plot) draw(result, *request.plot);

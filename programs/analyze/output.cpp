@@ -17,115 +17,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-using ::json;
 using ::print;
-using joint_tables::json;
-
-JointState joints_of(const Result& result, const Eigen::VectorXd& state) {
-  return result.system.joints_of(state);
-}
-
-/// Sizes from a state and from the reactions in this state.
-SceneScale scale_of(const Result& result, const Eigen::VectorXd& state) {
-  SceneScale scale = ::scale_of(result.scene, result.system.tree(), {joints_of(result, state)});
-  scale.hold(result.system.reactions(result.system.begin(), state));
-  return scale;
-}
-
-ordered_json joints_json(const Result& result, const Eigen::VectorXd& state,
-                         const JointReactions& reactions, const SceneScale& scale) {
-  const JointState joints = joints_of(result, state);
-  const BodyTree& tree = result.system.tree();
-  ordered_json table = ordered_json::object();
-  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
-    table[tree.body(i).name] = joint_tables::joint(tree, i, joints, reactions, scale);
-  }
-  return table;
-}
-
-ordered_json reactions_json(const Result& result, const JointReactions& reactions,
-                            const SceneScale& scale) {
-  ordered_json table = ordered_json::object();
-  for (std::size_t i = 0; i < reactions.on_body.size(); ++i) {
-    table[result.system.tree().bodies()[i].name] = json(reactions.on_body[i].value, scale);
-  }
-  return table;
-}
-
-ordered_json json(const Steady& steady, const Result& result, const SceneScale& scale = {}) {
-  if (!steady.exists()) return {{"found", "none"}, {"reason", steady.reason}};
-  const JointReactions reactions = result.system.reactions(result.system.begin(), steady.state);
-  return {{"found", steady.kind == Steady::Kind::start ? "start" : "from the start"},
-          {"motion", steady.turns ? "steady motion" : "equilibrium"},
-          {"distance", steady.distance},
-          {"residual", steady.residual},
-          {"joints", joints_json(result, steady.state, reactions, scale)},
-          {"reactions", reactions_json(result, reactions, scale)}};
-}
-
-ordered_json json(const Rest& rest, const Result& result, const SceneScale& scale = {}) {
-  const Eigen::VectorXd& state = rest.equilibrium.state;
-  return {{"stability", name(rest.stability)},
-          {"distance", rest.distance},
-          {"residual", rest.equilibrium.residual},
-          {"neutral", rest.equilibrium.neutral},
-          {"joints", joints_json(result, state,
-                                 result.system.reactions(result.system.begin(), state), scale)},
-          {"frame", rest.linear.frame},
-          {"roots", roots_json(rest.linear)}};
-}
-
-ordered_json json(const FloquetMotion& floquet, const Result& result,
-                  const SceneScale& scale = {}) {
-  if (!floquet.reason.empty()) return {{"period", floquet.period}, {"reason", floquet.reason}};
-  ordered_json multipliers = ordered_json::array();
-  for (const Mode& m : floquet.multipliers) {
-    multipliers.push_back({{"real", m.root.real()},
-                           {"imag", m.root.imag()},
-                           {"size", std::abs(m.root)},
-                           {"error", m.error}});
-  }
-  ordered_json modes = ordered_json::array();
-  for (const WhirlingMode& mode : result.analysis.floquet_modes) modes.push_back(json(mode, false));
-  const auto reactions = result.system.reactions(result.system.begin(), floquet.start);
-  return {{"period", floquet.period},
-          {"verdict", name(floquet.verdict)},
-          {"multipliers", multipliers},
-          {"modes", modes},
-          {"residual", floquet.residual},
-          {"start", joints_json(result, floquet.start, reactions, scale)}};
-}
-
-ordered_json json(const PrecessionCheck& check) {
-  if (!check.beyond.empty()) return {{"reason", check.beyond}};
-  ordered_json result{{"velocities", check.velocities}};
-  if (check.not_tested.empty()) {
-    ordered_json slow = ordered_json::array();
-    for (const auto& root : check.test.slow) {
-      slow.push_back({{"technical", {root.technical.real(), root.technical.imag()}},
-                      {"exact", {root.exact.real(), root.exact.imag()}}});
-    }
-    result["admissible"] = check.test.admissible;
-    if (!check.test.admissible) result["why_not"] = check.test.reason;
-    result["rank"] = check.rank;
-    result["greatest_shift"] = json(check.test.greatest_shift);
-    result["slow_roots"] = slow;
-  } else {
-    result["not_tested"] = check.not_tested;
-  }
-  if (!check.no_motion.empty()) {
-    result["no_bound"] = check.no_motion;
-    return result;
-  }
-  const auto& [end, bound, nutation, valid_until, slow] = check.motion;
-  result["kept_accelerations"] = check.kept;
-  result["bound"] = {{"t", end},
-                     {"error", json(bound)},
-                     {"nutation", json(nutation)},
-                     {"below_0.01_until", valid_until},
-                     {"slow", slow}};
-  return result;
-}
 
 /// The coordinates of all joints with coordinates, in one line.
 std::string coordinates_text(const ordered_json& joints) {
@@ -151,14 +43,14 @@ std::string roots_text(const LinearMotion& linear) {
   return text.empty() ? "none" : text;
 }
 
-void print_equilibria(const Result& result) {
+void print_equilibria(const AnalysisResult& result) {
   const Analysis& a = result.analysis;
   if (a.starts == 0) return;
   fmt::print("equilibria: {} found from {} start{}\n", a.equilibria.size(), a.starts,
              a.starts == 1 ? "" : "s");
   for (const Rest& rest : a.equilibria) {
     const std::string where =
-        coordinates_text(json(rest, result, scale_of(result, rest.equilibrium.state))["joints"]);
+        coordinates_text(json_of(rest, result, scale_of(result, rest.equilibrium.state))["joints"]);
     const int neutral = rest.equilibrium.neutral;
     const std::string family = neutral == 0 ? ""
                                             : fmt::format(", one of a family in {} direction{}",
@@ -169,7 +61,7 @@ void print_equilibria(const Result& result) {
   fmt::print("\n");
 }
 
-void print(const Steady& steady, const Result& result) {
+void print(const Steady& steady, const AnalysisResult& result) {
   if (!steady.exists()) {
     fmt::print("no equilibrium and no steady motion: {}\n", printable(steady.reason));
     return;
@@ -181,12 +73,12 @@ void print(const Steady& steady, const Result& result) {
     fmt::print("{}: not the start of the file but the one next to it, up to {:.3g} away\n", what,
                steady.distance);
   }
-  const ordered_json table = json(steady, result, scale_of(result, steady.state));
+  const ordered_json table = json_of(steady, result, scale_of(result, steady.state));
   joint_tables::print("joints there", table["joints"]);
   joint_tables::print("reactions there, N and N m, on the body, its axes", table["reactions"]);
 }
 
-void print(const FloquetMotion& floquet, const Result& result) {
+void print(const FloquetMotion& floquet, const AnalysisResult& result) {
   fmt::print("\nFloquet, period {:.9g} s: ", floquet.period);
   if (!floquet.reason.empty()) {
     fmt::print("none, {}\n", floquet.reason);
@@ -203,7 +95,7 @@ void print(const FloquetMotion& floquet, const Result& result) {
   const std::string title =
       fmt::format("the motion that repeats itself, at t = {:.9g}", result.system.begin());
   joint_tables::print(title.c_str(),
-                      json(floquet, result, scale_of(result, floquet.start))["start"]);
+                      json_of(floquet, result, scale_of(result, floquet.start))["start"]);
 }
 
 void print(const PrecessionCheck& check, double t_end) {
@@ -244,24 +136,7 @@ void print(const PrecessionCheck& check, double t_end) {
 
 }  // namespace
 
-ordered_json to_json(const Result& result) {
-  const Analysis& a = result.analysis;
-  ordered_json equilibria = ordered_json::array();
-  for (const Rest& rest : a.equilibria) equilibria.push_back(json(rest, result));
-  ordered_json all{{"title", result.scene.title},
-                   {"equilibria", equilibria},
-                   {"equilibrium_starts", a.starts},
-                   {"steady", json(a.steady, result)}};
-  if (a.linear) all["linear"] = json(*a.linear);
-  if (a.campbell) all["campbell"] = json(*a.campbell);
-  if (a.floquet) all["floquet"] = json(*a.floquet, result);
-  if (a.response) all["response"] = json(*a.response);
-  all["precession"] = json(a.precession);
-  all["notes"] = a.notes;
-  return all;
-}
-
-void print_summary(const Result& result) {
+void print_summary(const AnalysisResult& result) {
   const Analysis& a = result.analysis;
   if (!result.scene.title.empty()) {
     fmt::print("{}\n\n", printable(result.scene.title));

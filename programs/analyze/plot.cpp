@@ -60,7 +60,7 @@ std::string points(const std::vector<bool>& shown, double size) {
   return list;
 }
 
-std::string roots(const Result& result, const LinearMotion& linear) {
+std::string roots(const AnalysisResult& result, const LinearMotion& linear) {
   std::ostringstream s;
   std::vector<bool> shown(std::size(looks), false);
   write_blocks(s, [&](std::size_t k) {
@@ -90,7 +90,7 @@ std::string roots(const Result& result, const LinearMotion& linear) {
   return s.str();
 }
 
-std::string multipliers(const Result& result, const FloquetMotion& floquet) {
+std::string multipliers(const AnalysisResult& result, const FloquetMotion& floquet) {
   std::ostringstream s;
   s << "$multipliers << END\n";
   for (const Mode& m : floquet.multipliers) {
@@ -109,12 +109,12 @@ std::string multipliers(const Result& result, const FloquetMotion& floquet) {
 
 }  // namespace
 
-std::string title_of(const Result& result, const std::string& what) {
+std::string title_of(const AnalysisResult& result, const std::string& what) {
   const std::string& title = result.scene.title;
   return quoted(title.empty() ? what : title + ": " + what);
 }
 
-void draw(const Result& result, const std::filesystem::path& folder) {
+void draw(const AnalysisResult& result, const std::filesystem::path& folder) {
   gnuplot::open_folder(folder);
   const Analysis& a = result.analysis;
   if (a.linear && !a.linear->modes.empty()) {

@@ -88,7 +88,7 @@ std::string order_lines(const SceneSweep& sweep) {
 
 }  // namespace
 
-std::string campbell_script(const Result& result, const SceneSweep& sweep) {
+std::string campbell_script(const AnalysisResult& result, const SceneSweep& sweep) {
   std::ostringstream s;
   write_lines(s, sweep);
   std::string list = "$lines with lines lc rgb '#999999' notitle" + order_lines(sweep);

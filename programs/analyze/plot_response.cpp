@@ -150,7 +150,7 @@ std::string clauses(const std::vector<BodeCurve>& curves, int column) {
 
 }  // namespace
 
-std::string response_script(const Result& result, const Response& response) {
+std::string response_script(const AnalysisResult& result, const Response& response) {
   const std::vector<BodeCurve> curves = curves_of(response);
   const MarginMarks marks(response);
   std::ostringstream s;

@@ -8,6 +8,7 @@
 #include <dynamics/file/atomic_file.hpp>
 #include <dynamics/file/csv.hpp>
 #include <dynamics/file/printable.hpp>
+#include <dynamics/json/deviation.hpp>
 
 #include "request.hpp"
 
@@ -94,77 +95,15 @@ void print_one(const Request& request, const Row& row) {
   fmt::print("\nrun time {:.3g} ms\n", 1e3 * row.run_time_s);
 }
 
-nlohmann::json json(const std::optional<Estimated<double>>& number) {
-  return number ? nlohmann::json(number->value) : nlohmann::json();
-}
-
-nlohmann::json json_error(const std::optional<Estimated<double>>& number) {
-  return number && std::isfinite(number->error) ? nlohmann::json(number->error) : nlohmann::json();
-}
-
-nlohmann::json json(const std::vector<kreisel::PendulumTerm<double>>& terms) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const auto& t : terms)
-    list.push_back({{"term", t.name}, {"reason", t.reason}, {"size", t.size}});
-  return list;
+/// The object of one site, with its name if it has one.
+nlohmann::ordered_json to_json(const Request& request, const Row& row) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::object();
+  if (!row.site.name.empty()) result["name"] = row.site.name;
+  result.update(kreisel::json_of(request, row.site.place, row, row.run_time_s));
+  return result;
 }
 
 }  // namespace
-
-nlohmann::ordered_json to_json(const kreisel::SitePendulum& request, const Row& row) {
-  const auto number = [](Real x) { return static_cast<double>(x); };
-  const auto& [latitude, azimuth, height, rate] = row.site.place;
-  const auto& b = request.body;
-  const auto& a = row.answer;
-  nlohmann::ordered_json result;
-  if (!row.site.name.empty()) result["name"] = row.site.name;
-  result["input"] = {{"latitude", number(latitude)},
-                     {"azimuth", number(azimuth)},
-                     {"height", number(height)},
-                     {"rotation_rate", number(rate)},
-                     {"gravity", row.gravity},
-                     {"gravity_model", request.gravity ? "number" : "normal"},
-                     {"gravity_gradient", request.gravity_gradient},
-                     {"mass", number(b.mass)},
-                     {"arm", number(b.arm)},
-                     {"theta_a", number(b.theta_a)},
-                     {"theta_b", number(b.theta_b)},
-                     {"theta_c", number(b.theta_c)},
-                     {"phi_a", number(b.phi_a)},
-                     {"phi_b", number(b.phi_b)},
-                     {"phi_c", number(b.phi_c)},
-                     {"amplitude", number(request.amplitude)}};
-  result["equilibrium"] = {{"formula_24", json(a.equilibrium.formula_24)},
-                           {"linear", json(a.equilibrium.linear)},
-                           {"exact", json(a.equilibrium.exact)}};
-  result["equilibria"] = nlohmann::ordered_json::array();
-  for (const auto& e : a.equilibria) {
-    result["equilibria"].push_back({{"angle", e.angle}, {"stable", e.stable}});
-  }
-  result["period"] = {{"simple", json(a.period.simple)},
-                      {"relative_change_formula_25", json(a.period.relative_change_formula_25)},
-                      {"linear", json(a.period.linear)},
-                      {"exact_small", json(a.period.exact_small)},
-                      {"relative_change_exact", json(a.period.relative_change_exact)},
-                      {"at_amplitude", json(a.period.at_amplitude)}};
-  result["error_estimate"] = {
-      {"equilibrium", json_error(a.equilibrium.exact)},
-      {"period", json_error(a.period.exact_small)},
-      {"equilibrium_formula_24", json_error(a.equilibrium.formula_24)},
-      {"equilibrium_linear", json_error(a.equilibrium.linear)},
-      {"period_simple", json_error(a.period.simple)},
-      {"period_linear", json_error(a.period.linear)},
-      {"period_at_amplitude", json_error(a.period.at_amplitude)},
-      {"relative_change_formula_25", json_error(a.period.relative_change_formula_25)},
-      {"relative_change_exact", json_error(a.period.relative_change_exact)}};
-  result["gravity_gradient"] = {{"included", request.gravity_gradient},
-                                {"equilibrium", row.gradient.equilibrium},
-                                {"relative_change", row.gradient.period}};
-  result["run_time_s"] = row.run_time_s;
-  result["terms_kept"] = json(a.terms_kept);
-  result["terms_dropped"] = json(a.terms_dropped);
-  return result;
-}
 
 void print_table(const Request& request, const std::vector<Row>& rows, double run_time_s) {
   if (request.mode == Request::Mode::single) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -41,9 +39,6 @@ struct Row : kreisel::SiteDeviation {
 
 /// Prints a full answer for one site, or one line per site.
 void print_table(const Request& request, const std::vector<Row>& rows, double run_time_s);
-
-/// The answer for one site: the object of --json.
-[[nodiscard]] nlohmann::ordered_json to_json(const kreisel::SitePendulum& request, const Row& row);
 
 void print_json(const Request& request, const std::vector<Row>& rows, double run_time_s);
 

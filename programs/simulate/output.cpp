@@ -10,6 +10,7 @@
 #include <dynamics/file/contacts.hpp>
 #include <dynamics/file/printable.hpp>
 #include <dynamics/file/readings.hpp>
+#include <dynamics/json/joints.hpp>
 #include <dynamics/solve/report.hpp>
 #include <motor/error.hpp>
 
@@ -20,9 +21,6 @@ using namespace kreisel;
 using nlohmann::ordered_json;
 
 namespace {
-
-using joint_tables::joint;
-using joint_tables::json;
 
 const kreisel::RunReport& report(const Result& result) { return result.run.report; }
 
@@ -52,7 +50,7 @@ std::optional<bool> size_terms(const kreisel::SceneFile& scene) {
       scene.gravity);
 }
 
-ordered_json json(const std::vector<TermLine>& terms) {
+ordered_json terms_json(const std::vector<TermLine>& terms) {
   ordered_json list = ordered_json::array();
   for (const TermLine& term : terms) list.push_back({{"term", term.name}, {"reason", term.reason}});
   return list;
@@ -100,8 +98,8 @@ ordered_json log_errors(const Result& result) {
       entry["rates"] = off.rates;
     }
     if (result.reactions) {
-      entry["force"] = json(off.force);
-      entry["torque"] = json(off.torque);
+      entry["force"] = json_of(off.force);
+      entry["torque"] = json_of(off.torque);
     }
   }
   return table;
@@ -127,7 +125,7 @@ ordered_json element_forces(const Result& result, const kreisel::SceneScale& sca
       result.model.element_forces(result.run.times.back(), result.run.states.back());
   ordered_json table = ordered_json::object();
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    table[name(result.scene.elements[i])] = json(forces[i], scale);
+    table[name(result.scene.elements[i])] = json_of(forces[i], scale);
   }
   return table;
 }
@@ -138,7 +136,7 @@ ordered_json constraint_forces(const Result& result, const kreisel::SceneScale& 
       result.model.constraint_forces(result.run.times.back(), result.run.states.back());
   ordered_json table = ordered_json::object();
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    table[result.scene.constraints[i].name] = json(forces[i], scale);
+    table[result.scene.constraints[i].name] = json_of(forces[i], scale);
   }
   return table;
 }
@@ -152,13 +150,13 @@ ordered_json final_state(const Result& result, const kreisel::SceneScale& scale 
   ordered_json parts = ordered_json::object();
   for (int i = 0; i < bodies(result); ++i) {
     const std::string& name = result.scene.bodies[at(i)].name;
-    joints[name] = joint(result.model.tree(), i, state, reactions, scale);
-    carried[name] = json(reactions.on_body[at(i)].value, scale);
+    joints[name] = joint_json(result.model.tree(), i, state, reactions, scale);
+    carried[name] = json_of(reactions.on_body[at(i)].value, scale);
     if (!result.terms) continue;
     const auto terms = result.model.terms(t, state, i);
-    parts[name] = {{"relative", json(terms.relative.value, scale)},
-                   {"guide", json(terms.guide.value, scale)},
-                   {"coriolis", json(terms.coriolis.value, scale)}};
+    parts[name] = {{"relative", json_of(terms.relative.value, scale)},
+                   {"guide", json_of(terms.guide.value, scale)},
+                   {"coriolis", json_of(terms.coriolis.value, scale)}};
   }
   ordered_json final{{"t", t}, {"joints", joints}};
   if (result.reactions) final["reactions"] = carried;
@@ -255,15 +253,15 @@ ordered_json summary(const Result& result) {
   ordered_json invariants = ordered_json::array();
   for (const auto& [name, start, largest] : r.invariants) {
     invariants.push_back(
-        {{"name", name}, {"start", json(start)}, {"largest_drift", json(largest)}});
+        {{"name", name}, {"start", json_of(start)}, {"largest_drift", json_of(largest)}});
   }
   const ErrorSources parts = error_sources(result);
-  ordered_json error{{"integration", json(parts.integration)},
-                     {"truncation", json(r.error_parts.truncation)},
-                     {"rounding", json(r.error_parts.rounding)},
-                     {"log", json(parts.log)},
-                     {"model", json(parts.model)}};
-  if (const auto distance = result.model.model_distance()) error["distance"] = json(*distance);
+  ordered_json error{{"integration", json_of(parts.integration)},
+                     {"truncation", json_of(r.error_parts.truncation)},
+                     {"rounding", json_of(r.error_parts.rounding)},
+                     {"log", json_of(parts.log)},
+                     {"model", json_of(parts.model)}};
+  if (const auto distance = result.model.model_distance()) error["distance"] = json_of(*distance);
   const auto whole = [](double count) { return static_cast<long long>(count); };
   return {{"title", result.scene.title},
           {"method", r.method},
@@ -275,13 +273,13 @@ ordered_json summary(const Result& result) {
           {"all_evaluations", whole(r.all_evaluations)},
           {"run_time_s", r.run_time},
           {"tolerance", r.tolerance},
-          {"error_estimate", json(whole_error(result))},
+          {"error_estimate", json_of(whole_error(result))},
           {"error", error},
           {"tolerance_kept", r.tolerance_kept},
           {"invariants", invariants},
           {"warnings", warnings(result)},
-          {"terms_kept", json(terms_kept(result))},
-          {"terms_dropped", json(terms_dropped(result))},
+          {"terms_kept", terms_json(terms_kept(result))},
+          {"terms_dropped", terms_json(terms_dropped(result))},
           {"final", final_state(result)}};
 }
 

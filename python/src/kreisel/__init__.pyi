@@ -141,7 +141,8 @@ class Scene:
     def analyze(self, *, campbell: str | None = None, speeds: Iterable[float] | None = None,
                 orders: Iterable[float] = (1,), period: float | None = None,
                 response: str | None = None, to: str | None = None,
-                frequencies: Iterable[float] | None = None) -> dict[str, Any]: ...
+                frequencies: Iterable[float] | None = None,
+                progress: Callable[[float], object] | None = None) -> dict[str, Any]: ...
     def state_space(self) -> dict[str, Any]: ...
 
 def pendulum_deviation(*, latitude: float | str, azimuth: float | str = 90,

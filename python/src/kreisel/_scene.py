@@ -161,16 +161,17 @@ class Scene:
         return Ensemble(found)
 
     def analyze(self, *, campbell=None, speeds=None, orders=(1,), period=None, response=None,
-                to=None, frequencies=None):
+                to=None, frequencies=None, progress=None):
         """Equilibria, steady motion, roots and stability; returns the object of analyze --json.
 
         campbell, speeds           a rotor and its speeds, rad/s against its carrier
         orders                     of critical speeds: frequency/speed
         period                     s, of the coefficients: Floquet multipliers
         response, to, frequencies  an input, an output and frequencies, rad/s, rising
+        progress                   as in solve()
 
         Keys: equilibria, steady, linear, precession, notes; on request campbell, floquet, response.
-        Frequencies and growth rates are in rad/s and 1/s. Raises InvalidInput and ComputationFailed.
+        Frequencies and growth rates are in rad/s and 1/s. Ctrl-C ends it. Raises InvalidInput and ComputationFailed.
         """
         sweep = _together("campbell", "speeds", campbell, speeds)
         if sweep is not None:
@@ -178,7 +179,8 @@ class Scene:
         if len({response is None, to is None, frequencies is None}) > 1:
             raise InvalidInput("response, to and frequencies go together")
         asked = None if response is None else (response, to, [float(w) for w in frequencies])
-        found = _told(self._path, lambda: _kreisel.analyze(self._native(), sweep, asked, period))
+        found = _told(self._path, lambda: _kreisel.analyze(
+            self._native(), sweep, asked, period, progress))
         return json.loads(found)
 
     def state_space(self):
