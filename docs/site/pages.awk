@@ -84,6 +84,10 @@ FNR == 1 {
   sub(/\.md$/, "", this_page)
   sub(/.*\//, "", this_page)
 }
+# Formulas are TeX, which script/formulas sets.
+/^```math$/ { formula = 1; print "@htmlonly<pre class=\"formula\">"; next }
+formula && /^```$/ { formula = 0; print "</pre>@endhtmlonly"; next }
+formula { gsub(/&/, "\\&amp;"); gsub(/</, "\\&lt;"); gsub(/>/, "\\&gt;"); print; next }
 /^```/ { fenced = !fenced; print; next }
 fenced || /^    / { print; next }
 /^##+ / {

@@ -32,6 +32,9 @@ def build(doxygen, doxyfile, folder):
     run = subprocess.run([doxygen, doxyfile], capture_output=True, text=True, check=True)
     FOUND.extend(line for line in run.stderr.splitlines() if "warning: " in line)
     subprocess.run([ROOT / "script/search_index", folder / "search_sections.js", folder], check=True)
+    if shutil.which("node"):
+        run = subprocess.run(["node", ROOT / "script/formulas", folder], capture_output=True, text=True)
+        FOUND.extend([run.stdout + run.stderr] if run.returncode else [])
     for name in ("search.js", "search_pages.html"):
         shutil.copy(ROOT / "docs/site/search" / name, folder)
 
