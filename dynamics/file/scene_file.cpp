@@ -248,6 +248,11 @@ class SceneReader {
     }
     auto gravity = root_.section("gravity");
     if (!gravity) return;
+    if (!gravity->has("kind")) {
+      gravity->refuse("kind",
+                      "is missing: give none, uniform, inertial, earth, point, j2 or orbit");
+      gravity->ignore_rest();
+    }
     const std::string kind =
         gravity->choice("kind", {"none", "uniform", "inertial", "earth", "point", "j2", "orbit"});
     if (gravity->has("kind") && gravity->text("kind").value_or("") != kind) gravity->ignore_rest();

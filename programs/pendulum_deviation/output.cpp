@@ -57,6 +57,10 @@ void print_one(const Request& request, const Row& row) {
   equilibrium("formula (24)", answer.equilibrium.formula_24);
   equilibrium("linear", answer.equilibrium.linear);
   equilibrium("exact", answer.equilibrium.exact);
+  const char* const gradient =
+      request.gravity_gradient ? "gradient, taken in" : "gradient, left out";
+  fmt::print("  {:22} {:+.3e} rad, of gravity over the body, first order\n", gradient,
+             row.gradient.equilibrium);
   fmt::print("  all                   ");
   for (const auto& e : answer.equilibria) {
     fmt::print(" {:+.9g} ({}{})", e.angle, e.degenerate ? "degenerate, " : "",
@@ -83,13 +87,11 @@ void print_one(const Request& request, const Row& row) {
   period("linear", p.linear, {});
   period("exact, small", p.exact_small, p.relative_change_exact);
   period(fmt::format("exact, {:g} rad", request.amplitude), p.at_amplitude, {});
+  fmt::print("  {:22} {:>21} {:+.3e}, first order\n", gradient, "", row.gradient.period);
   fmt::print(
       "(the error of a formula is its difference from the exact value, that of an exact value its "
       "rounding)\n\n");
 
-  fmt::print("gravity gradient{}: {:+.3e} rad, period {:+.3e} (first order)\n\n",
-             request.gravity_gradient ? ", taken in" : ", left out", row.gradient.equilibrium,
-             row.gradient.period);
   print_terms("terms kept, with their greatest moment in units of m a g'", answer.terms_kept);
   print_terms("terms dropped", answer.terms_dropped);
   fmt::print("\nrun time {:.3g} ms\n", 1e3 * row.run_time_s);

@@ -157,6 +157,11 @@ void draw(const std::filesystem::path& place, std::size_t height, const std::str
   for (const bool svg : {true, false}) {
     draw_picture(place.string() + (svg ? ".svg" : ".png"), terminal(svg, height) + script);
   }
+  wrote(place.string() + ".svg and .png");
+}
+
+void wrote(const std::filesystem::path& file) {
+  fmt::print(stderr, "wrote {}\n", kreisel::printable(file.string()));
 }
 
 }  // namespace gnuplot

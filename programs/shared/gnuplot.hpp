@@ -55,6 +55,9 @@ void draw_picture(const std::filesystem::path& file, const std::string& script);
 /// Throws : as draw_picture()
 void draw(const std::filesystem::path& place, std::size_t height, const std::string& script);
 
+/// Prints the name of a file that was written, on standard error.
+void wrote(const std::filesystem::path& file);
+
 /// The first line of a script: the terminal for an SVG or a PNG, 800 wide.
 std::string terminal(bool svg, std::size_t height);
 

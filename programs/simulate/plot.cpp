@@ -337,6 +337,7 @@ std::string on_sphere(const std::string& title, const std::string& what,
 void draw(const Result& result, const std::filesystem::path& folder) {
   gnuplot::open_folder(folder);
   write_view(result, folder / "view.html");
+  gnuplot::wrote(folder / "view.html");
   const Samples samples(result, most_points);
   const Series times = samples.all([](double t, const kreisel::JointState&) { return t; });
   const kreisel::SceneScale scale = scale_of(result);

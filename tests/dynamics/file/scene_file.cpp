@@ -704,6 +704,7 @@ BOOST_AUTO_TEST_CASE(are_found_in_every_section) {
       {guide("kind = \"chain\"\nlinks = [{ kind = \"inertial\" }, { kind = \"orbit\", "
              "semi_major_axis = 7e6 }]\n"),
        "'orbit' must be the first link"},
+      {"[gravity]\nvector = [0, 0, -9.81]\n" + body + run, "gravity.kind: is missing"},
       {"[gravity]\nkind = \"point\"\n" + body + run, "gravity.mu: is missing"},
       {"[gravity]\nkind = \"point\"\nmu = 0\n" + body + run, "gravity.mu: 0 must be above 0"},
       {"[gravity]\nkind = \"point\"\nmu = 1\npole = [0, 0, 1]\n" + body + run,
