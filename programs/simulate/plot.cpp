@@ -312,17 +312,17 @@ std::string on_sphere(const std::string& title, const std::string& what,
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d unit = 1.1 * Eigen::Vector3d::Unit(k);
     if (unit.dot(eye) > 0) {
-      fmt::print(s, "set label {} '{}' at {:.4g},{:.4g} center tc rgb '#555555'\n", k + 1, names[k],
-                 unit.dot(right), unit.dot(above));
+      fmt::print(s, "set label {} '{}' at {:.4g},{:.4g} center front tc rgb '#222222'\n", k + 1,
+                 names[k], unit.dot(right), unit.dot(above));
     }
   }
   s << "plot $grid with lines lc rgb '#cccccc' notitle, $back with lines dt (3,3) lc rgb "
-       "'#8fbfdd' notitle, $front with lines lw 2 lc rgb '#0072b2' title 'path', $start"
+       "'#6aa6cc' notitle, $front with lines lw 2 lc rgb '#0072b2' title 'path', $start"
     << fmt::format(fmt::runtime(marks), "");
   s << "unset object 1\nunset label\nset border 31 lc rgb '#555555'\nset tics tc rgb '#333333'\n"
        "set grid xtics ytics lt 1 lc rgb '#dddddd'\nunset key\nset title 'seen "
        "along its mean direction'\n"
-       "set format '%.4g'\nset xtics rotate by -30 autofreq\n"
+       "set format '%.4g'\nset xtics norotate autofreq\n"
     << square_range(near);
   fmt::print(s, "set xlabel 'towards {} [rad for small angles]'\nset ylabel 'across'\n",
              names[across]);

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """The pages of the site: site.py DOXYGEN DOXYFILE HTML [CHROMIUM]
 
-Doxygen warns of nothing, local links lead somewhere, and no page shows a raw reference. With Chromium:
-the search answers each question of docs/questions.md on its first screen, and no page is wider than a
-phone.
+Doxygen warns of nothing, local links lead somewhere, no page shows a raw reference, and each tutorial
+and how-to is behind its door. With Chromium: the search answers each question of docs/questions.md on
+its first screen, and no page is wider than a phone.
 """
 
 import html
@@ -55,6 +55,15 @@ def check_links(folder):
                 FOUND.append(f"{page}: links to {target}, which does not exist")
             elif anchor and target in names and anchor not in names[target]:
                 FOUND.append(f"{page}: links to {link}, which has no such place")
+
+
+def check_doors():
+    """Each tutorial is behind the door learn, each how-to behind the door do."""
+    for folder, door in (("tutorials", "learn"), ("howto", "do")):
+        shown = (ROOT / f"docs/site/{door}.md").read_text()
+        for page in (ROOT / "docs" / folder).glob("*.md"):
+            if f"(../{folder}/{page.name})" not in shown:
+                FOUND.append(f"docs/site/{door}.md lacks {folder}/{page.name}")
 
 
 def questions():
@@ -113,6 +122,7 @@ def main(doxygen, doxyfile, folder, chromium=None):
     folder = pathlib.Path(folder)
     build(doxygen, doxyfile, folder)
     check_links(folder)
+    check_doors()
     if chromium:
         check_in_browser(chromium, folder)
     print("\n".join(sorted(set(FOUND))))
