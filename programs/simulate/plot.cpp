@@ -7,6 +7,7 @@
 #include <string>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/printable.hpp>
 #include <dynamics/tree/joint/list.hpp>
 
 #include "../shared/gnuplot.hpp"
@@ -332,6 +333,26 @@ std::string on_sphere(const std::string& title, const std::string& what,
   return s.str();
 }
 
+/// Prints a warning for each body that turns by more than a radian between drawn instants.
+void warn_of_coarse_curves(const Result& result, const Samples& samples, const Series& times) {
+  const kreisel::BodyTree& tree = result.model.tree();
+  for (int i = 0; i < static_cast<int>(tree.bodies().size()); ++i) {
+    if (!kreisel::joint_type(tree.body(i).joint.kind).has_attitude()) continue;
+    const int v = tree.place(i).v;
+    const Series turning = samples.all(
+        [v](double, const kreisel::JointState& state) { return state.rates.segment<3>(v).norm(); });
+    double most = 0;
+    for (std::size_t k = 1; k < times.size(); ++k) {
+      most = std::max(most, turning[k] * (times[k] - times[k - 1]));
+    }
+    if (most <= 1) continue;
+    fmt::print(stderr,
+               "simulate: {} turns by up to {:.3g} rad between the drawn instants: curves of its "
+               "attitude are too coarse, give a smaller output_step\n",
+               kreisel::printable(tree.body(i).name, 60), most);
+  }
+}
+
 }  // namespace
 
 void draw(const Result& result, const std::filesystem::path& folder) {
@@ -340,6 +361,7 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   gnuplot::wrote(folder / "view.html");
   const Samples samples(result, most_points);
   const Series times = samples.all([](double t, const kreisel::JointState&) { return t; });
+  warn_of_coarse_curves(result, samples, times);
   const kreisel::SceneScale scale = scale_of(result);
   const auto rows = samples.all([&](double t, const kreisel::JointState& state) {
     return shown_row(result.model.tree(), row(result.model, t, state, {result.reactions}), scale);

@@ -1,4 +1,4 @@
-# cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D LIBDIR=<folder> -D OUT=<folder> -P deb.cmake
+# cmake -D CPACK=<program> -D CONFIG=<CPackConfig.cmake> -D LIBDIR=<folder> -D SITE=<folder> -D OUT=<folder> -P deb.cmake
 #
 # Makes a .deb of the installation in TREE, checks its metadata and contents, unpacks it into
 # OUT/root.
@@ -52,6 +52,11 @@ file(GLOB_RECURSE held RELATIVE ${OUT}/${runtime} ${OUT}/${runtime}/*)
 list(FILTER held EXCLUDE REGEX "/libkreisel\\.so\\.[0-9.]+$|^usr/share/doc/${runtime}/")
 if(held)
   message(SEND_ERROR "${runtime} also holds ${held}")
+endif()
+
+# The site is in its package if it was built before.
+if(EXISTS ${SITE}/index.html)
+  check(kreisel-doc DEPENDS "" HOLDS share/doc/kreisel-doc/html/index.html)
 endif()
 
 file(GLOB python ${OUT}/python3-kreisel_*.deb)
