@@ -4,6 +4,7 @@
 #include "motors.hpp"
 
 #include <array>
+#include <cstddef>
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 #include <string>
@@ -121,21 +122,22 @@ void define_poses(py::module_& m) {
 template <class OfV, class OfF>
 std::array<Motor<>, 3> parts_of(const BodyInertia& T, const Motor<>& V, const Motor<>& F,
                                 const Motor<>& dV, const Motor<>& dF) {
-  using V_rel = Velocity<Body, Guide, Body>;
-  using V_guide = Velocity<Guide, Inertial, Body>;
-  const auto parts =
-      equation_of_motion(T, V_rel{V}, V_guide{F}, Rate<OfV, V_rel>{dV}, Rate<OfF, V_guide>{dF});
+  using Relative = Velocity<Body, Guide, Body>;
+  using Carrying = Velocity<Guide, Inertial, Body>;
+  const auto parts = equation_of_motion(T, Relative{V}, Carrying{F}, Rate<OfV, Relative>{dV},
+                                        Rate<OfF, Carrying>{dF});
   return {untagged(parts.relative), untagged(parts.guide), untagged(parts.coriolis)};
 }
 
 /// The same with observers by number: 0 body, 1 guide, 2 inertial.
 std::array<Motor<>, 3> parts_of_the_law(const BodyInertia& T, const Motor<>& V, const Motor<>& F,
-                                        int of_V, const Motor<>& dV, int of_F, const Motor<>& dF) {
+                                        std::size_t of_relative, const Motor<>& dV,
+                                        std::size_t of_guide, const Motor<>& dF) {
   static constexpr std::array forms{
       &parts_of<Body, Body>,     &parts_of<Body, Guide>,     &parts_of<Body, Inertial>,
       &parts_of<Guide, Body>,    &parts_of<Guide, Guide>,    &parts_of<Guide, Inertial>,
       &parts_of<Inertial, Body>, &parts_of<Inertial, Guide>, &parts_of<Inertial, Inertial>};
-  return forms.at(static_cast<std::size_t>(3 * of_V + of_F))(T, V, F, dV, dF);
+  return forms.at(3 * of_relative + of_guide)(T, V, F, dV, dF);
 }
 
 }  // namespace

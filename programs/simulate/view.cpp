@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -90,6 +92,14 @@ Eigen::Vector3d up(const kreisel::SceneFile& scene) {
   return down.norm() > 0 ? Eigen::Vector3d(-down.normalized()) : Eigen::Vector3d::UnitZ();
 }
 
+/// North on guide axes at a site of the earth, whose guide is at rest there; null elsewhere.
+ordered_json north(const kreisel::SceneFile& scene) {
+  const auto* const earth = std::get_if<kreisel::scene_guide::Earth>(&scene.guide.front());
+  if (earth == nullptr || scene.guide.size() > 1) return {};
+  const double azimuth = earth->site.azimuth * std::numbers::pi / 180;
+  return numbers(Eigen::Vector3d(0, std::sin(azimuth), std::cos(azimuth)));
+}
+
 ordered_json drawn_as(const Shape& shape) {
   return {{"form", shape.form},
           {"axes", numbers(shape.axes)},
@@ -167,6 +177,7 @@ void write_view(const Result& result, const std::filesystem::path& place) {
   const kreisel::BodyTree& tree = result.model.tree();
   ordered_json run{{"title", result.scene.title},
                    {"up", numbers(up(result.scene))},
+                   {"north", north(result.scene)},
                    {"bodies", bodies(tree)},
                    {"columns", columns(tree, false)},
                    {"rows", samples.all([&](double t, const kreisel::JointState& state) {
