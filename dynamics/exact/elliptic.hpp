@@ -4,116 +4,138 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
+
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel::exact {
 
 /// The number type of exact motions: over 1e4 periods double would leave an error of 1e-11 of a
-/// phase. The bounds stated here are for 64 bits (x86). Where long double is no more than double
-/// they are 2^11 times as large.
-using Real = long double;
+/// phase.
+using Real = DoubleDouble;
 
+/// Carlson's integrals. Each duplication makes their arguments equal but for a fourth of their
+/// spread. After the last, below 2^-5, a series remains that differs from 1 by so little that the
+/// digits of double suffice for it.
+///
+/// Source : B. C. Carlson, Computing elliptic integrals by duplication (1979), Numerical computation
+///          of real or complex elliptic integrals (1995); the series: NIST Handbook of Mathematical
+///          Functions, 19.19
+/// Error  : 2^-64, relative                              (tests/dynamics/exact/elliptic.cpp)
 namespace carlson {
 
 namespace detail {
 
-/// The spread below which a series without its eighth power is accurate. It is compared by !(>=),
-/// so that NaN ends the loop too.
-[[nodiscard]] inline Real last_spread() {
-  static const Real spread = std::pow(std::numeric_limits<Real>::epsilon() / 8, Real(1) / 8);
-  return spread;
+/// True if the series may follow. Compared by !(>=), so that NaN ends the duplication too.
+[[nodiscard]] inline bool near(std::initializer_list<double> offs) {
+  double greatest = 0;
+  for (const double off : offs) greatest = std::max(greatest, std::abs(off));
+  return !(greatest >= 0x1p-5);
 }
+
+/// 1 + sum over n > 1 of  (a)_n/(a + 1)_n T_n,  where T_n are the coefficients of D(t)^-1/2,
+/// D = 1 + e2 t^2 - e3 t^3 + e4 t^4 - e5 t^5,  after J. C. P. Miller:
+/// n T_n = sum over k of (k/2 - n) d_k T_(n-k).
+[[nodiscard]] inline Real series(double a, double e2, double e3, double e4 = 0, double e5 = 0) {
+  constexpr std::size_t order = 12;
+  std::array<double, order + 4> T{0, 0, 0, 0, 1};  // from T_-4 on
+  double sum = 0;
+#pragma GCC unroll 12
+  for (std::size_t i = 2; i < order; ++i) {
+    const auto n = static_cast<double>(i);
+    T[i + 4] = (1.5 / n - 1) * -e3 * T[i + 1] + (2 / n - 1) * e4 * T[i] +
+               (2.5 / n - 1) * -e5 * T[i - 1] + (1 / n - 1) * e2 * T[i + 2];
+    sum += a / (a + n) * T[i + 4];
+  }
+  return 1 + Real(sum);
+}
+
+/// (x + lambda)/4
+[[nodiscard]] inline Real next(const Real& x, const Real& lambda) {
+  return scaled(x + lambda, 0.25);
+}
+
+inline const Real root_of_3 = sqrt(Real(3));
 
 }  // namespace detail
 
 /// R_F(x, y, z) = 1/2 int_0^inf dt / sqrt((t + x)(t + y)(t + z)),  at most one of them 0.
-///
-/// Source : B. C. Carlson, Numerical computation of real or complex elliptic integrals (1995); the
-///          series of R_F and R_J to the seventh power: NIST Handbook of Mathematical Functions,
-///          19.36(i)
-/// Error  : some units of long double, relative
 [[nodiscard]] inline Real rf(Real x, Real y, Real z) {
   while (true) {
-    const Real mean = (x + y + z) / 3;
-    const Real X = 1 - x / mean;
-    const Real Y = 1 - y / mean;
-    const Real Z = -X - Y;
-    if (!(std::max({std::abs(X), std::abs(Y), std::abs(Z)}) >= detail::last_spread())) {
-      const Real e2 = X * Y - Z * Z;
-      const Real e3 = X * Y * Z;
-      const Real series =
-          1 + e3 * (Real(1) / 14 + 3 * e3 / 104) +
-          e2 * (Real(-0.1L) - 3 * e3 / 44 + e2 * (Real(1) / 24 + e3 / 16 - 5 * e2 / 208));
-      return series / std::sqrt(mean);
+    const Real sum = x + y + z;
+    const double X = (sum - (scaled(x, 2) + x)).hi / sum.hi;  // 1 - x/mean
+    const double Y = (sum - (scaled(y, 2) + y)).hi / sum.hi;
+    const double Z = -X - Y;
+    if (detail::near({X, Y, Z})) {
+      return detail::series(0.5, X * Y - Z * Z, X * Y * Z) * detail::root_of_3 / sqrt(sum);
     }
-    const Real sx = std::sqrt(x);
-    const Real sy = std::sqrt(y);
-    const Real sz = std::sqrt(z);
-    const Real lambda = sx * sy + sx * sz + sy * sz;
-    x = (x + lambda) / 4;
-    y = (y + lambda) / 4;
-    z = (z + lambda) / 4;
+    const Real sx = sqrt(x);
+    const Real sy = sqrt(y);
+    const Real sz = sqrt(z);
+    const Real lambda = sx * (sy + sz) + sy * sz;
+    x = detail::next(x, lambda);
+    y = detail::next(y, lambda);
+    z = detail::next(z, lambda);
   }
 }
 
-/// R_C(x, y) = R_F(x, y, y),  y > 0.
-[[nodiscard]] inline Real rc(Real x, Real y) {
+/// R_C(1, 1 + e) = R_F(1, 1 + e, 1 + e),  e > -1.
+[[nodiscard]] inline Real rc_beside_1(const Real& e) {
+  Real x = 1;
+  Real y = 1 + e;
   while (true) {
-    const Real mean = (x + 2 * y) / 3;
-    const Real s = y / mean - 1;
-    if (!(std::abs(s) >= detail::last_spread())) {
-      const Real series =
-          3 * Real(0.1L) +
-          s * (Real(1) / 7 +
-               s * (Real(3) / 8 + s * (Real(9) / 22 + s * (Real(159) / 208 + s * 9 / 8))));
-      return (1 + s * s * series) / std::sqrt(mean);
+    const Real sum = x + scaled(y, 2);
+    const double Y = (x - y).hi / sum.hi;  // 1 - y/mean
+    if (detail::near({2 * Y})) {
+      return detail::series(0.5, -3 * Y * Y, -2 * Y * Y * Y) * detail::root_of_3 / sqrt(sum);
     }
-    const Real lambda = 2 * std::sqrt(x) * std::sqrt(y) + y;
-    x = (x + lambda) / 4;
-    y = (y + lambda) / 4;
+    const Real lambda = scaled(sqrt(x * y), 2) + y;
+    x = detail::next(x, lambda);
+    y = detail::next(y, lambda);
   }
 }
 
 /// R_J(x, y, z, p) = 3/2 int_0^inf dt / ((t + p) sqrt((t + x)(t + y)(t + z))),  p > 0.
 ///
-/// The older of Carlson's two recurrences, whose terms are all positive: it keeps its digits for p
-/// far below x, y and z.
-///
-/// Source : B. C. Carlson, Computing elliptic integrals by duplication (1979)
-/// Error  : some units of long double, relative
+/// Each duplication adds  3 R_C(alpha^2, beta^2) = 6/d R_C(1, 1 + e),  d = alpha + beta,
+/// e = (beta - alpha)/d. All terms of alpha and beta are positive: the integral keeps its digits
+/// for p far below x, y and z.
 [[nodiscard]] inline Real rj(Real x, Real y, Real z, Real p) {
-  Real sum = 0;
-  Real quarter = 1;
+  Real terms = 0;
+  double quarter = 1;
   while (true) {
-    const Real mean = (x + y + z + 2 * p) / 5;
-    const Real X = 1 - x / mean;
-    const Real Y = 1 - y / mean;
-    const Real Z = 1 - z / mean;
-    const Real P = (-X - Y - Z) / 2;
-    if (!(std::max({std::abs(X), std::abs(Y), std::abs(Z), std::abs(P)}) >=
-          detail::last_spread())) {
-      const Real xyz = X * Y * Z;
-      const Real e2 = X * Y + X * Z + Y * Z - 3 * P * P;
-      const Real e3 = xyz + 2 * e2 * P + 4 * P * P * P;
-      const Real e4 = (2 * xyz + e2 * P + 3 * P * P * P) * P;
-      const Real e5 = xyz * P * P;
-      const Real series = 1 - 3 * e2 / 14 + e3 / 6 + 9 * e2 * e2 / 88 - 3 * e4 / 22 -
-                          9 * e2 * e3 / 52 + 3 * e5 / 26 - e2 * e2 * e2 / 16 + 3 * e3 * e3 / 40 +
-                          3 * e2 * e4 / 20 + 45 * e2 * e2 * e3 / 272 - 9 * (e3 * e4 + e2 * e5) / 68;
-      return quarter * series / (mean * std::sqrt(mean)) + 3 * sum;
+    const Real sum = x + y + z + scaled(p, 2);
+    const auto off = [&](const Real& of) { return (sum - (scaled(of, 4) + of)).hi / sum.hi; };
+    const double X = off(x);
+    const double Y = off(y);
+    const double Z = off(z);
+    const double P = (-X - Y - Z) / 2;
+    if (detail::near({X, Y, Z, P})) {
+      const double xyz = X * Y * Z;
+      const double e2 = X * Y + X * Z + Y * Z - 3 * P * P;
+      const double e3 = xyz + 2 * e2 * P + 4 * P * P * P;
+      const double e4 = (2 * xyz + e2 * P + 3 * P * P * P) * P;
+      const double e5 = xyz * P * P;
+      const Real mean = sum / 5;
+      return scaled(detail::series(1.5, e2, e3, e4, e5), quarter) / (mean * sqrt(mean)) + 6 * terms;
     }
-    const Real sx = std::sqrt(x);
-    const Real sy = std::sqrt(y);
-    const Real sz = std::sqrt(z);
-    const Real lambda = sx * sy + sx * sz + sy * sz;
-    const Real alpha = p * (sx + sy + sz) + sx * sy * sz;
-    sum += quarter * rc(alpha * alpha, p * (p + lambda) * (p + lambda));
+    const Real sx = sqrt(x);
+    const Real sy = sqrt(y);
+    const Real sz = sqrt(z);
+    const Real yz = sy * sz;
+    const Real lambda = sx * (sy + sz) + yz;
+    const Real alpha = p * (sx + sy + sz) + sx * yz;
+    const Real beta = sqrt(p) * (p + lambda);
+    const Real d = alpha + beta;
+    const Real inverse = 1 / d;
+    terms += scaled(rc_beside_1((beta - alpha) * inverse) * inverse, quarter);
     quarter /= 4;
-    x = (x + lambda) / 4;
-    y = (y + lambda) / 4;
-    z = (z + lambda) / 4;
-    p = (p + lambda) / 4;
+    x = detail::next(x, lambda);
+    y = detail::next(y, lambda);
+    z = detail::next(z, lambda);
+    p = detail::next(p, lambda);
   }
 }
 
@@ -129,9 +151,9 @@ struct Jacobi {
 /// An argument u = 2 K n + rest, |rest| <= K, with Jacobi's functions of both.
 struct Phase {
   Real u;
-  Real half_periods;  ///< n, a whole number
-  Jacobi rest;        ///< of the rest, so that cn >= 0
-  Jacobi at;          ///< of u itself
+  double half_periods;  ///< n, a whole number
+  Jacobi rest;          ///< of the rest, so that cn >= 0
+  Jacobi at;            ///< of u itself
 };
 
 /// Jacobi's elliptic functions of parameter m = k^2 and its complement m1 = 1 - m, 0 <= m <= 1.
@@ -141,26 +163,25 @@ struct Phase {
 ///
 /// Source : Gauss' transformation (descending Landen), in the cotangent after R. Bulirsch (1965),
 ///          so that cn and dn keep their digits where they are small
-/// Error  : the effect of an error of the argument of some units of long double of |u| + K
+/// Error  : the effect of an error of the argument of some units of 2^-70 of |u| + K
 class EllipticFunctions {
  public:
   EllipticFunctions() : EllipticFunctions(0, 1) {}
   EllipticFunctions(Real m, Real m1) : m_(m), m1_(m1) {
     if (m1 == 0) return;
     Real a = 1;
-    Real b = std::sqrt(m1);
+    Real b = sqrt(m1);
     while (true) {
-      a_[steps_] = a;
-      b_[steps_] = b;
-      ++steps_;
-      mean_ = (a + b) / 2;
+      steps_[count_] = {a, 1 / a, a - b};
+      ++count_;
+      mean_ = scaled(a + b, 0.5);
       // The next two would differ by the square of this, relatively: below rounding.
-      const Real spread = (a - b) / (4 * a);
-      if (spread * spread <= std::numeric_limits<Real>::epsilon() || steps_ == a_.size()) break;
-      b = std::sqrt(a * b);
+      const double spread = (a - b).hi / (4 * a.hi);
+      if (spread * spread <= 0x1p-76 || count_ == steps_.size()) break;
+      b = sqrt(a * b);
       a = mean_;
     }
-    quarter_ = std::numbers::pi_v<Real> / 2 / mean_;
+    quarter_ = std::numbers::pi_v<Real> / scaled(mean_, 2);
   }
 
   [[nodiscard]] Real m() const { return m_; }
@@ -179,37 +200,42 @@ class EllipticFunctions {
       const Jacobi j = within_quarter(u);
       return {u, 0, j, j};
     }
-    const Real rest = std::remainder(u, 2 * quarter_);
-    const Real n = std::round((u - rest) / (2 * quarter_));
-    const Jacobi j = within_quarter(rest);
-    const Real sign = std::fmod(n, Real(2)) == 0 ? 1 : -1;
-    return {u, n, j, {sign * j.sn, sign * j.cn, j.dn}};
+    const double n = std::round(u.hi / (2 * quarter_.hi));
+    const Jacobi j = within_quarter(u - scaled(quarter_, 2) * n);
+    const bool odd = std::fmod(n, 2) != 0;
+    return {u, n, j, odd ? Jacobi{-j.sn, -j.cn, j.dn} : j};
   }
 
  private:
   /// The functions for |u| <= K.
   [[nodiscard]] Jacobi within_quarter(Real u) const {
-    if (m1_ == 0) return {std::tanh(u), 1 / std::cosh(u), 1 / std::cosh(u)};
-    const Real sine = std::sin(mean_ * u);
+    if (m1_ == 0) return {tanh(u), 1 / cosh(u), 1 / cosh(u)};
+    const auto [sine, cosine] = detail::sine_cosine(mean_ * u);
     if (sine == 0) return {0, 1, 1};
-    Real a = std::cos(mean_ * u) / sine;
+    Real a = cosine / sine;
     Real cotangent = mean_ * a;
     Real dn = 1;
-    for (std::size_t i = steps_; i-- > 0;) {
+    for (std::size_t i = count_; i-- > 0;) {
+      const Step& step = steps_[i];
       a *= cotangent;
       cotangent *= dn;
-      dn = (b_[i] + a) / (a_[i] + a);
-      a = cotangent / a_[i];
+      const Real sum = step.a + a;
+      // A small difference from 1 needs only the digits of double.
+      dn = 1 - (step.gap.hi < 0x1p-20 ? Real(step.gap.hi / sum.hi) : step.gap / sum);
+      a = cotangent * step.inverse;
     }
-    const Real sn = std::copysign(1 / std::sqrt(1 + cotangent * cotangent), sine);
+    const Real sn = copysign(1 / sqrt(1 + cotangent * cotangent), sine);
     return {sn, cotangent * sn, dn};
   }
 
   Real m_;
   Real m1_;
-  std::array<Real, 32> a_{};
-  std::array<Real, 32> b_{};
-  std::size_t steps_ = 0;
+  struct Step {
+    Real a, inverse;  ///< the arithmetic mean and 1/a
+    Real gap;         ///< its difference from the geometric mean
+  };
+  std::array<Step, 32> steps_{};
+  std::size_t count_ = 0;
   Real mean_ = 0;
   Real quarter_ = std::numeric_limits<Real>::infinity();
 };
@@ -241,9 +267,9 @@ class ThirdKind {
  private:
   [[nodiscard]] Real of_tanh(Real T) const {
     const Real nu = p_ - 1;
-    const Real root = std::sqrt(std::abs(nu));
+    const Real root = sqrt(abs(nu));
     if (root == 0) return T;
-    return (nu > 0 ? std::atan(root * T) : std::atanh(root * T)) / root;
+    return (nu > 0 ? atan(root * T) : atanh(root * T)) / root;
   }
 
   Real p_;  ///< 1 + nu

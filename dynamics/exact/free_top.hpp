@@ -9,10 +9,10 @@
 #include <numbers>
 #include <optional>
 
-#include <dynamics/exact/double_double.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/refuse.hpp>
 #include <dynamics/exact/top_motion.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel::exact {
 
@@ -45,7 +45,8 @@ namespace kreisel::exact {
 ///          addition 8 * 2^-64 of the angle L t/I_min: <= 5e-14 rad over 1e4 periods, 5e-13 rad
 ///          after 1e6 s at 2 rad/s      (tests/dynamics/exact/free_top.cpp)
 /// Cost   : at() 1.3 us, to construct 4.8 us (g++ 12 -O2, EPYC)
-/// Limits : near the separatrix the rounding of an input to double changes D by u L^2, and each
+/// Limits : a component of the rate below 1e-144 of the greatest counts as 0;
+///          near the separatrix the rounding of an input to double changes D by u L^2, and each
 ///          passage of the middle axis by u L^2 / (2 lambda |D|) seconds; no formula can undo this
 class FreeTop {
  public:
@@ -59,11 +60,15 @@ class FreeTop {
       : omega0_(omega0), attitude0_(detail::unit(attitude0)) {
     detail::require_body(moments);
     detail::require_finite(omega0);
-    const detail::RealVector omega = omega0.cast<Real>();
-    const detail::RealVector L = omega.cwiseProduct(moments.cast<Real>());
-    energy_ = L.dot(omega) / 2;
-    momentum_ = L.norm();
-    if (!steady(moments, omega0)) polhode_.emplace(moments, omega0);
+    unit_ = detail::power_of_2(omega0.cwiseAbs().maxCoeff());
+    const Vector3<double> rate = detail::in_unit(omega0, unit_);
+    const double moment = detail::power_of_2(moments.maxCoeff());
+    const Vector3<double> I = moments / moment;
+    const detail::RealVector omega = rate.cast<Real>();
+    const detail::RealVector L = omega.cwiseProduct(I.cast<Real>());
+    energy_ = static_cast<double>(scaled(L.dot(omega), 0.5)) * unit_ * (moment * unit_);
+    momentum_ = static_cast<double>(L.norm()) * moment * unit_;
+    if (!steady(I, rate)) polhode_.emplace(I, rate, attitude0_);
   }
 
   /// Throws : InvalidInput for a time that is not finite
@@ -73,21 +78,22 @@ class FreeTop {
       const auto turn = detail::steady_turn(omega0_.cast<Real>(), time);
       return {(attitude0_ * turn).cast<double>(), omega0_};
     }
-    const auto [turn, omega] = polhode_->at(time);
-    return {(attitude0_ * turn).cast<double>(), omega.cast<double>()};
+    TopMotion motion = polhode_->at(time * unit_);
+    motion.angular_velocity *= unit_;
+    return motion;
   }
 
   /// 4 K/lambda, after which omega repeats on body axes: infinite on the separatrix, 0 for a steady
   /// rotation.
   [[nodiscard]] double period() const {
-    return polhode_ ? static_cast<double>(polhode_->period()) : 0.0;
+    return polhode_ ? static_cast<double>(polhode_->period()) / unit_ : 0.0;
   }
 
   /// E = omega . Theta omega / 2.
-  [[nodiscard]] double energy() const { return static_cast<double>(energy_); }
+  [[nodiscard]] double energy() const { return energy_; }
 
   /// L = |Theta omega|.
-  [[nodiscard]] double momentum() const { return static_cast<double>(momentum_); }
+  [[nodiscard]] double momentum() const { return momentum_; }
 
  private:
   /// True if  omega x Theta omega = 0,  computed without products that might underflow.
@@ -103,14 +109,14 @@ class FreeTop {
    public:
     Axes(const Vector3<double>& moments, const Vector3<double>& omega0) {
       std::sort(body_.begin(), body_.end(), [&](int i, int j) { return moments[i] < moments[j]; });
-      const DoubleDouble i1 = moments[body_[0]];
-      const DoubleDouble i2 = moments[body_[1]];
-      const DoubleDouble i3 = moments[body_[2]];
-      const DoubleDouble w1 = omega0[body_[0]];
-      const DoubleDouble w3 = omega0[body_[2]];
-      const DoubleDouble D = i3 * (i3 - i2) * (w3 * w3) - i1 * (i2 - i1) * (w1 * w1);
-      distance_ = std::abs(D.hi);
-      if (D.hi < 0) {
+      const Real i1 = moments[body_[0]];
+      const Real i2 = moments[body_[1]];
+      const Real i3 = moments[body_[2]];
+      const Real w1 = omega0[body_[0]];
+      const Real w3 = omega0[body_[2]];
+      const Real D = i3 * (i3 - i2) * (w3 * w3) - i1 * (i2 - i1) * (w1 * w1);
+      distance_ = abs(D);
+      if (D < 0) {
         side_ = -1;
         std::swap(body_[0], body_[2]);
       }
@@ -124,7 +130,7 @@ class FreeTop {
     [[nodiscard]] Real distance() const { return distance_; }
 
     /// The sign of D.
-    [[nodiscard]] Real side() const { return side_; }
+    [[nodiscard]] double side() const { return side_; }
 
     [[nodiscard]] detail::RealVector ordered(const Vector3<double>& v) const {
       return {v[body_[0]], v[body_[1]], v[body_[2]]};
@@ -140,40 +146,42 @@ class FreeTop {
       for (std::size_t i = 0; i < 3; ++i) body[body_[i]] = sign_[i] * v[static_cast<int>(i)];
       return body;
     }
+    [[nodiscard]] detail::RealQuaternion to_body(const detail::RealQuaternion& q) const {
+      const detail::RealVector v = to_body(detail::RealVector(q.vec()));
+      return {q.w(), v.x(), v.y(), v.z()};
+    }
 
    private:
     std::array<int, 3> body_{0, 1, 2};
     std::array<int, 3> sign_{};
     Real distance_;
-    Real side_ = 1;
+    double side_ = 1;
   };
 
   /// A motion in which L moves against the body.
   class Polhode {
    public:
-    struct State {
-      detail::RealQuaternion turn;  ///< since time 0
-      detail::RealVector omega;
-    };
-
-    Polhode(const Vector3<double>& moments, const Vector3<double>& omega0)
+    Polhode(const Vector3<double>& moments, const Vector3<double>& omega0,
+            const detail::RealQuaternion& attitude0)
         : axes_(moments, omega0) {
       const detail::RealVector theta = axes_.ordered(moments);
       const detail::RealVector w = axes_.from_body(omega0);
       const detail::RealVector w2 = w.cwiseAbs2();
-      const Real i21 = std::abs(theta[1] - theta[0]);
-      const Real i31 = std::abs(theta[2] - theta[0]);
-      const Real i32 = std::abs(theta[2] - theta[1]);
+      const Real i21 = abs(theta[1] - theta[0]);
+      const Real i31 = abs(theta[2] - theta[0]);
+      const Real i32 = abs(theta[2] - theta[1]);
       const Real p1 = theta[1] * i21 * w2[1] + theta[2] * i31 * w2[2];
       const Real p3 = theta[0] * i31 * w2[0] + theta[1] * i32 * w2[1];
       const Real L = theta.cwiseProduct(w).norm();
 
       functions_ = {i21 * p3 / (i32 * p1), i31 * axes_.distance() / (i32 * p1)};
-      lambda_ = std::sqrt(i32 * p1 / (theta[0] * theta[1] * theta[2]));
-      amplitude_ = {std::sqrt(p3 / (theta[0] * i31)),
-                    axes_.side() * std::sqrt(p3 / (theta[1] * i32)),
-                    std::sqrt(p1 / (theta[2] * i31))};
+      lambda_ = sqrt(i32 * p1 / (theta[0] * theta[1] * theta[2]));
+      amplitude_ = {sqrt(p3 / (theta[0] * i31)), axes_.side() * sqrt(p3 / (theta[1] * i32)),
+                    sqrt(p1 / (theta[2] * i31))};
       direction_ = amplitude_.cwiseProduct(theta) / L;
+      const double up = std::exp2(-std::ilogb(direction_[0].hi));  // squares must not underflow
+      azimuth_ = {scaled(direction_[0], up), scaled(direction_[1], up)};
+      side_ = axes_.side();
       u0_ = EllipticFunctions::argument(
           {w[1] / amplitude_[1], w[0] / amplitude_[0], w[2] / amplitude_[2]});
 
@@ -181,33 +189,42 @@ class FreeTop {
       third_kind_ = {functions_, 1 + nu};
       steady_precession_ = L / theta[0];
       unsteady_precession_ = axes_.side() * i31 * L / (theta[0] * theta[2] * lambda_) * nu;
-      start_ = attitude(functions_.phase(u0_), 0).conjugate();
+      start_ = attitude0 * axes_.to_body(attitude(functions_.phase(u0_), 0).conjugate());
     }
 
-    [[nodiscard]] State at(Real time) const {
+    [[nodiscard]] TopMotion at(double time) const {
       const Phase phase = functions_.phase(lambda_ * time + u0_);
       const auto [sn, cn, dn] = phase.at;
-      const detail::RealQuaternion turn = start_ * attitude(phase, time);
-      const detail::RealVector v = axes_.to_body(turn.vec());
-      return {{turn.w(), v.x(), v.y(), v.z()},
-              axes_.to_body(amplitude_.cwiseProduct(detail::RealVector(cn, sn, dn)))};
+      const detail::RealVector omega = amplitude_.cwiseProduct(detail::RealVector(cn, sn, dn));
+      return {(start_ * axes_.to_body(attitude(phase, time))).cast<double>(),
+              axes_.to_body(omega).cast<double>()};
     }
 
-    [[nodiscard]] Real period() const { return 4 * functions_.quarter() / lambda_; }
+    [[nodiscard]] Real period() const { return scaled(functions_.quarter(), 4) / lambda_; }
 
    private:
     /// From the axes 1, 2, 3 to non-rotating axes whose z is along L.
-    [[nodiscard]] detail::RealQuaternion attitude(const Phase& phase, Real time) const {
+    [[nodiscard]] detail::RealQuaternion attitude(const Phase& phase, double time) const {
       const auto [sn, cn, dn] = phase.at;
       const detail::RealVector n = direction_.cwiseProduct(detail::RealVector(cn, sn, dn));
       const Real precession = steady_precession_ * time - unsteady_precession_ * third_kind_(phase);
-      // tan of this azimuth is L2/L1. It is continued through the half periods, without a cut at
-      // +-pi.
-      const Real azimuth =
-          std::atan2(std::abs(direction_[1]) * phase.rest.sn, direction_[0] * phase.rest.cn) +
-          std::numbers::pi_v<Real> * phase.half_periods;
-      const detail::RealQuaternion to_z(1 + n[2], n[1], -n[0], 0);
-      return detail::about_z(precession - axes_.side() * azimuth) * to_z.normalized();
+      const auto [s, c] = kreisel::detail::sine_cosine(scaled(precession, 0.5));
+      // Half of the azimuth of L, whose tan is L2/L1 = y/x, without a cut at +-pi.
+      const Real x = azimuth_[0] * phase.rest.cn;
+      const Real y = azimuth_[1] * phase.rest.sn;
+      const Real half_x = sqrt(x * x + y * y) + x;
+      const Real cosine = c * half_x + s * y;
+      const Real sine = s * half_x - c * y;
+      const auto turned = [&](const Real& a, const Real& b) {
+        return detail::to_z_and_about_z(1 + n[2], n[0], n[1], a, b);
+      };
+      // Each half period turns L by half a turn.
+      switch (static_cast<long long>(std::fmod(side_ * phase.half_periods, 4)) & 3) {
+        case 0: return turned(cosine, sine);
+        case 1: return turned(sine, -cosine);
+        case 2: return turned(-cosine, -sine);
+        default: return turned(-sine, cosine);
+      }
     }
 
     Axes axes_;
@@ -217,15 +234,18 @@ class FreeTop {
     Real u0_;
     detail::RealVector amplitude_;  ///< a1, a2, a3
     detail::RealVector direction_;  ///< L/|L| where the functions are 1
+    std::array<Real, 2> azimuth_;   ///< its parts across, enlarged
+    double side_;                   ///< the sign of D
     Real steady_precession_;
     Real unsteady_precession_;
-    detail::RealQuaternion start_;  ///< the inverse of the attitude at time 0
+    detail::RealQuaternion start_;  ///< from inertial axes to those along L at time 0
   };
 
   Vector3<double> omega0_;
   detail::RealQuaternion attitude0_;
-  Real energy_;
-  Real momentum_;
+  double unit_;  ///< of rates in the polhode
+  double energy_;
+  double momentum_;
   std::optional<Polhode> polhode_;  ///< none for a steady rotation
 };
 

@@ -11,11 +11,11 @@
 #include <optional>
 #include <utility>
 
-#include <dynamics/exact/double_double.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/refuse.hpp>
 #include <dynamics/exact/top_motion.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel::exact {
 
@@ -41,15 +41,15 @@ class SymmetricRotation {
 
   [[nodiscard]] TurnAndRate at(Real time) const {
     const Real angle = against_ * time;
-    const Real s = std::sin(angle);
-    const Real c = std::cos(angle);
+    const Real s = sin(angle);
+    const Real c = cos(angle);
     const Real x = omega0_.x();
     const Real y = omega0_.y();
     return {steady_turn(about_momentum_, time) * about_z(angle),
             {c * x + s * y, c * y - s * x, omega0_.z()}};
   }
 
-  [[nodiscard]] Real period() const { return 2 * std::numbers::pi_v<Real> / std::abs(against_); }
+  [[nodiscard]] Real period() const { return scaled(std::numbers::pi_v<Real>, 2) / abs(against_); }
 
  private:
   RealVector omega0_;
@@ -172,16 +172,22 @@ class Gyrostat {
       return;
     }
     axes_ = {moments, axis};
-    const System system = axes_.system(moments, rotor, omega0);
+    const double moment = detail::power_of_2(moments.maxCoeff());
+    unit_ =
+        detail::power_of_2(std::max(omega0.cwiseAbs().maxCoeff(), std::abs(rotor[axis]) / moment));
+    const Vector3<double> I = moments / moment;
+    const Vector3<double> h = rotor / moment / unit_;
+    const Vector3<double> rate = detail::in_unit(omega0, unit_);
+    const System system = axes_.system(I, h, rate);
     if (steady(system)) return;
-    if ((system.B - system.A).hi == 0) {
-      symmetric_.emplace(system.A.hi, system.C.hi, system.h.hi, system.omega());
+    if ((system.B - system.A) == 0) {
+      symmetric_.emplace(system.A, system.C, system.h, system.omega());
       return;
     }
     motion_.emplace(system);
     if (motion_->beyond_equator()) {
       axes_.turn_over();
-      motion_.emplace(axes_.system(moments, rotor, omega0));
+      motion_.emplace(axes_.system(I, h, rate));
     }
   }
 
@@ -189,8 +195,8 @@ class Gyrostat {
   [[nodiscard]] TopMotion at(double time) const {
     detail::require_finite("time", time);
     if (free_) return free_->at(time);
-    if (symmetric_) return on_body(symmetric_->at(time));
-    if (motion_) return on_body(motion_->at(time));
+    if (symmetric_) return on_body(symmetric_->at(time * unit_));
+    if (motion_) return on_body(motion_->at(time * unit_));
     const auto turn = detail::steady_turn(omega0_.cast<Real>(), time);
     return {(attitude0_ * turn).cast<double>(), omega0_};
   }
@@ -199,41 +205,28 @@ class Gyrostat {
   /// rotation.
   [[nodiscard]] double period() const {
     if (free_) return free_->period();
-    if (symmetric_) return static_cast<double>(symmetric_->period());
-    return motion_ ? static_cast<double>(motion_->period()) : 0.0;
+    if (symmetric_) return static_cast<double>(symmetric_->period()) / unit_;
+    return motion_ ? static_cast<double>(motion_->period()) / unit_ : 0.0;
   }
 
  private:
-  [[nodiscard]] static DoubleDouble quotient(const DoubleDouble& a, const DoubleDouble& b) {
-    const Real q = a.hi / b.hi;
-    return {q, (a - b * q).hi / b.hi};
-  }
-
-  [[nodiscard]] static DoubleDouble root(const DoubleDouble& a) {
-    if (a.hi <= 0) return 0;
-    const Real r = std::sqrt(a.hi);
-    return {r, (a - DoubleDouble(r) * r).hi / (2 * r)};
-  }
-
   /// Body, rotor and rates on the axes 1, 2, 3.
   struct System {
-    DoubleDouble A, B, C;
-    DoubleDouble h;
-    DoubleDouble w1, w2, w3;
+    Real A, B, C;
+    Real h;
+    Real w1, w2, w3;
 
-    [[nodiscard]] detail::RealVector omega() const { return {w1.hi, w2.hi, w3.hi}; }
+    [[nodiscard]] detail::RealVector omega() const { return {w1, w2, w3}; }
 
     /// (C - B) omega3 + h, the factor of omega2 in -A omega1', and (C - A) omega3 + h, the factor
     /// of omega1 in B omega2'.
-    [[nodiscard]] DoubleDouble k1() const { return (C - B) * w3 + h; }
-    [[nodiscard]] DoubleDouble k2() const { return (C - A) * w3 + h; }
+    [[nodiscard]] Real k1() const { return (C - B) * w3 + h; }
+    [[nodiscard]] Real k2() const { return (C - A) * w3 + h; }
   };
 
   [[nodiscard]] static bool steady(const System& s) {
-    const auto none = [](const DoubleDouble& a, const DoubleDouble& b) {
-      return a.hi == 0 || b.hi == 0;
-    };
-    return none(s.w1, s.k2()) && none(s.w2, s.k1()) && (none(s.w1, s.w2) || (s.B - s.A).hi == 0);
+    const auto none = [](const Real& a, const Real& b) { return a == 0 || b == 0; };
+    return none(s.w1, s.k2()) && none(s.w2, s.k1()) && (none(s.w1, s.w2) || (s.B - s.A) == 0);
   }
 
   /// The body axes in the order 1, 2, 3.
@@ -281,26 +274,26 @@ class Gyrostat {
 
   /// value + slope v, not negative at v = 0.
   struct Linear {
-    DoubleDouble value, slope;
+    Real value, slope;
 
-    [[nodiscard]] Real operator()(const DoubleDouble& v) const { return (value + slope * v).hi; }
-    [[nodiscard]] DoubleDouble zero() const { return quotient(-value, slope); }
+    [[nodiscard]] Real operator()(const Real& v) const { return (value + slope * v); }
+    [[nodiscard]] Real zero() const { return -value / slope; }
   };
 
   /// a v^2 + 2 b v + c,  c >= 0.
   struct Quadratic {
-    DoubleDouble a, b, c;
+    Real a, b, c;
 
-    [[nodiscard]] DoubleDouble discriminant() const { return b * b - a * c; }
+    [[nodiscard]] Real discriminant() const { return b * b - a * c; }
 
-    [[nodiscard]] Real polar(const DoubleDouble& v, const DoubleDouble& w) const {
-      return (c + b * (v + w) + a * v * w).hi;
+    [[nodiscard]] Real polar(const Real& v, const Real& w) const {
+      return (c + b * (v + w) + a * v * w);
     }
 
     [[nodiscard]] std::array<Linear, 2> factors() const {
-      const DoubleDouble s = root(discriminant());
-      const DoubleDouble t = b.hi < 0 ? b - s : b + s;
-      return {Linear{c, t}, Linear{1, t.hi == 0 ? DoubleDouble(0) : quotient(a, t)}};
+      const Real s = sqrt(discriminant());
+      const Real t = b < 0 ? b - s : b + s;
+      return {Linear{c, t}, Linear{1, t == 0 ? Real(0) : a / t}};
     }
   };
 
@@ -309,10 +302,10 @@ class Gyrostat {
   [[nodiscard]] static std::array<std::size_t, 2> around(const std::array<Linear, n>& f) {
     std::array<std::size_t, 2> found{n, n};
     for (std::size_t i = 0; i < n; ++i) {
-      if (f[i].slope.hi == 0) continue;
-      auto& next = found[f[i].slope.hi < 0];
+      if (f[i].slope == 0) continue;
+      auto& next = found[f[i].slope < 0];
       // For slopes s > 0 the zero nearest to 0 is the greatest, for s < 0 the least.
-      if (next == n || (f[i].zero() - f[next].zero()).hi * f[i].slope.hi > 0) next = i;
+      if (next == n || (f[i].zero() - f[next].zero()) * f[i].slope > 0) next = i;
     }
     return found;
   }
@@ -320,33 +313,33 @@ class Gyrostat {
   /// A motion in which L moves against the body.
   class Motion {
    public:
-    explicit Motion(const System& s) : moment1_(s.A.hi), moment2_(s.B.hi), spin_(s.w3.hi) {
+    explicit Motion(const System& s) : moment1_(s.A), moment2_(s.B), spin_(s.w3) {
       const Quadratic f1{s.C * (s.C - s.B), s.C * s.k1(), s.A * (s.B - s.A) * s.w1 * s.w1};
       const Quadratic f2{-(s.C * (s.C - s.A)), -(s.C * s.k2()), s.B * (s.B - s.A) * s.w2 * s.w2};
-      const Real scale = moment1_ * moment2_ * s.C.hi * s.C.hi;
-      if (f1.discriminant().hi < 0) {
+      const Real scale = moment1_ * moment2_ * s.C * s.C;
+      if (f1.discriminant() < 0) {
         between_complex(f1, f2, 0, scale);
-      } else if (f2.discriminant().hi < 0) {
+      } else if (f2.discriminant() < 0) {
         between_complex(f2, f1, 1, scale);
       } else {
         between_real(f1, f2, scale);
       }
-      const Real b_a = (s.B - s.A).hi;
-      amplitude_[0] /= std::sqrt(moment1_ * b_a);
-      amplitude_[1] /= std::sqrt(moment2_ * b_a);
-      start_at(s.w1.hi, s.w2.hi);
+      const Real b_a = (s.B - s.A);
+      amplitude_[0] /= sqrt(moment1_ * b_a);
+      amplitude_[1] /= sqrt(moment2_ * b_a);
+      start_at(s.w1, s.w2);
 
-      const DoubleDouble l1 = s.A * s.w1;
-      const DoubleDouble l2 = s.B * s.w2;
-      const DoubleDouble l3 = s.C * s.w3 + s.h;
-      const DoubleDouble L = root(l1 * l1 + l2 * l2 + l3 * l3);
-      equator_ = (l3 + l3 + s.C * (e0_ + e1_)).hi;
-      g0_ = (L + l3 + s.C * e0_).hi;
-      g1_ = (L + l3 + s.C * e1_).hi;
-      steady_precession_ = (L + s.h).hi / s.C.hi;
-      const DoubleDouble excess =
+      const Real l1 = s.A * s.w1;
+      const Real l2 = s.B * s.w2;
+      const Real l3 = s.C * s.w3 + s.h;
+      const Real L = sqrt(l1 * l1 + l2 * l2 + l3 * l3);
+      equator_ = (l3 + l3 + s.C * (e0_ + e1_));
+      g0_ = (L + l3 + s.C * e0_);
+      g1_ = (L + l3 + s.C * e1_);
+      steady_precession_ = (L + s.h) / s.C;
+      const Real excess =
           s.C * (l1 * s.w1 + l2 * s.w2) - (L + l3) * (L + s.h + s.h - l3);  // 2 E C - (L + h)^2
-      unsteady_precession_ = excess.hi / (s.C.hi * lambda_);
+      unsteady_precession_ = excess / (s.C * lambda_);
       const Real M = g0_ + kappa_ * g1_;
       pole_ = complex_ ? M * M / (4 * kappa_ * g0_ * g1_) : kappa_ * g1_ / g0_;
       third_kind_ = {functions_, pole_};
@@ -366,7 +359,7 @@ class Gyrostat {
       const bool half = std::ranges::any_of(factors_, [](const auto& f) {
         return f == std::array{sine, cosine};
       });
-      return (half ? 2 : 4) * functions_.quarter() / lambda_;
+      return scaled(functions_.quarter(), half ? 2 : 4) / lambda_;
     }
 
    private:
@@ -393,23 +386,21 @@ class Gyrostat {
       kappa_ = f[j1](e0_) / f[j1](e1_);
       const Real m1 = kappa_ * f[j2](e1_) / f[j2](e0_);
       functions_ = {1 - m1, m1};
-      lambda_ =
-          std::sqrt(std::abs(f[i0].slope.hi * f[i1].slope.hi) * f[j1](e1_) * f[j2](e0_) / scale) /
-          2;
-      const Real way = std::abs((e1_ - e0_).hi);
+      lambda_ = sqrt(abs(f[i0].slope * f[i1].slope) * f[j1](e1_) * f[j2](e0_) / scale) / 2;
+      const Real way = abs((e1_ - e0_));
       std::array<Real, 4> strength{};
       std::array<Factor, 4> is{};
       const auto set = [&](std::size_t i, Factor factor, Real value) {
         is[i] = factor;
         strength[i] = value;
       };
-      set(i0, sine, kappa_ * way * std::abs(f[i0].slope.hi));
-      set(i1, cosine, way * std::abs(f[i1].slope.hi));
+      set(i0, sine, kappa_ * way * abs(f[i0].slope));
+      set(i1, cosine, way * abs(f[i1].slope));
       set(j1, one, f[j1](e0_));
       set(j2, delta, f[j2](e0_));
       for (std::size_t i = 0; i < 2; ++i) {
         factors_[i] = {std::min(is[2 * i], is[2 * i + 1]), std::max(is[2 * i], is[2 * i + 1])};
-        amplitude_[i] = std::sqrt(strength[2 * i] * strength[2 * i + 1]);
+        amplitude_[i] = sqrt(strength[2 * i] * strength[2 * i + 1]);
       }
     }
 
@@ -420,21 +411,21 @@ class Gyrostat {
       const auto [i0, i1] = around(ends);
       e0_ = ends[i0].zero();
       e1_ = ends[i1].zero();
-      const Real way = std::abs((e1_ - e0_).hi);
+      const Real way = abs((e1_ - e0_));
       const Real s0 = S.polar(e0_, e0_);
       const Real s1 = S.polar(e1_, e1_);
       const Real s01 = S.polar(e0_, e1_);
-      const Real g = std::sqrt(s0 * s1);
-      const Real product = -S.discriminant().hi * way * way;  // g^2 - s01^2
+      const Real g = sqrt(s0 * s1);
+      const Real product = -S.discriminant() * way * way;  // g^2 - s01^2
       const Real plus = s01 < 0 ? product / (g - s01) : g + s01;
       const Real minus = s01 < 0 ? g - s01 : product / (g + s01);
       functions_ = {minus / (2 * g), plus / (2 * g)};
-      kappa_ = std::sqrt(s0 / s1);
-      lambda_ = std::sqrt(std::abs(f.a.hi) * g / scale);
+      kappa_ = sqrt(s0 / s1);
+      lambda_ = sqrt(abs(f.a) * g / scale);
       factors_[of_s] = {one, delta};
-      amplitude_[of_s] = 2 * std::sqrt(kappa_ * g);
+      amplitude_[of_s] = 2 * sqrt(kappa_ * g);
       factors_[1 - of_s] = {sine, one};
-      amplitude_[1 - of_s] = way * std::sqrt(std::abs(f.a.hi) * kappa_);
+      amplitude_[1 - of_s] = way * sqrt(abs(f.a) * kappa_);
     }
 
     /// u0 and the signs of the amplitudes. For u from 0 to K, v goes from e0 towards e1, and
@@ -443,27 +434,26 @@ class Gyrostat {
       const std::array w{w1, w2};
       const std::size_t odd = factors_[0][0] == sine ? 0 : 1;
       const std::size_t even = 1 - odd;
-      const Real way = (e1_ - e0_).hi;
+      const Real way = (e1_ - e0_);
       if (w[even] < 0) amplitude_[even] = -amplitude_[even];
       if ((way > 0) == (amplitude_[even] > 0)) amplitude_[odd] = -amplitude_[odd];
       const Real side = (w[odd] < 0) == (amplitude_[odd] < 0) ? 1 : -1;
 
-      const Real from_0 = std::abs(e0_.hi);
-      const Real from_1 = kappa_ * std::abs(e1_.hi);
+      const Real from_0 = abs(e0_);
+      const Real from_1 = kappa_ * abs(e1_);
       const Real sum = from_0 + from_1;
       const Real m = functions_.m();
       const Real m1 = functions_.m1();
       if (complex_) {
-        const Real sn = side * 2 * std::sqrt(from_0 * from_1) / sum;
+        const Real sn = side * 2 * sqrt(from_0 * from_1) / sum;
         const Real cn = (from_1 - from_0) / sum;
-        const Real dn = std::sqrt(m1 + m * cn * cn);
-        const Real u = EllipticFunctions::argument({sn, std::abs(cn), dn});
+        const Real dn = sqrt(m1 + m * cn * cn);
+        const Real u = EllipticFunctions::argument({sn, abs(cn), dn});
         u0_ = cn < 0 ? side * 2 * functions_.quarter() - u : u;
       } else {
         const Real s2 = from_0 / sum;
         const Real c2 = from_1 / sum;
-        u0_ = EllipticFunctions::argument(
-            {side * std::sqrt(s2), std::sqrt(c2), std::sqrt(c2 + m1 * s2)});
+        u0_ = EllipticFunctions::argument({side * sqrt(s2), sqrt(c2), sqrt(c2 + m1 * s2)});
       }
     }
 
@@ -473,9 +463,9 @@ class Gyrostat {
       if (!complex_) return (phase.u - kappa_ * (g1_ - g0_) / g0_ * J) / g0_;
       const Real M = g0_ + kappa_ * g1_;
       const Real alpha = (g0_ - kappa_ * g1_) / M;
-      const Real root = std::sqrt(functions_.m() + pole_ * alpha * alpha);
+      const Real root = sqrt(functions_.m() + pole_ * alpha * alpha);
       const Real x = phase.at.sn / phase.at.dn;
-      const Real elementary = root == 0 ? x : std::atan(root * x) / root;
+      const Real elementary = root == 0 ? x : atan(root * x) / root;
       // int cn / (1 + alpha cn) du
       const Real Y = pole_ * (elementary - alpha * (phase.u - pole_ * J));
       return ((1 + kappa_) * phase.u + 2 * kappa_ * (g1_ - g0_) / M * Y) / M;
@@ -492,18 +482,19 @@ class Gyrostat {
       const auto rate = [&](std::size_t i) {
         return amplitude_[i] * values[factors_[i][0]] * values[factors_[i][1]] / D;
       };
-      const detail::RealVector omega(rate(0), rate(1), spin_ + (e0_.hi * p0 + e1_.hi * p1) / D);
+      const detail::RealVector omega(rate(0), rate(1), spin_ + (e0_ * p0 + e1_ * p1) / D);
       const Real height = (g0_ * p0 + g1_ * p1) / D;
       const Real precession =
           steady_precession_ * time + unsteady_precession_ * inverse_height(phase);
-      const detail::RealQuaternion to_z(height, moment2_ * omega.y(), -moment1_ * omega.x(), 0);
-      return {detail::about_z(precession) * to_z.normalized(), omega};
+      const auto [s, c] = kreisel::detail::sine_cosine(scaled(precession, 0.5));
+      return {detail::to_z_and_about_z(height, moment1_ * omega.x(), moment2_ * omega.y(), c, s),
+              omega};
     }
 
     Real moment1_, moment2_;
     Real spin_;  ///< omega3 at time 0
     bool complex_ = false;
-    DoubleDouble e0_ = 0, e1_ = 0;
+    Real e0_ = 0, e1_ = 0;
     Real kappa_;
     EllipticFunctions functions_;
     Real lambda_;
@@ -522,12 +513,13 @@ class Gyrostat {
   [[nodiscard]] TopMotion on_body(const detail::TurnAndRate& m) const {
     const detail::RealVector v = axes_.to_body(m.turn.vec());
     const detail::RealQuaternion turn(m.turn.w(), v.x(), v.y(), v.z());
-    return {(attitude0_ * turn).cast<double>(), axes_.to_body(m.omega).cast<double>()};
+    return {(attitude0_ * turn).cast<double>(), axes_.to_body(m.omega).cast<double>() * unit_};
   }
 
   Vector3<double> omega0_;
   detail::RealQuaternion attitude0_;
   Axes axes_;
+  double unit_ = 1;                                     ///< of rates in both motions
   std::optional<FreeTop> free_;                         ///< with the rotor at rest
   std::optional<detail::SymmetricRotation> symmetric_;  ///< for A = B
   std::optional<Motion> motion_;                        ///< none of the three: a steady rotation

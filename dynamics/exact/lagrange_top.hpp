@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <optional>
 
-#include <dynamics/exact/double_double.hpp>
 #include <dynamics/exact/elliptic.hpp>
 #include <dynamics/exact/free_top.hpp>
 #include <dynamics/exact/refuse.hpp>
 #include <dynamics/exact/top_motion.hpp>
+#include <motor/complex.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel::exact {
 
@@ -71,7 +71,11 @@ class LagrangeTop {
     if (weight_moment == 0) {
       free_.emplace(Vector3<double>(A, A, C), omega0, attitude0);
     } else if (!sleeping) {
-      nutation_.emplace(A, C, weight_moment, omega0, attitude0);
+      const double moment = detail::power_of_2(A);
+      unit_ =
+          detail::power_of_2(std::max(omega0.cwiseAbs().maxCoeff(), std::sqrt(weight_moment / A)));
+      nutation_.emplace(A / moment, C / moment, weight_moment / moment / unit_ / unit_,
+                        detail::in_unit(omega0, unit_), attitude0);
     }
   }
 
@@ -79,7 +83,11 @@ class LagrangeTop {
   [[nodiscard]] TopMotion at(double time) const {
     detail::require_finite("time", time);
     if (free_) return free_->at(time);
-    if (nutation_) return nutation_->at(time);
+    if (nutation_) {
+      TopMotion motion = nutation_->at(time * unit_);
+      motion.angular_velocity *= unit_;
+      return motion;
+    }
     const auto turn = detail::steady_turn(omega0_.cast<Real>(), time);
     return {(attitude0_ * turn).cast<double>(), omega0_};
   }
@@ -87,7 +95,7 @@ class LagrangeTop {
   /// 2 K/lambda, after which the tilt repeats: infinite for a motion that ends upright. 0 for a top
   /// that spins about the vertical and for one without weight, which do not nutate.
   [[nodiscard]] double period() const {
-    return nutation_ ? static_cast<double>(nutation_->period()) : 0.0;
+    return nutation_ ? static_cast<double>(nutation_->period()) / unit_ : 0.0;
   }
 
   /// 2 (|psi_alpha(0)| + sqrt(r2) |psi_beta(0)|), in rad, with the psi counted from the greatest
@@ -99,7 +107,7 @@ class LagrangeTop {
   }
 
  private:
-  using Complex = std::complex<Real>;
+  using Complex = kreisel::Complex<Real>;
 
   /// A Cayley-Klein parameter and its rate of change.
   struct Parameter {
@@ -114,7 +122,8 @@ class LagrangeTop {
   /// N / sqrt(Q) exp(i psi) and its rate of change, from its parts and their rates.
   [[nodiscard]] static Parameter assembled(Complex N, Complex dN, Real Q, Real dQ, Real psi,
                                            Real d_psi) {
-    const Complex factor = std::polar(1 / std::sqrt(Q), psi);
+    const auto [sine, cosine] = kreisel::detail::sine_cosine(psi);
+    const Complex factor = Complex(cosine, sine) / sqrt(Q);
     return {factor * N, factor * (dN - N * (dQ / (2 * Q)) + Complex(0, d_psi) * N)};
   }
 
@@ -141,7 +150,7 @@ class LagrangeTop {
 
     [[nodiscard]] TurningPoints turning_points() const {
       const Real middle = curvature_at_r0 / (3 * kappa);
-      const Real spread = std::sqrt(std::max<Real>(0, middle * middle + slope_at_r0 / (3 * kappa)));
+      const Real spread = sqrt(std::max<Real>(0, middle * middle + slope_at_r0 / (3 * kappa)));
       TurningPoints t{};
       // The mean of the roots lies on the side of the two closer roots.
       if (value(middle) < 0) {
@@ -190,14 +199,14 @@ class LagrangeTop {
         const Real slope = slope_at_r0 + x * (2 * curvature_at_r0 - 3 * x * kappa);
         const Real next = x - value(x) / slope;
         // Only rounding can reverse the direction.
-        if (!(std::abs(next) < std::abs(x))) return x;
+        if (!(abs(next) < abs(x))) return x;
         x = next;
       }
     }
 
     /// a, b >= 0 of a - b and a b.
     static void split(Real difference, Real product, Real& a, Real& b) {
-      const Real sum = std::sqrt(difference * difference + 4 * product);
+      const Real sum = sqrt(difference * difference + 4 * product);
       if (difference > 0) {
         a = (sum + difference) / 2;
         b = product / a;
@@ -214,24 +223,24 @@ class LagrangeTop {
     Real plus;   ///< (L3 + L_vertical)/2A
     Real slope;  ///< F'(0) = v^2 - kappa r0 + 2 L3/A minus,  v^2 = omega1^2 + omega2^2
 
-    Exact(DoubleDouble A, DoubleDouble C, DoubleDouble weight_moment, const Vector3<double>& omega,
+    Exact(Real A, Real C, Real weight_moment, const Vector3<double>& omega,
           const Eigen::Quaterniond& q) {
-      const DoubleDouble w = q.w();
-      const DoubleDouble x = q.x();
-      const DoubleDouble y = q.y();
-      const DoubleDouble z = q.z();
-      const DoubleDouble w1 = omega.x();
-      const DoubleDouble w2 = omega.y();
-      const DoubleDouble tilted = x * x + y * y;
-      const DoubleDouble straight = w * w + z * z;
-      const DoubleDouble norm2 = tilted + straight;
-      const DoubleDouble axial = C * omega.z();
-      const DoubleDouble across = A * (w1 * (x * z - w * y) + w2 * (y * z + w * x));
-      const DoubleDouble above = A * norm2 * (w1 * w1 + w2 * w2) - 4 * weight_moment * tilted;
-      const Real A_norm2 = (A * norm2).hi;
-      minus = (axial * tilted - across).hi / A_norm2;
-      plus = (axial * straight + across).hi / A_norm2;
-      slope = (A * above + 2 * axial * (axial * tilted - across)).hi / (A.hi * A_norm2);
+      const Real w = q.w();
+      const Real x = q.x();
+      const Real y = q.y();
+      const Real z = q.z();
+      const Real w1 = omega.x();
+      const Real w2 = omega.y();
+      const Real tilted = x * x + y * y;
+      const Real straight = w * w + z * z;
+      const Real norm2 = tilted + straight;
+      const Real axial = C * omega.z();
+      const Real across = A * (w1 * (x * z - w * y) + w2 * (y * z + w * x));
+      const Real above = A * norm2 * (w1 * w1 + w2 * w2) - 4 * weight_moment * tilted;
+      const Real A_norm2 = (A * norm2);
+      minus = (axial * tilted - across) / A_norm2;
+      plus = (axial * straight + across) / A_norm2;
+      slope = (A * above + 2 * axial * (axial * tilted - across)) / (A * A_norm2);
     }
   };
 
@@ -245,13 +254,13 @@ class LagrangeTop {
       const Complex beta(q.x(), q.y());
       const Complex across(omega.x(), omega.y());
       // (gamma1 + i gamma2) of the vertical on body axes; with omega it gives the rate of the tilt.
-      const Complex vertical = Complex(0, 2) * std::conj(alpha) * beta;
-      const Complex moving = across * std::conj(vertical);
+      const Complex vertical = Complex(0, 2) * conj(alpha) * beta;
+      const Complex moving = across * conj(vertical);
       const Exact exact(A, C, weight_moment, omega, attitude0);
       const Real l = C * spin_ / A;
-      const Real r0 = std::norm(beta);
-      const Real p0 = std::norm(alpha);
-      const Real v2 = std::norm(across);
+      const Real r0 = norm(beta);
+      const Real p0 = norm(alpha);
+      const Real v2 = norm(across);
       const Real kappa = 4 * Real(weight_moment) / A;
       const Cubic cubic{.kappa = kappa,
                         .r0 = r0,
@@ -265,12 +274,11 @@ class LagrangeTop {
       t_ = cubic.turning_points();
       const TurningPoints& t = t_;
       functions_ = {t.r2_r1 / t.r2_r3, t.r1_r3 / t.r2_r3};
-      lambda_ = std::sqrt(kappa * t.r2_r3) / 2;
+      lambda_ = sqrt(kappa * t.r2_r3) / 2;
       half_excess_ = (Real(A) - Real(C)) / A * spin_ / 2;
       if (t.r2_r1 > 0) {
-        u0_ = EllipticFunctions::argument(
-            {std::copysign(std::sqrt(t.r2_r0 / t.r2_r1), moving.imag()),
-             std::sqrt(t.r0_r1 / t.r2_r1), std::sqrt(t.r0_r3 / t.r2_r3)});
+        u0_ = EllipticFunctions::argument({copysign(sqrt(t.r2_r0 / t.r2_r1), moving.imag()),
+                                           sqrt(t.r0_r1 / t.r2_r1), sqrt(t.r0_r3 / t.r2_r3)});
       }
 
       plus_ = exact.plus < 0 ? -1 : 1;
@@ -278,13 +286,13 @@ class LagrangeTop {
       of_alpha_ = {functions_, 1 + t.p2 / t.r2_r3};
       jumps_ = t.r1 <= t.minus_r3;
       ratio_ = t.r1 == 0 ? 0 : t.r1 / t.minus_r3;
-      alpha_slope_ = plus_ * std::sqrt(t.p1 * t.p3 / t.r2_r3) * std::sqrt(t.p2) / t.r2_r3;
+      alpha_slope_ = plus_ * sqrt(t.p1 * t.p3 / t.r2_r3) * sqrt(t.p2) / t.r2_r3;
       if (jumps_) {
-        const Real W = -minus_ * std::sqrt(ratio_ * t.r2_r3 / t.r2);
+        const Real W = -minus_ * sqrt(ratio_ * t.r2_r3 / t.r2);
         beta_slope_ = -W * t.r2 / t.r2_r3;
         beta_swing_ = W * (1 + ratio_) * t.r2 / t.r2_r3;
       } else {
-        beta_slope_ = -minus_ * std::sqrt(t.r1 * t.minus_r3 / (t.r2 * t.r2_r3));
+        beta_slope_ = -minus_ * sqrt(t.r1 * t.minus_r3 / (t.r2 * t.r2_r3));
         beta_swing_ = beta_slope_ * t.r2_r1 / t.r2;
       }
       of_beta_ = {functions_, jumps_ ? 1 + (t.r1 + ratio_ * t.r2) / t.r2_r3 : t.r1 / t.r2};
@@ -292,7 +300,7 @@ class LagrangeTop {
       const Phase phase = functions_.phase(u0_);
       const Parameter a = alpha_shape(phase, 0);
       const Parameter b = beta_shape(phase, 0);
-      const Complex d_alpha = (Complex(0, spin_) * alpha - beta * std::conj(across)) / Real(2);
+      const Complex d_alpha = (Complex(0, spin_) * alpha - beta * conj(across)) / Real(2);
       const Complex d_beta = (alpha * across - Complex(0, spin_) * beta) / Real(2);
       alpha_turn_ = turn(a, {alpha, d_alpha});
       beta_turn_ = turn(b, {beta, d_beta});
@@ -307,19 +315,18 @@ class LagrangeTop {
       // Both formulas are equivalent; each is divided by the larger parameter.
       const Complex half_spin(0, spin_ / 2);
       const Complex across =
-          std::norm(alpha.value) > std::norm(beta.value)
+          norm(alpha.value) > norm(beta.value)
               ? Real(2) * (beta.rate + half_spin * beta.value) / alpha.value
-              : Real(-2) * std::conj((alpha.rate - half_spin * alpha.value) / beta.value);
+              : Real(-2) * conj((alpha.rate - half_spin * alpha.value) / beta.value);
       const detail::RealVector omega(across.real(), across.imag(), spin_);
       return {q.normalized().cast<double>(), omega.cast<double>()};
     }
 
-    [[nodiscard]] Real period() const { return 2 * functions_.quarter() / lambda_; }
+    [[nodiscard]] Real period() const { return scaled(functions_.quarter(), 2) / lambda_; }
 
     [[nodiscard]] Real starting_angle() const {
       const Phase start = functions_.phase(u0_);
-      return 2 *
-             (std::abs(alpha_angle(start, 0)) + std::sqrt(t_.r2) * std::abs(beta_angle(start, 0)));
+      return 2 * (abs(alpha_angle(start, 0)) + sqrt(t_.r2) * abs(beta_angle(start, 0)));
     }
 
    private:
@@ -327,8 +334,8 @@ class LagrangeTop {
     /// be 0.
     [[nodiscard]] Complex turn(const Parameter& shape, const Parameter& is) const {
       const Complex c =
-          is.value * std::conj(shape.value) + is.rate * std::conj(shape.rate) / (lambda_ * lambda_);
-      return c / std::abs(c);
+          is.value * conj(shape.value) + is.rate * conj(shape.rate) / (lambda_ * lambda_);
+      return c / abs(c);
     }
 
     [[nodiscard]] Real alpha_angle(const Phase& phase, Real time) const {
@@ -342,8 +349,8 @@ class LagrangeTop {
     [[nodiscard]] Parameter alpha_shape(const Phase& phase, Real time) const {
       const auto [s, c, d] = phase.at;
       const Real m = functions_.m();
-      const Real root = std::sqrt(t_.p2);
-      const Real g = plus_ * std::sqrt(t_.p1 * t_.p3 / t_.r2_r3);
+      const Real root = sqrt(t_.p2);
+      const Real g = plus_ * sqrt(t_.p1 * t_.p3 / t_.r2_r3);
       const Real eps = t_.p2 / t_.r2_r3;
       const Real Q = 1 + eps * s * s;
       return assembled({root * c * d, g * s},
@@ -357,7 +364,7 @@ class LagrangeTop {
     [[nodiscard]] Parameter beta_shape(const Phase& phase, Real time) const {
       const auto [s, c, d] = phase.at;
       const Real m = functions_.m();
-      const Real root = std::sqrt(t_.r2);
+      const Real root = sqrt(t_.r2);
       if (!jumps_) {
         const Real nu = -t_.r2_r1 / t_.r2;
         const Real Q = c * c + t_.r1 / t_.r2 * s * s;
@@ -365,7 +372,7 @@ class LagrangeTop {
         return assembled(root * Q, root * dQ, Q, dQ, beta_angle(phase, time),
                          -half_excess_ + lambda_ * beta_slope_ / Q);
       }
-      const Real W = -minus_ * std::sqrt(ratio_ * t_.r2_r3 / t_.r2);
+      const Real W = -minus_ * sqrt(ratio_ * t_.r2_r3 / t_.r2);
       const Real eps = (t_.r1 + ratio_ * t_.r2) / t_.r2_r3;
       const Real Q = 1 + eps * s * s;
       return assembled({root * c, root * W * s * d},
@@ -395,6 +402,7 @@ class LagrangeTop {
 
   Vector3<double> omega0_;
   detail::RealQuaternion attitude0_;
+  double unit_ = 1;                   ///< of rates in the nutation
   std::optional<FreeTop> free_;       ///< without weight
   std::optional<Nutation> nutation_;  ///< none for a top that spins about the vertical
 };

@@ -35,24 +35,25 @@ class PendulumMotion {
   };
 
   /// Throws : InvalidInput unless k > 0 and all numbers are finite
-  PendulumMotion(double k, double phi0, double rate0) : root_k_(std::sqrt(Real(k))) {
+  PendulumMotion(double k, double phi0, double rate0) : root_k_(sqrt(Real(k))) {
     detail::require_positive("k", k);
     detail::require_finite("phi0", phi0);
     detail::require_finite("rate0", rate0);
-    turns_ = std::round(Real(phi0) / (2 * pi));
-    const Real sign = std::fmod(turns_, Real(2)) == 0 ? 1 : -1;
-    const Real c = sign * std::cos(Real(phi0) / 2);
-    const Real h = std::abs(Real(rate0)) / (2 * root_k_);
+    turns_ = static_cast<double>(round(phi0 / scaled(pi, 2)));
+    const double sign = std::fmod(turns_, 2) == 0 ? 1 : -1;
+    const auto [sine, cosine] = kreisel::detail::sine_cosine(phi0 / 2);
+    const Real c = sign * cosine;
+    const Real h = std::abs(rate0) / scaled(root_k_, 2);
     if (rate0 < 0) direction_ = -1;
-    const Real s = direction_ * sign * std::sin(Real(phi0) / 2);
-    const Real e = s * s + h * h;
+    const Real s = direction_ * sign * sine;
+    root_e_ = hypot(s, h);
+    const Real e = root_e_ * root_e_;  // 0 for swings whose nonlinearity is 0 to rounding
     const Real lacking = (c - h) * (c + h);
-    root_e_ = std::sqrt(e);
     if (lacking < 0) {
       turns_over_ = true;
       functions_ = {1 / e, -lacking / e};
       u0_ = EllipticFunctions::argument({s, c, h / root_e_});
-    } else if (e > 0) {
+    } else if (root_e_ > 0) {
       functions_ = {e, lacking};
       u0_ = EllipticFunctions::argument({s / root_e_, h / root_e_, c});
     }
@@ -63,17 +64,16 @@ class PendulumMotion {
     detail::require_finite("time", time);
     const Phase phase = functions_.phase(speed() * time + u0_);
     const Real half_angle = turns_over_
-                                ? pi * phase.half_periods + std::atan2(phase.rest.sn, phase.rest.cn)
-                                : std::atan2(root_e_ * phase.at.sn, phase.at.dn);
+                                ? pi * phase.half_periods + atan2(phase.rest.sn, phase.rest.cn)
+                                : atan2(root_e_ * phase.at.sn, phase.at.dn);
     const Real h = root_e_ * (turns_over_ ? phase.at.dn : phase.at.cn);
-    return {static_cast<double>(2 * (pi * turns_ + direction_ * half_angle)),
-            static_cast<double>(2 * root_k_ * direction_ * h)};
+    return {static_cast<double>(scaled(pi * turns_ + direction_ * half_angle, 2)),
+            static_cast<double>(2.0 * direction_ * root_k_ * h)};
   }
 
   /// The period of a swing, or of one turn over the top; infinite on the separatrix.
   [[nodiscard]] double period() const {
-    const Real quarters = turns_over_ ? 2 : 4;
-    return static_cast<double>(quarters * functions_.quarter() / speed());
+    return static_cast<double>(scaled(functions_.quarter(), turns_over_ ? 2 : 4) / speed());
   }
 
  private:
@@ -84,7 +84,7 @@ class PendulumMotion {
 
   Real root_k_;
   Real root_e_;
-  Real turns_;         ///< whole ones of phi0
+  double turns_;       ///< whole ones of phi0
   int direction_ = 1;  ///< of the start; the formulas are for rate0 >= 0
   bool turns_over_ = false;
   EllipticFunctions functions_;

@@ -38,13 +38,23 @@ inline void require_body(const Vector3<double>& moments) {
   }
 }
 
+/// The greatest power of 2 that is not above |x|; 1 for 0. As a unit of rates and moments it changes
+/// no digit, and their products neither underflow nor overflow.
+[[nodiscard]] inline double power_of_2(double x) { return x == 0 ? 1 : std::exp2(std::ilogb(x)); }
+
+/// A rate in such a unit. A component below 2^-480 of it counts as 0, because its square would
+/// underflow.
+[[nodiscard]] inline Vector3<double> in_unit(const Vector3<double>& rate, double unit) {
+  return (rate / unit).unaryExpr([](double w) { return std::abs(w) < 0x1p-480 ? 0 : w; });
+}
+
 /// A quaternion of any norm except 0, normalized.
 ///
 /// Throws : InvalidInput for 0 and for numbers that are not finite
 [[nodiscard]] inline RealQuaternion unit(const Eigen::Quaterniond& attitude0) {
   const RealQuaternion q = attitude0.cast<Real>();
   const Real norm = q.norm();
-  if (!(norm > 0 && std::isfinite(norm))) {
+  if (!(norm > 0 && isfinite(norm))) {
     refuse("|attitude0|", static_cast<double>(norm), "must be a finite number above 0");
   }
   return RealQuaternion(q.coeffs() / norm);
@@ -52,16 +62,28 @@ inline void require_body(const Vector3<double>& moments) {
 
 /// The rotation by an angle about e_z.
 [[nodiscard]] inline RealQuaternion about_z(Real angle) {
-  return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)};
+  const auto [sine, cosine] = kreisel::detail::sine_cosine(scaled(angle, 0.5));
+  return {cosine, 0, 0, sine};
+}
+
+/// The shortest rotation of L = (x, y, height - |L|) to e_z, followed by a rotation about e_z by
+/// twice the angle of (c, s). Both may have any norm.
+[[nodiscard]] inline RealQuaternion to_z_and_about_z(const Real& height, const Real& x,
+                                                     const Real& y, const Real& c, const Real& s) {
+  const Real size = sqrt((height * height + x * x + y * y) * (c * c + s * s));
+  const Real inverse = 1 / size;
+  const Real cn = c * inverse;
+  const Real sn = s * inverse;
+  return {cn * height, cn * y + sn * x, sn * y - cn * x, sn * height};
 }
 
 /// The rotation in a time at a constant rate: exp(omega t).
 [[nodiscard]] inline RealQuaternion steady_turn(const RealVector& omega, Real time) {
-  const Real rate = std::hypot(omega.x(), omega.y(), omega.z());
+  const Real rate = hypot(hypot(omega.x(), omega.y()), omega.z());
   if (rate == 0) return RealQuaternion::Identity();
-  const Real half = rate * time / 2;
-  const RealVector v = std::sin(half) / rate * omega;
-  return {std::cos(half), v.x(), v.y(), v.z()};
+  const auto [sine, cosine] = kreisel::detail::sine_cosine(scaled(rate * time, 0.5));
+  const RealVector v = sine / rate * omega;
+  return {cosine, v.x(), v.y(), v.z()};
 }
 
 }  // namespace detail

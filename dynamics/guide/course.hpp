@@ -18,6 +18,7 @@
 #include <dynamics/guide/signal_frame.hpp>
 #include <dynamics/guide/steady.hpp>
 #include <dynamics/signal/signal.hpp>
+#include <motor/double_double_functions.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -234,7 +235,7 @@ class Course {
   using Numbers = Eigen::Matrix<N, 9, 1>;
   using State = Numbers<double>;
   using Piece = std::array<State, degree + 1>;  ///< of powers of the time since its begin
-  using Wide = long double;
+  using Wide = DoubleDouble;
 
   static void refuse(const std::string& what) { throw InvalidInput("course: " + what); }
 

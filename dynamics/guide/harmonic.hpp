@@ -11,6 +11,7 @@
 
 #include <dynamics/guide/pose_series.hpp>
 #include <dynamics/guide/series.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel {
 
@@ -157,7 +158,7 @@ class HarmonicFrame {
 
   // The chain of pieces is computed with more digits than it is evaluated with.
   using Wide =
-      std::conditional_t<std::is_same_v<S, double> || std::is_same_v<S, float>, long double, S>;
+      std::conditional_t<std::is_same_v<S, double> || std::is_same_v<S, float>, DoubleDouble, S>;
 
   static void check(const HarmonicSeries<S>& series, const char* what) {
     const auto finite = [](const auto& x) { return x - x == S(0); };

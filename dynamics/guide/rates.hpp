@@ -9,6 +9,7 @@
 
 #include <dynamics/guide/pose_series.hpp>
 #include <dynamics/guide/tabulated.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel {
 
@@ -81,7 +82,7 @@ class RatesFrame {
 
  private:
   static constexpr int degree = 12;
-  using Wide = long double;
+  using Wide = DoubleDouble;
   using Taylor = std::vector<Vector3<Wide>>;
 
   static void check(const RatesLog& log, const RatesStart& start) {

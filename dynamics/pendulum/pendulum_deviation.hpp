@@ -9,6 +9,7 @@
 
 #include <dynamics/pendulum/pendulum_equilibria.hpp>
 #include <dynamics/pendulum/pendulum_period.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel {
 
@@ -188,10 +189,10 @@ void list_terms(const PendulumBody<S>& body, const PendulumGuide<S>& guide,
 
 /// Equilibrium and period of a pendulum on a steadily moving guide, with error estimates.
 ///
-/// Everything is computed twice, in S and in long double, from the same inputs. The result is the
-/// number in S; its error is |difference| + half a unit in its last place. Inputs in long double
-/// (decimals read by strtold) count as exact: the estimate then includes their rounding to S.
-/// Inputs in S count as exact too.
+/// Everything is computed twice, in S and in DoubleDouble, from the same inputs. The result is the
+/// number in S; its error is |difference| + half a unit in its last place. Inputs in DoubleDouble
+/// (decimals read by finite_number()) count as exact: the estimate then includes their rounding to
+/// S. Inputs in S count as exact too.
 ///
 /// Source : paper 002 section 5
 /// Error  : true error <= estimate in all reference cases; measured ratios in
@@ -204,10 +205,9 @@ template <class S = double, class T>
 [[nodiscard]] PendulumAnswer<S> deviation(
     const PendulumBody<T>& body, const PendulumGuide<T>& guide,
     const std::type_identity_t<std::optional<T>>& amplitude = {}) {
-  using Wide = long double;
-  static_assert(
-      std::numeric_limits<Wide>::digits >= std::numeric_limits<S>::digits + 8,
-      "deviation() needs a long double with at least 8 bits more than S to estimate errors");
+  using Wide = DoubleDouble;
+  static_assert(std::numeric_limits<Wide>::digits >= std::numeric_limits<S>::digits + 8,
+                "deviation() estimates errors by numbers with at least 8 bits more than S");
   check(body);
   if (!guide.angular_velocity.allFinite() || !guide.effective_gravity.allFinite() ||
       (guide.gravity_gradient && !guide.gravity_gradient->allFinite())) {

@@ -14,44 +14,44 @@
 
 namespace kreisel {
 
-/// The pendulum and its field. Inputs are long double, so that decimals count as exact.
+/// The pendulum and its field. Inputs are DoubleDouble, so that decimals count as exact.
 struct SitePendulum {
-  PendulumBody<long double> body;
-  std::optional<long double> gravity = {};  ///< m/s^2, effective; none: WGS84 at the site
-  bool gravity_gradient = false;            ///< includes the gradient over the body
-  long double amplitude = 0.1L;             ///< rad, of the finite oscillation
+  PendulumBody<DoubleDouble> body;
+  std::optional<DoubleDouble> gravity = {};       ///< m/s^2, effective; none: WGS84 at the site
+  bool gravity_gradient = false;                  ///< includes the gradient over the body
+  DoubleDouble amplitude = DoubleDouble(1) / 10;  ///< rad, of the finite oscillation
 };
 
 /// A pendulum by its reduced length, as a rod, or by single numbers, in SI units.
 struct PendulumNumbers {
-  using Number = std::optional<long double>;
+  using Number = std::optional<DoubleDouble>;
   Number reduced_length, rod, mass, arm, theta_a, theta_b, theta_c, phi_a, phi_b, phi_c;
 
   /// The body of the numbers; without any a reduced length of 0.5 m and a mass of 1 kg.
   ///
   /// Throws : InvalidInput if numbers are missing, exclude each other or belong to no body
-  [[nodiscard]] PendulumBody<long double> body() const {
+  [[nodiscard]] PendulumBody<DoubleDouble> body() const {
     const bool by_number = arm || theta_a || theta_b || theta_c || phi_a || phi_b || phi_c;
     if (int(by_number) + int(rod.has_value()) + int(reduced_length.has_value()) > 1) {
       throw InvalidInput(
           "the pendulum is given twice: give one of reduced length, rod, or arm with theta a, "
           "theta b and theta c");
     }
-    PendulumBody<long double> result = with_mass(mass.value_or(1));
+    PendulumBody<DoubleDouble> result = with_mass(mass.value_or(1));
     check(result);
     return result;
   }
 
  private:
-  [[nodiscard]] PendulumBody<long double> with_mass(long double m) const {
-    const auto length = [](const char* name, long double value) {
+  [[nodiscard]] PendulumBody<DoubleDouble> with_mass(DoubleDouble m) const {
+    const auto length = [](const char* name, DoubleDouble value) {
       if (value > 0) return value;
       throw InvalidInput(std::string(name) + " must be a length above 0 m");
     };
-    if (rod) return PendulumBody<long double>::thin_rod(length("rod", *rod), m);
+    if (rod) return PendulumBody<DoubleDouble>::thin_rod(length("rod", *rod), m);
     if (!arm && !theta_a && !theta_b && !theta_c && !phi_a && !phi_b && !phi_c) {
-      return PendulumBody<long double>::from_reduced_length(
-          length("reduced length", reduced_length.value_or(0.5L)), m);
+      return PendulumBody<DoubleDouble>::from_reduced_length(
+          length("reduced length", reduced_length.value_or(0.5)), m);
     }
     if (!arm || !theta_a || !theta_b || !theta_c) {
       throw InvalidInput("a pendulum by numbers needs arm, theta a, theta b and theta c");
@@ -101,12 +101,12 @@ namespace detail {
 
 /// Adds the rounding of normal gravity, which is computed in double: u and g' are right to 4
 /// epsilon.
-inline void add_rounding_of_normal_gravity(const PendulumBody<long double>& body, long double rate,
-                                           PendulumAnswer<double>& answer) {
-  const long double spread = std::abs(body.theta_b - body.theta_a) + std::abs(body.phi_a) +
-                             std::abs(body.phi_b) + 2 * std::abs(body.phi_c);
+inline void add_rounding_of_normal_gravity(const PendulumBody<DoubleDouble>& body,
+                                           DoubleDouble rate, PendulumAnswer<double>& answer) {
+  const DoubleDouble spread =
+      abs(body.theta_b - body.theta_a) + abs(body.phi_a) + abs(body.phi_b) + 2 * abs(body.phi_c);
   constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
-  const long double weight = answer.coefficients.weight;
+  const DoubleDouble weight = answer.coefficients.weight;
   const double centrifugal = relative * static_cast<double>(spread * rate * rate / weight);
   const double stiffness =
       answer.coefficients.stiffness(answer.equilibrium.exact.value) / answer.coefficients.weight;
@@ -117,19 +117,19 @@ inline void add_rounding_of_normal_gravity(const PendulumBody<long double>& body
   }
 }
 
-inline EarthGuide<long double> guide_at(EarthSite<long double> site,
-                                        const std::optional<long double>& gravity) {
-  if (!gravity) return normal_gravity(site.cast<double>()).guide.cast<long double>();
-  EarthGuide<long double> earth = earth_guide(site, *gravity);
+inline EarthGuide<DoubleDouble> guide_at(EarthSite<DoubleDouble> site,
+                                         const std::optional<DoubleDouble>& gravity) {
+  if (!gravity) return normal_gravity(site.cast<double>()).guide.cast<DoubleDouble>();
+  EarthGuide<DoubleDouble> earth = earth_guide(site, *gravity);
   // A gravimeter measures gravity alone. Its gradient is the ellipsoid's, at any rotation rate.
-  site.rotation_rate = EarthSite<long double>{}.rotation_rate;
+  site.rotation_rate = EarthSite<DoubleDouble>{}.rotation_rate;
   earth.gravity_gradient =
-      normal_gravity(site.cast<double>()).guide.gravity_gradient.cast<long double>();
+      normal_gravity(site.cast<double>()).guide.gravity_gradient.cast<DoubleDouble>();
   return earth;
 }
 
-inline GradientEffect effect_of_gradient(const PendulumBody<long double>& body,
-                                         const EarthGuide<long double>& earth) {
+inline GradientEffect effect_of_gradient(const PendulumBody<DoubleDouble>& body,
+                                         const EarthGuide<DoubleDouble>& earth) {
   const auto of_guide = parts(body, pendulum_guide(earth, GravityGradient::taken_in));
   const auto& [e, f, h, k] = of_guide.gravity_gradient;
   return {static_cast<double>(-(f + h) / of_guide.weight),
@@ -144,9 +144,9 @@ inline GradientEffect effect_of_gradient(const PendulumBody<long double>& body,
 /// Units  : SI and radian; the site in degrees and m
 /// Throws : InvalidInput; ComputationFailed if deviation or period are not finite
 /// Source : paper 002 section 5, (24) and (25)
-[[nodiscard]] inline SiteDeviation deviation_at(const EarthSite<long double>& site,
+[[nodiscard]] inline SiteDeviation deviation_at(const EarthSite<DoubleDouble>& site,
                                                 const SitePendulum& pendulum) {
-  const EarthGuide<long double> earth = detail::guide_at(site, pendulum.gravity);
+  const EarthGuide<DoubleDouble> earth = detail::guide_at(site, pendulum.gravity);
   const auto gradient =
       pendulum.gravity_gradient ? GravityGradient::taken_in : GravityGradient::left_out;
   SiteDeviation result{

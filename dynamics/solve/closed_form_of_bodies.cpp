@@ -24,7 +24,7 @@ namespace kreisel::detail {
   return alone && tree.links().back().moved_by_forces() ? &tree.body(0) : nullptr;
 }
 
-/// The orientation of a joint in long double, so that the conversion adds no error.
+/// The orientation of a joint in exact::Real, so that the conversion adds no error.
 [[nodiscard]] Eigen::Quaternion<exact::Real> orientation(const kreisel::Joint& joint) {
   return joint.orientation.cast<exact::Real>().normalized();
 }
@@ -115,7 +115,7 @@ struct Flight {
   [[nodiscard]] Vector3<Real> velocity_after(Real time) const { return velocity + time * gravity; }
 };
 
-/// The error of a Flight, in the measure of RunReport::error_estimate. In long double cancellation
+/// The error of a Flight, in the measure of RunReport::error_estimate. In exact::Real cancellation
 /// costs little.
 template <class Real>
 class FlightError {
@@ -127,9 +127,9 @@ class FlightError {
     place_ = std::max(place_, smallest);
     velocity_ = std::max(velocity_, smallest);
     note_way(time);
-    const Real fall = std::abs(time) * flight_.gravity.norm();
+    const Real fall = abs(time) * flight_.gravity.norm();
     const Real speed = flight_.velocity.norm() + fall;
-    const Real way = flight_.start.norm() + std::abs(time) * speed;
+    const Real way = flight_.start.norm() + abs(time) * speed;
     constexpr Real lost = 4 * std::numeric_limits<Real>::epsilon();
     const auto relative = [](Real off, double size) { return size > 0 ? double(off / size) : 0; };
     return 2 * u + std::max(relative(lost * way, place_), relative(lost * speed, velocity_));

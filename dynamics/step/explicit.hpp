@@ -299,17 +299,17 @@ class ExplicitRungeKutta {
     Scalar last;
   };
   static constexpr Rest rest_of_weights = [] {
-    long double missing = 1;
-    long double missing_of_half = 0.5L;
-    long double last_node = 0;
+    DoubleDouble missing = 1;
+    DoubleDouble missing_of_half = 0.5;
+    DoubleDouble last_node = 0;
     for (std::size_t i = 0; i < Tableau::stages; ++i) {
       last_node = 0;
       for (std::size_t j = 0; j < i; ++j) last_node += static_cast<Scalar>(Tableau::a[i][j]);
-      const long double weight = static_cast<Scalar>(Tableau::b[i]);
+      const DoubleDouble weight = static_cast<Scalar>(Tableau::b[i]);
       missing -= weight;
       missing_of_half -= weight * last_node;
     }
-    const long double last = missing_of_half / last_node;
+    const DoubleDouble last = missing_of_half / last_node;
     return Rest{static_cast<Scalar>(missing - last), static_cast<Scalar>(last)};
   }();
 
@@ -325,7 +325,7 @@ class ExplicitRungeKutta {
   /// The time of a stage in a step from `time` on, limited to the side of a discontinuity on which
   /// the step lies.
   [[nodiscard]] Scalar stage_time(const Compensated<Scalar>& time, const Scalar& h,
-                                  long double node) const {
+                                  DoubleDouble node) const {
     const Scalar stage_time = time.value + (static_cast<Scalar>(node) * h + time.rest);
     const bool late = h > Scalar(0) ? stage_time > last_stage_time_ : stage_time < last_stage_time_;
     return late ? last_stage_time_ : stage_time;
@@ -534,7 +534,7 @@ class ExplicitRungeKutta {
   }
 
   /// The node, as a part of the step, of the polynomial's i-th interpolated stage.
-  static constexpr long double met(std::size_t i) {
+  static constexpr DoubleDouble met(std::size_t i) {
     const std::size_t stage = Tableau::met[i];
     return stage == 0 ? 0 : Tableau::later_node[stage - Tableau::stages];
   }
@@ -544,13 +544,13 @@ class ExplicitRungeKutta {
   /// Row m: the powers from 1 on of N_m(x) = int_0^x prod_{i<m} (s - x_i) ds, with x_i of met() and
   /// 0.
   static constexpr auto newton = [] {
-    std::array<std::array<long double, coefficients>, coefficients> N{};
-    std::array<long double, coefficients + 1> product{1};
+    std::array<std::array<DoubleDouble, coefficients>, coefficients> N{};
+    std::array<DoubleDouble, coefficients + 1> product{1};
     for (std::size_t m = 0; m < coefficients; ++m) {
       for (std::size_t j = 0; j <= m; ++j) {
-        N[m][j] = product[j] / static_cast<long double>(j + 1);
+        N[m][j] = product[j] / static_cast<DoubleDouble>(j + 1);
       }
-      const long double x = m < Tableau::met.size() ? met(m) : 0;
+      const DoubleDouble x = m < Tableau::met.size() ? met(m) : 0;
       for (std::size_t j = m + 1; j > 0; --j) product[j] = product[j - 1] - x * product[j];
       product[0] *= -x;
     }

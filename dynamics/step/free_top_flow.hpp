@@ -17,7 +17,7 @@ namespace kreisel {
 /// torque. kick(state, impulse) adds the integral of a torque on body axes.
 template <class F>
 concept FreeFlow = requires(const F flow, typename F::State& state, const Eigen::Quaterniond& q,
-                            const Vector3<double>& v, long double time) {
+                            const Vector3<double>& v, DoubleDouble time) {
   { flow.start(q, v) } -> std::same_as<typename F::State>;
   { flow.attitude(state) } -> std::same_as<Eigen::Quaterniond>;
   { flow.angular_velocity(state) } -> std::same_as<Vector3<double>>;
@@ -33,13 +33,11 @@ struct SineCosine {
   double cosine;
 
   /// The angle may have more digits than a double.
-  explicit SineCosine(long double angle) {
-    const auto head = static_cast<double>(angle);
-    const auto rest = static_cast<double>(angle - static_cast<long double>(head));
-    const double s = std::sin(head);
-    const double c = std::cos(head);
-    sine = s + rest * c;
-    cosine = c - rest * s;
+  explicit SineCosine(DoubleDouble angle) {
+    const double s = std::sin(angle.hi);
+    const double c = std::cos(angle.hi);
+    sine = s + angle.lo * c;
+    cosine = c - angle.lo * s;
   }
 
   [[nodiscard]] double cosine_less_one() const {
@@ -73,7 +71,7 @@ inline void require_start(const Eigen::Quaterniond& q, const Vector3<double>& w)
 ///   q = q~ exp(sigma e_z / 2)
 ///
 /// Only q~ and sigma change, q~ by a rotation about a fixed axis. w_z and L~ stay exact to the last
-/// bit. No step resolves the spin: its angle sigma is summed with 64 bits.
+/// bit. No step resolves the spin: its angle sigma is summed with 106 bits.
 ///
 /// Source : F. Klein, A. Sommerfeld, Theorie des Kreisels, ch. I, regular precession
 /// Frame  : body z is the axis of symmetry
@@ -87,16 +85,13 @@ class SymmetricFreeFlow {
   struct State {
     detail::Compensated<Eigen::Vector4d> attitude;          ///< q~, as x, y, z, w
     detail::Compensated<Vector3<double>> angular_velocity;  ///< on the axes of q~
-    detail::Compensated<long double> spin;                  ///< sigma
+    DoubleDouble spin;                                      ///< sigma
     detail::SineCosine half_spin;                           ///< of sigma/2
   };
 
   /// A: transverse, C: axial moment of inertia.
   SymmetricFreeFlow(double A, double C)
-      : moments_(A, A, C),
-        axial_(static_cast<long double>(C) / static_cast<long double>(A)),
-        excess_((static_cast<long double>(A) - static_cast<long double>(C)) /
-                static_cast<long double>(A)) {
+      : moments_(A, A, C), axial_(DoubleDouble(C) / A), excess_((DoubleDouble(A) - C) / A) {
     check(Inertia<double>{0, Vector3<double>::Zero(), {A, A, C}}, Mass::zero_allowed,
           "symmetric free flow");
     if (!(A > 0 && C > 0)) detail::refuse_steps("symmetric free flow: a moment of inertia is 0");
@@ -106,7 +101,7 @@ class SymmetricFreeFlow {
     detail::require_start(q, w);
     return {{q.coeffs(), Eigen::Vector4d::Zero()},
             {w, Vector3<double>::Zero()},
-            {0, 0},
+            0,
             detail::SineCosine(0)};
   }
 
@@ -121,18 +116,17 @@ class SymmetricFreeFlow {
     return {cosine * w.x() + sine * w.y(), cosine * w.y() - sine * w.x(), w.z()};
   }
 
-  void drift(State& s, long double time) const {
+  void drift(State& s, DoubleDouble time) const {
     const Vector3<double>& w = s.angular_velocity.value;
-    const Vector3<long double> momentum(w.x(), w.y(),  // over A
-                                        axial_ * static_cast<long double>(w.z()));
-    const long double rate = momentum.norm();
-    if (rate > 0) {
-      const detail::SineCosine half(rate * time / 2);
+    const Vector3<DoubleDouble> momentum(w.x(), w.y(), axial_ * w.z());  // over A
+    const DoubleDouble rate = momentum.norm();
+    if (rate.hi > 0) {
+      const detail::SineCosine half(scaled(rate * time, 0.5));
       detail::turn_by(s.attitude, half.cosine_less_one(),
-                      (static_cast<long double>(half.sine) / rate * momentum).cast<double>());
+                      (half.sine / rate * momentum).cast<double>());
     }
-    s.spin.add(excess_ * static_cast<long double>(w.z()) * time);
-    s.half_spin = detail::SineCosine(s.spin.value / 2);
+    s.spin += excess_ * w.z() * time;
+    s.half_spin = detail::SineCosine(scaled(s.spin, 0.5));
   }
 
   void kick(State& s, const Vector3<double>& impulse) const {
@@ -144,8 +138,8 @@ class SymmetricFreeFlow {
 
  private:
   Vector3<double> moments_;
-  long double axial_;   ///< C/A
-  long double excess_;  ///< (A - C)/A
+  DoubleDouble axial_;   ///< C/A
+  DoubleDouble excess_;  ///< (A - C)/A
 };
 
 }  // namespace kreisel

@@ -30,7 +30,7 @@ namespace kreisel {
 /// Error  : <= 8 * 2^-64                                  (tests/dynamics/step/gauss.cpp)
 template <int s>
 struct GaussCoefficients {
-  using Row = std::array<long double, static_cast<std::size_t>(s)>;
+  using Row = std::array<DoubleDouble, static_cast<std::size_t>(s)>;
 
   Row node{};
   Row weight{};
@@ -44,14 +44,14 @@ struct GaussCoefficients {
   std::array<Row, s> ahead{};
 
   GaussCoefficients() {
-    std::array<std::array<long double, s + 1>, s> P{};
-    std::array<std::array<long double, s + 1>, s> P_next{};
+    std::array<std::array<DoubleDouble, s + 1>, s> P{};
+    std::array<std::array<DoubleDouble, s + 1>, s> P_next{};
     for (std::size_t i = 0; i < s; ++i) {
-      const long double x = legendre_zero(i);
+      const DoubleDouble x = legendre_zero(i);
       P[i] = legendre(x);
       P_next[i] = legendre(x + 2);
       node[i] = (1 + x) / 2;
-      const long double slope = s * P[i][s - 1];  // (1 - x^2) P_s'
+      const DoubleDouble slope = s * P[i][s - 1];  // (1 - x^2) P_s'
       weight[i] = (1 - x * x) / (slope * slope);
     }
     for (std::size_t i = 0; i < s; ++i) {
@@ -60,9 +60,9 @@ struct GaussCoefficients {
         ahead[i][j] = 1;
         for (std::size_t k = 1; k < s; ++k) {
           // P_s vanishes here, and its rounding residue would only disturb the sum.
-          const long double upper = k + 1 < s ? P[i][k + 1] : 0;
+          const DoubleDouble upper = k + 1 < s ? P[i][k + 1] : 0;
           ratio[i][j] += P[j][k] * (upper - P[i][k - 1]) / 2;
-          ahead[i][j] += static_cast<long double>(2 * k + 1) * P[j][k] * P_next[i][k];
+          ahead[i][j] += static_cast<double>(2 * k + 1) * P[j][k] * P_next[i][k];
         }
         ahead[i][j] *= weight[i];
       }
@@ -71,19 +71,19 @@ struct GaussCoefficients {
 
  private:
   /// P_0 to P_s.
-  [[nodiscard]] static std::array<long double, s + 1> legendre(long double x) {
-    std::array<long double, s + 1> P{1, x};
+  [[nodiscard]] static std::array<DoubleDouble, s + 1> legendre(DoubleDouble x) {
+    std::array<DoubleDouble, s + 1> P{1, x};
     for (std::size_t k = 1; k < s; ++k) {
-      const auto n = static_cast<long double>(k);
+      const auto n = static_cast<double>(k);
       P[k + 1] = ((2 * n + 1) * x * P[k] - n * P[k - 1]) / (n + 1);
     }
     return P;
   }
 
   /// In ascending order, by Newton's method from Tricomi's cosine.
-  [[nodiscard]] static long double legendre_zero(std::size_t i) {
-    const auto shifted = static_cast<long double>(i) + 0.75L;
-    long double x = -std::cos(std::numbers::pi_v<long double> * shifted / (s + 0.5L));
+  [[nodiscard]] static DoubleDouble legendre_zero(std::size_t i) {
+    const double shifted = static_cast<double>(i) + 0.75;
+    DoubleDouble x = -std::cos(std::numbers::pi * shifted / (s + 0.5));
     for (int iteration = 0; iteration < 8; ++iteration) {
       const auto P = legendre(x);
       x -= P[s] * (1 - x * x) / (s * (P[s - 1] - x * P[s]));
@@ -98,7 +98,7 @@ struct GaussCoefficients {
 ///
 /// is symmetric and symplectic. Rounding must not destroy that: energy would drift with time
 /// instead of a random walk. Therefore the ratios a_ij/b_j are rounded to numbers that still fulfil
-/// a_ij/b_j + a_ji/b_i = 1 exactly, and h b_i has 64 bits. The stages are iterated until rounding,
+/// a_ij/b_j + a_ji/b_i = 1 exactly, and h b_i has 106 bits. The stages are iterated until rounding,
 /// not a tolerance, stops them. State and time are summed with compensation. The first guess is the
 /// continued collocation polynomial of the last step. Each stage uses the newest values of the
 /// others, which saves iterations and, as measured, reduces the drift.
@@ -225,12 +225,12 @@ class GaussIRK {
     return detail::rate_of(field_, t, y);
   }
 
-  void take_length(long double length) {
+  void take_length(DoubleDouble length) {
     const auto h = static_cast<Scalar>(length);
     for (std::size_t i = 0; i < stages; ++i) {
-      const long double exact = length * coefficients().weight[i];
+      const DoubleDouble exact = length * coefficients().weight[i];
       weight_[i] = static_cast<Scalar>(exact);
-      weight_rest_[i] = static_cast<Scalar>(exact - static_cast<long double>(weight_[i]));
+      weight_rest_[i] = static_cast<Scalar>(exact - DoubleDouble(weight_[i]));
       node_[i] = static_cast<Scalar>(length * coefficients().node[i]);
     }
     // The old stages are a guess only for steps of nearly the same length.

@@ -9,16 +9,18 @@
 #include <vector>
 
 #include <dynamics/step/radau_coefficients.hpp>
+#include <motor/complex.hpp>
+#include <motor/double_double_functions.hpp>
 
 namespace kreisel {
 
 namespace detail::radau {
 
-using Real = long double;
-using Complex = std::complex<Real>;
+using Real = DoubleDouble;
+using Value = Complex<Real>;
 using Reals = std::vector<Real>;
 
-[[nodiscard]] inline Real number(std::size_t i) { return static_cast<Real>(i); }
+[[nodiscard]] inline Real number(std::size_t i) { return Real(i); }
 
 /// Legendre's P_n and P_n-1 at x, n > 0.
 [[nodiscard]] inline std::array<Real, 2> legendre(std::size_t n, Real x) {
@@ -34,7 +36,7 @@ using Reals = std::vector<Real>;
 [[nodiscard]] inline Reals nodes(std::size_t s) {
   Reals c(s, Real(1));
   for (std::size_t i = 0; i + 1 < s; ++i) {
-    Real x = -std::cos(std::numbers::pi_v<Real> * (number(i) + 0.75L) / number(s));
+    Real x = -cos(std::numbers::pi_v<Real> * (number(i) + 0.75) / number(s));
     for (int iteration = 0; iteration < 12; ++iteration) {
       const auto [P, before] = legendre(s, x);
       const Real beyond =
@@ -62,23 +64,23 @@ using Reals = std::vector<Real>;
 }
 
 /// sum_k derivative_k lambda^(n - k), with n the last k
-[[nodiscard]] inline Complex homogeneous(const Reals& derivative, const Complex& lambda) {
-  Complex sum = 0;
+[[nodiscard]] inline Value homogeneous(const Reals& derivative, const Value& lambda) {
+  Value sum = Real(0);
   for (const Real d : derivative) sum = sum * lambda + d;
   return sum;
 }
 
 /// The zeros of homogeneous(derivative, lambda), by the method of Durand and Kerner.
-[[nodiscard]] inline std::vector<Complex> zeros(const Reals& derivative) {
+[[nodiscard]] inline std::vector<Value> zeros(const Reals& derivative) {
   const std::size_t s = derivative.size() - 1;
-  std::vector<Complex> z(s);
+  std::vector<Value> z(s);
   for (std::size_t i = 0; i < s; ++i) {
-    const Real angle = 2 * std::numbers::pi_v<Real> * (number(i) + 0.3L) / number(s);
-    z[i] = std::polar(number(s), angle);
+    const Real angle = 2 * std::numbers::pi_v<Real> * (number(i) + 0.3) / number(s);
+    z[i] = number(s) * Value(cos(angle), sin(angle));
   }
   for (int iteration = 0; iteration < 100; ++iteration) {
     for (std::size_t i = 0; i < s; ++i) {
-      Complex change = homogeneous(derivative, z[i]) / derivative[0];
+      Value change = homogeneous(derivative, z[i]) / derivative[0];
       for (std::size_t j = 0; j < s; ++j) {
         if (j != i) change /= z[i] - z[j];
       }
@@ -125,11 +127,11 @@ RadauCoefficients::RadauCoefficients(int stages)
   }
 
   Real real_value = 0;
-  for (const Complex& lambda : zeros(derivatives(c, s, 0))) {
-    const bool is_real = std::abs(lambda.imag()) < 1e-12L * std::abs(lambda);
+  for (const Value& lambda : zeros(derivatives(c, s, 0))) {
+    const bool is_real = abs(lambda.imag()) < 1e-12 * abs(lambda);
     if (!is_real && lambda.imag() < 0) continue;
-    std::vector<Complex> v(s), w(s);
-    Complex product = 0;
+    std::vector<Value> v(s), w(s);
+    Value product = Real(0);
     for (std::size_t i = 0; i < s; ++i) {
       v[i] = homogeneous(derivatives(c, s, c[i]), lambda);
       w[i] = weight[i] * homogeneous(derivatives(c, s - 1, c[i]), -lambda);
@@ -146,9 +148,11 @@ RadauCoefficients::RadauCoefficients(int stages)
     };
     if (is_real) {
       real_value = lambda.real();
-      fill(real, [](const Complex& z) { return static_cast<double>(z.real()); });
+      fill(real, [](const Value& z) { return static_cast<double>(z.real()); });
     } else {
-      fill(pairs.emplace_back(), [](const Complex& z) { return std::complex<double>(z); });
+      fill(pairs.emplace_back(), [](const Value& z) {
+        return std::complex<double>(static_cast<double>(z.re), static_cast<double>(z.im));
+      });
     }
   }
 

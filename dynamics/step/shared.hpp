@@ -15,6 +15,7 @@
 
 #include <dynamics/signal/same_time.hpp>
 #include <dynamics/step/compensated.hpp>
+#include <motor/double_double_functions.hpp>
 #include <motor/error.hpp>
 #include <motor/lanes.hpp>
 
@@ -196,25 +197,24 @@ void perturb(Vector& change, double digits, double step, double length) {
   }
 }
 
-/// `count` steps of equal length, at most the requested one. The length has 64 bits: over many
-/// steps its rounding is an error of time that grows with their number.
+/// `count` steps of equal length, at most the requested one. The length has 106 bits: over
+/// many steps its rounding is an error of time that grows with their number.
 struct EqualSteps {
   double count;
-  long double length;
+  DoubleDouble length;
 
   template <class S>
   EqualSteps(const Compensated<S>& time, const S& end, double step) {
     if (!std::isfinite(static_cast<double>(end))) refuse_steps("the end time is not finite");
-    const long double left =
-        (static_cast<long double>(end) - static_cast<long double>(time.value)) -
-        static_cast<long double>(time.rest);
+    const DoubleDouble left =
+        (DoubleDouble(end) - DoubleDouble(time.value)) - DoubleDouble(time.rest);
     // An end at a multiple of the step takes exactly that many steps, despite rounding.
-    count = std::max(1.0, std::ceil(static_cast<double>(std::abs(left)) / step * (1 - 1e-12)));
-    length = left / static_cast<long double>(count);
-    const double moved = std::abs(static_cast<double>(length));
+    count = std::max(1.0, std::ceil(abs(left).hi / step * (1 - 1e-12)));
+    length = left / count;
+    const double moved = std::abs(length.hi);
     const double there =
         std::max(std::abs(static_cast<double>(time.value)), std::abs(static_cast<double>(end)));
-    if (left != 0 && !(moved > 4 * std::numeric_limits<double>::epsilon() * there)) {
+    if (left.hi != 0 && !(moved > 4 * std::numeric_limits<double>::epsilon() * there)) {
       stop_integration(time.value, "steps of ", step, " s are too short to move time on");
     }
   }

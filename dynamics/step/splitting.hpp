@@ -29,8 +29,8 @@ concept AttitudeTorque = requires(const T torque, double t, const Eigen::Quatern
 /// Source : G. Strang, SIAM J. Numer. Anal. 5 (1968) 506
 struct Strang {
   static constexpr int order = 2;
-  static constexpr std::array<long double, 2> drift = {0.5L, 0.5L};
-  static constexpr std::array<long double, 1> kick = {1.0L};
+  static constexpr std::array<DoubleDouble, 2> drift = {0.5_dd, 0.5_dd};
+  static constexpr std::array<DoubleDouble, 1> kick = {1.0_dd};
 };
 
 /// Error O(e h^8 + e^2 h^6 + e^3 h^4) for a torque e times weaker than that of the spin; order 4
@@ -42,23 +42,23 @@ struct Strang {
 ///          convergence (tests/dynamics/step/splitting.cpp)
 struct Blanes864 {
   static constexpr int order = 4;
-  static constexpr std::array<long double, 8> drift = {
-      0.0711334264982231177779387300061549964174L,  //
-      0.241153427956640098736487795326289649618L,   //
-      0.521411761772814789212136078067994229991L,   //
-      -0.333698616227678005726562603400438876027L,  //
-      -0.333698616227678005726562603400438876027L,  //
-      0.521411761772814789212136078067994229991L,   //
-      0.241153427956640098736487795326289649618L,   //
-      0.0711334264982231177779387300061549964174L};
-  static constexpr std::array<long double, 7> kick = {
-      0.183083687472197221961703757166430291072L,    //
-      0.310782859898574869507522291054262796375L,    //
-      -0.0265646185119588006972121379164987592663L,  //
-      0.0653961422823734184559721793911134363710L,   //
-      -0.0265646185119588006972121379164987592663L,  //
-      0.310782859898574869507522291054262796375L,    //
-      0.183083687472197221961703757166430291072L};
+  static constexpr std::array<DoubleDouble, 8> drift = {
+      0.0711334264982231177779387300061549964174_dd,  //
+      0.241153427956640098736487795326289649618_dd,   //
+      0.521411761772814789212136078067994229991_dd,   //
+      -0.333698616227678005726562603400438876027_dd,  //
+      -0.333698616227678005726562603400438876027_dd,  //
+      0.521411761772814789212136078067994229991_dd,   //
+      0.241153427956640098736487795326289649618_dd,   //
+      0.0711334264982231177779387300061549964174_dd};
+  static constexpr std::array<DoubleDouble, 7> kick = {
+      0.183083687472197221961703757166430291072_dd,    //
+      0.310782859898574869507522291054262796375_dd,    //
+      -0.0265646185119588006972121379164987592663_dd,  //
+      0.0653961422823734184559721793911134363710_dd,   //
+      -0.0265646185119588006972121379164987592663_dd,  //
+      0.310782859898574869507522291054262796375_dd,    //
+      0.183083687472197221961703757166430291072_dd};
 };
 
 /// 17 steps of Strang in a row, some of them backwards. Order 8 for every torque.
@@ -67,18 +67,18 @@ struct Blanes864 {
 ///          schemes for ordinary differential equations, Math. Comp. 66 (1997) 1089, s17odr8a
 struct KahanLi8 {
   static constexpr int order = 8;
-  static constexpr std::array<long double, 17> kick = {
-      0.13020248308889008087881763L,  0.56116298177510838456196441L,
-      -0.38947496264484728640807860L, 0.15884190655515560089621075L,
-      -0.39590389413323757733623154L, 0.18453964097831570709183254L,
-      0.25837438768632204729397911L,  0.29501172360931029887096624L,
-      -0.60550853383003451169892108L, 0.29501172360931029887096624L,
-      0.25837438768632204729397911L,  0.18453964097831570709183254L,
-      -0.39590389413323757733623154L, 0.15884190655515560089621075L,
-      -0.38947496264484728640807860L, 0.56116298177510838456196441L,
-      0.13020248308889008087881763L};
-  static constexpr std::array<long double, 18> drift = [] {
-    std::array<long double, 18> halves{};
+  static constexpr std::array<DoubleDouble, 17> kick = {
+      0.13020248308889008087881763_dd,  0.56116298177510838456196441_dd,
+      -0.38947496264484728640807860_dd, 0.15884190655515560089621075_dd,
+      -0.39590389413323757733623154_dd, 0.18453964097831570709183254_dd,
+      0.25837438768632204729397911_dd,  0.29501172360931029887096624_dd,
+      -0.60550853383003451169892108_dd, 0.29501172360931029887096624_dd,
+      0.25837438768632204729397911_dd,  0.18453964097831570709183254_dd,
+      -0.39590389413323757733623154_dd, 0.15884190655515560089621075_dd,
+      -0.38947496264484728640807860_dd, 0.56116298177510838456196441_dd,
+      0.13020248308889008087881763_dd};
+  static constexpr std::array<DoubleDouble, 18> drift = [] {
+    std::array<DoubleDouble, 18> halves{};
     for (std::size_t i = 0; i < kick.size(); ++i) {
       halves[i] += kick[i] / 2;
       halves[i + 1] += kick[i] / 2;
@@ -144,8 +144,8 @@ class SplittingSteps {
   void advance_to(double end) {
     const detail::EqualSteps steps(time_, end, step_);
     if (end == t()) return;
-    const long double h = steps.length;
-    const long double outer = Scheme::drift[0] * h;
+    const DoubleDouble h = steps.length;
+    const DoubleDouble outer = Scheme::drift[0] * h;
     double done = 0;
     while (done < steps.count) {
       const bool spent = effort_.evaluations > max_evaluations_;
@@ -171,8 +171,8 @@ class SplittingSteps {
 
  private:
   /// All but the last drift; returns true if all torques were finite.
-  [[nodiscard]] bool step(long double h, long double first_drift) {
-    long double passed = 0;
+  [[nodiscard]] bool step(DoubleDouble h, DoubleDouble first_drift) {
+    DoubleDouble passed = 0;
     for (std::size_t i = 0; i < Scheme::kick.size(); ++i) {
       flow_.drift(state_, i == 0 ? first_drift : Scheme::drift[i] * h);
       passed += Scheme::drift[i];

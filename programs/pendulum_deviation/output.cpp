@@ -31,8 +31,8 @@ void print_terms(const char* title, const std::vector<kreisel::PendulumTerm<doub
 }
 
 void print_one(const Request& request, const Row& row) {
-  const auto& [latitude, azimuth, height, rate] = row.site.place;
-  const auto& body = request.body;
+  const auto [latitude, azimuth, height, rate] = row.site.place.cast<double>();
+  const auto body = request.body.cast<double>();
   const auto& answer = row.answer;
   fmt::print("site      latitude {:g} deg, height {:g} m, pendulum axis at azimuth {:g} deg\n",
              latitude, height, azimuth);
@@ -53,7 +53,7 @@ void print_one(const Request& request, const Row& row) {
     }
   };
   fmt::print("\nequilibrium, from the vertical towards azimuth {:g} deg\n",
-             std::fmod(azimuth + 270, Real(360)));
+             std::fmod(azimuth + 270, 360));
   equilibrium("formula (24)", answer.equilibrium.formula_24);
   equilibrium("linear", answer.equilibrium.linear);
   equilibrium("exact", answer.equilibrium.exact);
@@ -86,7 +86,8 @@ void print_one(const Request& request, const Row& row) {
   period("formula (25)", corrected, p.relative_change_formula_25);
   period("linear", p.linear, {});
   period("exact, small", p.exact_small, p.relative_change_exact);
-  period(fmt::format("exact, {:g} rad", request.amplitude), p.at_amplitude, {});
+  period(fmt::format("exact, {:g} rad", static_cast<double>(request.amplitude)), p.at_amplitude,
+         {});
   fmt::print("  {:22} {:>21} {:+.3e}, first order\n", gradient, "", row.gradient.period);
   fmt::print(
       "(the error of a formula is its difference from the exact value, that of an exact value its "
@@ -117,7 +118,7 @@ void print_table(const Request& request, const std::vector<Row>& rows, double ru
              "latitude", "height", "azimuth", "gravity", "deviation [rad]", "[arcsec]",
              "period [s]", "relative change", "error");
   for (const Row& row : rows) {
-    const auto& [latitude, azimuth, height, rate] = row.site.place;
+    const auto [latitude, azimuth, height, rate] = row.site.place.cast<double>();
     const auto& equilibrium = row.answer.equilibrium.exact;
     const auto& period = row.answer.period;
     fmt::print(
@@ -161,7 +162,7 @@ void write_csv(kreisel::AtomicFile& file, const std::vector<Row>& rows) {
          "linear,"
          "period_exact_small,period_error,relative_change_exact,period_at_amplitude\n";
   for (const Row& row : rows) {
-    const auto& [latitude, azimuth, height, rate] = row.site.place;
+    const auto [latitude, azimuth, height, rate] = row.site.place.cast<double>();
     const auto& a = row.answer;
     fmt::print(out, "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{},{},{},{},{},{},{},{},{}\n",
                kreisel::csv_field(row.site.name), latitude, height, azimuth, rate, row.gravity,

@@ -46,12 +46,12 @@ std::vector<Site> sweep_sites(const std::string& text, const kreisel::EarthSite<
   const Real from = number("--sweep from", text.substr(equals + 1, first - equals - 1));
   const Real to = number("--sweep to", text.substr(first + 1, second - first - 1));
   const Real step = number("--sweep step", text.substr(second + 1));
-  const Real steps = std::floor((to - from) / step + 1e-9L);
+  const Real steps = floor((to - from) / step + 1e-9);
   if (!(steps >= 0) || step == 0) throw refuse("the step does not lead from FROM to TO");
   if (steps > 1'000'000) throw refuse("more than a million steps; make the step longer");
 
   std::vector<Site> sites;
-  const long last = std::lround(steps);
+  const long last = static_cast<long>(steps);
   for (long i = 0; i <= last; ++i) {
     *value = from + static_cast<Real>(i) * step;
     kreisel::check(place);

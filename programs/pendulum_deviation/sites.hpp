@@ -5,9 +5,10 @@
 #include <vector>
 
 #include <dynamics/guide/earth.hpp>
+#include <motor/double_double_functions.hpp>
 
-/// The number type of inputs: decimals read in long double count as exact.
-using Real = long double;
+/// The number type of inputs: decimals read with its digits count as exact.
+using Real = kreisel::DoubleDouble;
 
 struct Site {
   std::string name;  // empty unless the site comes from a list

@@ -12,6 +12,7 @@
 
 #include <support/near.hpp>
 #include <support/perturbed.hpp>
+#include <support/wide.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
@@ -43,8 +44,8 @@ BOOST_AUTO_TEST_SUITE(verners_coefficients)
 BOOST_AUTO_TEST_CASE(have_rows_that_sum_to_the_nodes) {
   for (std::size_t i = 0; i < Verner98::stages; ++i) {
     long double sum = 0;
-    for (const long double a : Verner98::a[i]) sum += a;
-    BOOST_TEST(near(sum, Verner98::node[i], 64.0L, 4));
+    for (const DoubleDouble& a : Verner98::a[i]) sum += test::wide(a);
+    BOOST_TEST(near(sum, test::wide(Verner98::node[i]), 64.0L, 4));
   }
 }
 
@@ -55,9 +56,9 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time) {
     long double ninth = 0;
     long double difference = 0;
     for (std::size_t i = 0; i < Verner98::stages; ++i) {
-      const long double x = std::pow(Verner98::node[i], power);
-      ninth += Verner98::b[i] * x;
-      difference += Verner98::difference[i] * x;
+      const long double x = std::pow(test::wide(Verner98::node[i]), power);
+      ninth += test::wide(Verner98::b[i]) * x;
+      difference += test::wide(Verner98::difference[i]) * x;
     }
     BOOST_TEST(near(ninth, 1.0L / (power + 1), 2.0L, 4));
     if (power < 8) BOOST_TEST(near(difference, 0.0L, 6.0L, 4));
@@ -71,7 +72,8 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time_twice) {
     long double sum = 0;
     for (std::size_t i = 0; i < Verner98::stages; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        sum += Verner98::b[i] * Verner98::a[i][j] * std::pow(Verner98::node[j], power);
+        sum += test::wide(Verner98::b[i] * Verner98::a[i][j]) *
+               std::pow(test::wide(Verner98::node[j]), power);
       }
     }
     BOOST_TEST(near(sum, 1.0L / ((power + 1) * (power + 2)), 8.0L, 4));
@@ -82,16 +84,18 @@ BOOST_AUTO_TEST_CASE(integrate_powers_of_time_twice) {
 // error. The ninth power occurs for t^8 alone.
 BOOST_AUTO_TEST_CASE(integrate_powers_of_time_within_the_step) {
   const auto node = [](std::size_t j) {
-    return j < Verner98::stages ? Verner98::node[j] : Verner98::later_node[j - Verner98::stages];
+    return test::wide(j < Verner98::stages ? Verner98::node[j]
+                                           : Verner98::later_node[j - Verner98::stages]);
   };
   const auto sum = [&](const Verner98::LaterRow& row, int power) {
     long double all = 0;
-    for (std::size_t j = 0; j < row.size(); ++j) all += row[j] * std::pow(node(j), power);
+    for (std::size_t j = 0; j < row.size(); ++j)
+      all += test::wide(row[j]) * std::pow(node(j), power);
     return all;
   };
   for (int power = 0; power < 8; ++power) {
     for (std::size_t i = 0; i < Verner98::later_stages; ++i) {
-      const long double end = Verner98::later_node[i];
+      const long double end = test::wide(Verner98::later_node[i]);
       const long double integral = std::pow(end, power + 1) / (power + 1);
       BOOST_TEST(near(sum(Verner98::later[i], power), integral, 2.0L, 4));
     }

@@ -9,6 +9,7 @@
 #include <dynamics/step/gauss.hpp>
 
 #include <support/near.hpp>
+#include <support/wide.hpp>
 #include <support/worst.hpp>
 
 using namespace kreisel;
@@ -61,9 +62,11 @@ BOOST_AUTO_TEST_SUITE(gauss_coefficients)
 template <int s>
 void hold() {
   const GaussCoefficients<s> gauss;
+  const auto node = [&](std::size_t i) { return test::wide(gauss.node[i]); };
   for (int power = 0; power < 2 * s; ++power) {
     long double sum = 0;
-    for (std::size_t i = 0; i < s; ++i) sum += gauss.weight[i] * std::pow(gauss.node[i], power);
+    for (std::size_t i = 0; i < s; ++i)
+      sum += test::wide(gauss.weight[i]) * std::pow(node(i), power);
     BOOST_TEST(near(sum, 1.0L / (power + 1), 1.0L, 16));
   }
   for (std::size_t i = 0; i < s; ++i) {
@@ -71,12 +74,13 @@ void hold() {
       long double within = 0;
       long double ahead = 0;
       for (std::size_t j = 0; j < s; ++j) {
-        const long double x = gauss.weight[j] * std::pow(gauss.node[j], power);
-        within += gauss.ratio[i][j] * x;
-        ahead += gauss.ahead[i][j] * x;
+        const long double x = test::wide(gauss.weight[j]) * std::pow(node(j), power);
+        within += test::wide(gauss.ratio[i][j]) * x;
+        ahead += test::wide(gauss.ahead[i][j]) * x;
       }
-      BOOST_TEST(near(within, std::pow(gauss.node[i], power + 1.0L) / (power + 1), 1.0L, 8));
-      BOOST_TEST(near(ahead, gauss.weight[i] * std::pow(1 + gauss.node[i], 1.0L * power), 1e5L, 8));
+      BOOST_TEST(near(within, std::pow(node(i), power + 1.0L) / (power + 1), 1.0L, 8));
+      BOOST_TEST(
+          near(ahead, test::wide(gauss.weight[i]) * std::pow(1 + node(i), 1.0L * power), 1e5L, 8));
     }
   }
 }
