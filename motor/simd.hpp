@@ -2,9 +2,16 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 #include <utility>
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
 /// Packed vectors and matrices of doubles: every part of the library that is tuned for a processor
 /// or a compiler.
@@ -29,47 +36,171 @@ namespace kreisel::detail {
 
 #ifdef KREISEL_PORTABLE_SIMD
 
-/// n doubles in an array, with the operators of the vector extension that are used here.
-template <int n>
-struct PackedDoubles {
-  double numbers[n];
+/// n doubles, or n masks of 64 bits, in an array, with the operators of the vector extension that
+/// are used here.
+template <int n, class Number = double>
+struct Lanes {
+  Number numbers[n];
 
-  [[nodiscard]] double operator[](int i) const { return numbers[i]; }
+  [[nodiscard]] const Number& operator[](int i) const { return numbers[i]; }
+  [[nodiscard]] Number& operator[](int i) { return numbers[i]; }
 
-  friend PackedDoubles operator+(const PackedDoubles& a, const PackedDoubles& b) {
+  friend Lanes operator-(const Lanes& a) {
+    return each([&](int i) { return -a[i]; });
+  }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
     return each([&](int i) { return a[i] + b[i]; });
   }
-  friend PackedDoubles operator-(const PackedDoubles& a, const PackedDoubles& b) {
+  friend Lanes operator-(const Lanes& a, const Lanes& b) {
     return each([&](int i) { return a[i] - b[i]; });
   }
-  friend PackedDoubles operator*(const PackedDoubles& a, const PackedDoubles& b) {
+  friend Lanes operator*(const Lanes& a, const Lanes& b) {
     return each([&](int i) { return a[i] * b[i]; });
   }
-  friend PackedDoubles operator/(const PackedDoubles& a, const PackedDoubles& b) {
+  friend Lanes operator/(const Lanes& a, const Lanes& b) {
     return each([&](int i) { return a[i] / b[i]; });
   }
-  friend PackedDoubles operator*(double a, const PackedDoubles& b) {
+  friend Lanes operator*(Number a, const Lanes& b) {
     return each([&](int i) { return a * b[i]; });
   }
+  friend Lanes operator&(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return a[i] & b[i]; });
+  }
+  friend Lanes operator|(const Lanes& a, const Lanes& b) {
+    return each([&](int i) { return a[i] | b[i]; });
+  }
+  friend Lanes operator~(const Lanes& a) {
+    return each([&](int i) { return ~a[i]; });
+  }
+
+  friend auto operator<(const Lanes& a, const Lanes& b) {
+    return compared([&](int i) { return a[i] < b[i]; });
+  }
+  friend auto operator>(const Lanes& a, const Lanes& b) { return b < a; }
+  friend auto operator<=(const Lanes& a, const Lanes& b) {
+    return compared([&](int i) { return a[i] <= b[i]; });
+  }
+  friend auto operator>=(const Lanes& a, const Lanes& b) { return b <= a; }
+  friend auto operator==(const Lanes& a, const Lanes& b) {
+    return compared([&](int i) { return a[i] == b[i]; });
+  }
+  friend auto operator!=(const Lanes& a, const Lanes& b) { return ~(a == b); }
 
  private:
   template <class Of>
-  [[nodiscard]] static PackedDoubles each(const Of& of) {
-    PackedDoubles result;
+  [[nodiscard]] static Lanes each(const Of& of) {
+    Lanes result;
     for (int i = 0; i < n; ++i) result.numbers[i] = of(i);
+    return result;
+  }
+  /// All bits where true, as the vector extension has it.
+  template <class Of>
+  [[nodiscard]] static Lanes<n, std::int64_t> compared(const Of& of) {
+    Lanes<n, std::int64_t> result;
+    for (int i = 0; i < n; ++i) result.numbers[i] = of(i) ? -1 : 0;
     return result;
   }
 };
 
-using Double2 = PackedDoubles<2>;
-using Double4 = PackedDoubles<4>;
+template <int n>
+using LanesOfDouble = Lanes<n>;
+template <int n>
+using LanesOfBool = Lanes<n, std::int64_t>;
 
 #else
 
-using Double2 = double __attribute__((vector_size(2 * sizeof(double))));
-using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
+/// Vectors of n doubles and of n masks of 64 bits. The masks are the results of comparisons.
+template <int n>
+struct VectorExtension {
+  using Doubles [[gnu::vector_size(n * sizeof(double))]] = double;
+  using Bools [[gnu::vector_size(n * sizeof(double))]] = std::int64_t;
+};
+
+template <int n>
+using LanesOfDouble = typename VectorExtension<n>::Doubles;
+template <int n>
+using LanesOfBool = typename VectorExtension<n>::Bools;
 
 #endif
+
+using Double2 = LanesOfDouble<2>;
+using Double4 = LanesOfDouble<4>;
+
+/// The doubles that an instruction of the processor takes; 2 if it takes single ones.
+#if defined(__AVX512F__)
+inline constexpr int native_lanes = 8;
+#elif defined(__AVX__)
+inline constexpr int native_lanes = 4;
+#else
+inline constexpr int native_lanes = 2;
+#endif
+
+template <int n>
+[[nodiscard, gnu::always_inline]] inline LanesOfDouble<n> same_in_all_lanes(double x) {
+  LanesOfDouble<n> result;
+  for (int i = 0; i < n; ++i) result[i] = x;
+  return result;
+}
+
+/// True if all lanes of a mask are.
+template <class Bools>
+[[nodiscard, gnu::always_inline]] inline bool all_lanes(const Bools& mask) {
+  constexpr int n = int(sizeof(Bools) / sizeof(std::int64_t));
+#if defined(__SSE2__) && !defined(KREISEL_PORTABLE_SIMD)
+  if constexpr (n == 2) return _mm_movemask_pd((__m128d)mask) == 0x3;
+#endif
+#if defined(__AVX__) && !defined(KREISEL_PORTABLE_SIMD)
+  if constexpr (n == 4) return _mm256_movemask_pd((__m256d)mask) == 0xf;
+#endif
+  std::int64_t common = -1;
+  for (int i = 0; i < n; ++i) common &= std::int64_t(mask[i]);
+  return common != 0;
+}
+
+/// yes where the mask is true, else no.
+template <class Bools, class Doubles>
+[[nodiscard, gnu::always_inline]] inline Doubles lanes_select(const Bools& mask, const Doubles& yes,
+                                                              const Doubles& no) {
+#ifdef KREISEL_PORTABLE_SIMD
+  Doubles result;
+  for (int i = 0; i < int(sizeof(Doubles) / sizeof(double)); ++i) {
+    result[i] = mask[i] != 0 ? yes[i] : no[i];
+  }
+  return result;
+#else
+  return (Doubles)((mask & (Bools)yes) | (~mask & (Bools)no));
+#endif
+}
+
+template <class Doubles>
+[[nodiscard, gnu::always_inline]] inline Doubles lanes_abs(const Doubles& x) {
+#ifdef KREISEL_PORTABLE_SIMD
+  Doubles result;
+  for (int i = 0; i < int(sizeof(Doubles) / sizeof(double)); ++i) result[i] = std::abs(x[i]);
+  return result;
+#else
+  using Bools = decltype(x < x);
+  constexpr std::int64_t without_sign = std::numeric_limits<std::int64_t>::max();
+  return (Doubles)((Bools)x & without_sign);
+#endif
+}
+
+template <class Doubles>
+[[nodiscard, gnu::always_inline]] inline Doubles lanes_sqrt(const Doubles& x) {
+  constexpr int n = int(sizeof(Doubles) / sizeof(double));
+#if defined(__SSE2__) && !defined(KREISEL_PORTABLE_SIMD)
+  if constexpr (n == 2) return (Doubles)_mm_sqrt_pd((__m128d)x);
+#endif
+#if defined(__AVX__) && !defined(KREISEL_PORTABLE_SIMD)
+  if constexpr (n == 4) return (Doubles)_mm256_sqrt_pd((__m256d)x);
+#endif
+#if defined(__AVX512F__) && !defined(KREISEL_PORTABLE_SIMD)
+  if constexpr (n == 8) return (Doubles)_mm512_sqrt_pd((__m512d)x);
+#endif
+  Doubles result;
+  for (int i = 0; i < n; ++i) result[i] = std::sqrt(x[i]);
+  return result;
+}
 
 /// The vector (x, y, z), where x and y are read and written together.
 template <class S>

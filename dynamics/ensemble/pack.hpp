@@ -3,11 +3,10 @@
 #include <Eigen/Core>
 
 #include <cmath>
-#include <cstddef>
-#include <experimental/simd>
 #include <type_traits>
 
 #include <motor/lanes.hpp>
+#include <motor/simd.hpp>
 
 namespace kreisel {
 
@@ -22,24 +21,24 @@ namespace kreisel {
 ///
 /// Error  : sine and cosine <= 1.2 * 2^-53 up to arguments of 1e9, root and the four operations as
 ///         those of double
-template <class Abi = std::experimental::simd_abi::native<double>>
+template <int count = detail::native_lanes>
 class BasicPack {
  public:
-  using Numbers = std::experimental::simd<double, Abi>;
+  using Numbers = detail::LanesOfDouble<count>;
 
   /// One bool for each lane.
   class Mask {
    public:
-    using Bools = typename Numbers::mask_type;
+    using Bools = detail::LanesOfBool<count>;
 
     Mask(const Bools& bools) : bools_(bools) {}
     [[nodiscard]] const Bools& bools() const { return bools_; }
 
-    friend Mask operator&&(const Mask& a, const Mask& b) { return a.bools_ && b.bools_; }
-    friend Mask operator||(const Mask& a, const Mask& b) { return a.bools_ || b.bools_; }
-    friend Mask operator!(const Mask& a) { return !a.bools_; }
-    friend bool all(const Mask& a) { return std::experimental::all_of(a.bools_); }
-    friend bool any(const Mask& a) { return std::experimental::any_of(a.bools_); }
+    friend Mask operator&&(const Mask& a, const Mask& b) { return a.bools_ & b.bools_; }
+    friend Mask operator||(const Mask& a, const Mask& b) { return a.bools_ | b.bools_; }
+    friend Mask operator!(const Mask& a) { return ~a.bools_; }
+    friend bool all(const Mask& a) { return detail::all_lanes(a.bools_); }
+    friend bool any(const Mask& a) { return !detail::all_lanes(Bools(~a.bools_)); }
 
     template <class Bool>
     requires std::is_same_v<Bool, bool>
@@ -55,15 +54,15 @@ class BasicPack {
     Bools bools_;
   };
 
-  static constexpr int lanes = static_cast<int>(Numbers::size());
+  static constexpr int lanes = count;
 
   BasicPack() = default;
-  BasicPack(double x) : x_(x) {}  ///< the same number in all lanes
+  BasicPack(double x) : x_(detail::same_in_all_lanes<count>(x)) {}  ///< the same in all lanes
   BasicPack(const Numbers& x) : x_(x) {}
 
   [[nodiscard]] const Numbers& numbers() const { return x_; }
-  [[nodiscard]] double lane(int i) const { return x_[static_cast<std::size_t>(i)]; }
-  void set_lane(int i, double x) { x_[static_cast<std::size_t>(i)] = x; }
+  [[nodiscard]] double lane(int i) const { return x_[i]; }
+  void set_lane(int i, double x) { x_[i] = x; }
 
   BasicPack& operator+=(const BasicPack& b) { return *this = *this + b; }
   BasicPack& operator-=(const BasicPack& b) { return *this = *this - b; }
@@ -106,17 +105,15 @@ class BasicPack {
   [[gnu::always_inline]] friend BasicPack sin(const BasicPack& a) { return on_circle(a).sine; }
   [[gnu::always_inline]] friend BasicPack cos(const BasicPack& a) { return on_circle(a).cosine; }
   [[gnu::always_inline]] friend BasicPack sqrt(const BasicPack& a) {
-    return std::experimental::sqrt(a.x_);
+    return detail::lanes_sqrt(a.x_);
   }
   [[gnu::always_inline]] friend BasicPack abs(const BasicPack& a) {
-    return std::experimental::abs(a.x_);
+    return detail::lanes_abs(a.x_);
   }
 
   [[gnu::always_inline]] friend BasicPack select(const Mask& condition, const BasicPack& yes,
                                                  const BasicPack& no) {
-    Numbers result = no.x_;
-    where(condition.bools(), result) = yes.x_;
-    return result;
+    return detail::lanes_select(condition.bools(), yes.x_, no.x_);
   }
   friend double greatest_lane(const BasicPack& a) {
     double most = a.lane(0);
@@ -190,9 +187,9 @@ using Pack = BasicPack<>;
 
 namespace Eigen {
 
-template <class Abi>
-struct NumTraits<kreisel::BasicPack<Abi>> : GenericNumTraits<kreisel::BasicPack<Abi>> {
-  using Pack = kreisel::BasicPack<Abi>;
+template <int lanes>
+struct NumTraits<kreisel::BasicPack<lanes>> : GenericNumTraits<kreisel::BasicPack<lanes>> {
+  using Pack = kreisel::BasicPack<lanes>;
   using Real = Pack;
   using NonInteger = Pack;
   using Nested = Pack;
@@ -208,13 +205,13 @@ struct NumTraits<kreisel::BasicPack<Abi>> : GenericNumTraits<kreisel::BasicPack<
   };
 };
 
-template <class Abi, class Op>
-struct ScalarBinaryOpTraits<kreisel::BasicPack<Abi>, double, Op> {
-  using ReturnType = kreisel::BasicPack<Abi>;
+template <int lanes, class Op>
+struct ScalarBinaryOpTraits<kreisel::BasicPack<lanes>, double, Op> {
+  using ReturnType = kreisel::BasicPack<lanes>;
 };
-template <class Abi, class Op>
-struct ScalarBinaryOpTraits<double, kreisel::BasicPack<Abi>, Op> {
-  using ReturnType = kreisel::BasicPack<Abi>;
+template <int lanes, class Op>
+struct ScalarBinaryOpTraits<double, kreisel::BasicPack<lanes>, Op> {
+  using ReturnType = kreisel::BasicPack<lanes>;
 };
 
 }  // namespace Eigen

@@ -347,7 +347,7 @@ BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
 }
 
 // Perturbations of 10 units in the last digit of each step, up or down, are a random walk; a state
-// at rest stays at rest.
+// at rest stays at rest. Of 20000 plane walks 1 % measure below 0.38 in this way and 1 % above 1.9.
 BOOST_AUTO_TEST_CASE(deviate_by_their_perturbation) {
   const auto made = [](double digits) {
     const auto field = [](double, const Eigen::Vector3d& y) {
@@ -359,7 +359,7 @@ BOOST_AUTO_TEST_CASE(deviate_by_their_perturbation) {
   const double off = test::perturbed_deviation(made);
   BOOST_TEST_MESSAGE("off by " << off << " of the walk's length");
   BOOST_TEST(off > 0.3);
-  BOOST_TEST(off < 1.5);
+  BOOST_TEST(off < 2);
   BOOST_TEST(test::perturbed_deviation(made) == off);
   BOOST_TEST(made(10).advance_to(500)[2] == 0);
 }
