@@ -12,8 +12,8 @@ using namespace kreisel::scene_analysis;
 
 namespace {
 
-/// Inputs are long double, so that decimals count as exact.
-using Real = long double;
+/// Inputs have twice the digits of a double, so that decimals count as exact.
+using Real = kreisel::DoubleDouble;
 
 /// Computes the analysis and returns what `text_of` makes of it.
 template <class TextOf>

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -56,9 +54,9 @@ class FreeCardanGyro {
     B_ = A + inner_ring.y();
     j_0_ = A + inner_ring.x() + outer_ring.x();
     j_1_ = A + inner_ring.x() - carried;
-    half_turns_ = std::round(start.beta / pi);
-    side_ = std::fmod(half_turns_, Real(2)) == 0 ? 1 : -1;
-    const Real s = std::sin(start.beta);
+    half_turns_ = round(start.beta / pi);
+    side_ = fmod(half_turns_, Real(2)) == 0 ? 1 : -1;
+    const Real s = sin(start.beta);
     H_ = spin_moment_ * (start.phi_rate + (regulated ? 0 : start.alpha_rate * s));
     const Real J = moment(s);
     const Real e = B_ * start.beta_rate * start.beta_rate + J * start.alpha_rate * start.alpha_rate;
@@ -68,10 +66,10 @@ class FreeCardanGyro {
     middle_ = p_ * H_ / K_;
     // (middle - s) and the sine's part: their sum of squares is the amplitude's.
     const Real cosine = (J * start.alpha_rate * H_ - e * j_1_ * s) / K_;
-    const Real sine = side_ * start.beta_rate * std::sqrt(B_ * J / K_);
-    amplitude_ = std::hypot(cosine, sine);
-    const Real begin = std::atan2(sine, cosine);
-    if (!(std::abs(middle_) + amplitude_ < 1)) {
+    const Real sine = side_ * start.beta_rate * sqrt(B_ * J / K_);
+    amplitude_ = hypot(cosine, sine);
+    const Real begin = atan2(sine, cosine);
+    if (!(abs(middle_) + amplitude_ < 1)) {
       throw ComputationFailed("free Cardan gyro: its rings turn over");
     }
     find_series();
@@ -83,25 +81,25 @@ class FreeCardanGyro {
   /// The mean of alpha': the drift about the outer axis.
   [[nodiscard]] Real drift() const { return means_.alpha / means_.time; }
   /// The phase theta that passes in a time.
-  [[nodiscard]] Real phase(Real time) const { return std::abs(time / means_.time); }
+  [[nodiscard]] Real phase(Real time) const { return abs(time / means_.time); }
 
   /// Throws : ComputationFailed for a time that is not finite
   [[nodiscard]] State at(Real time) const {
-    if (!std::isfinite(time)) throw ComputationFailed("free Cardan gyro: the time is not finite");
+    if (!isfinite(time)) throw ComputationFailed("free Cardan gyro: the time is not finite");
     const Real from_zero = time + begin_.time;
-    const Real turns = std::round(from_zero / period());
+    const Real turns = round(from_zero / period());
     const Real theta = phase_at(from_zero - turns * period());
     const Integrals now = integrals(theta);
-    const Real s = middle_ - amplitude_ * std::cos(theta);
+    const Real s = middle_ - amplitude_ * cos(theta);
     const Real alpha_rate = rate_of_alpha(theta);
     const Real whole = 2 * pi * turns;
     State state{};
     state.alpha = start_.alpha + (now.alpha - begin_.alpha) + whole * means_.alpha;
-    state.beta = pi * half_turns_ + side_ * std::atan2(s, std::sqrt((1 - s) * (1 + s)));
+    state.beta = pi * half_turns_ + side_ * atan2(s, sqrt((1 - s) * (1 + s)));
     state.phi = regulated_ ? start_.phi + start_.phi_rate * time
                            : start_.phi + (now.phi - begin_.phi) + whole * means_.phi;
     state.alpha_rate = alpha_rate;
-    state.beta_rate = side_ * amplitude_ * std::sin(theta) * std::sqrt(K_ / (B_ * moment(s)));
+    state.beta_rate = side_ * amplitude_ * sin(theta) * sqrt(K_ / (B_ * moment(s)));
     state.phi_rate = regulated_ ? start_.phi_rate : H_ / spin_moment_ - alpha_rate * s;
     return state;
   }
@@ -109,6 +107,7 @@ class FreeCardanGyro {
  private:
   static constexpr Real pi = std::numbers::pi_v<Real>;
   static constexpr std::size_t most_nodes = 2048;
+  static constexpr double rounding = 0x1p-64;  ///< that of a double is not to be seen
 
   /// Time and angles as functions of theta, or their means and terms.
   struct Integrals {
@@ -119,14 +118,14 @@ class FreeCardanGyro {
 
   /// alpha' = (p - H s)/J, with p - H middle = p (1 - H^2/K).
   [[nodiscard]] Real rate_of_alpha(Real theta) const {
-    const Real c = amplitude_ * std::cos(theta);
+    const Real c = amplitude_ * cos(theta);
     return (p_ * ((K_ - H_ * H_) / K_) + H_ * c) / moment(middle_ - c);
   }
 
   /// The derivatives with respect to theta.
   [[nodiscard]] Integrals slopes(Real theta) const {
-    const Real s = middle_ - amplitude_ * std::cos(theta);
-    const Real time = std::sqrt(B_ * moment(s) / (K_ * (1 - s) * (1 + s)));
+    const Real s = middle_ - amplitude_ * cos(theta);
+    const Real time = sqrt(B_ * moment(s) / (K_ * (1 - s) * (1 + s)));
     const Real alpha = rate_of_alpha(theta);
     return {time, alpha * time, (H_ / spin_moment_ - alpha * s) * time};
   }
@@ -138,19 +137,19 @@ class FreeCardanGyro {
       std::vector<Real> cosines(n);
       for (std::size_t j = 0; j < n; ++j) {
         const Real theta = 2 * pi * Real(j) / Real(n);
-        cosines[j] = std::cos(theta);
+        cosines[j] = cos(theta);
         nodes[j] = slopes(theta);
       }
       terms_.clear();
       means_ = mean(nodes, cosines, 0);
-      const Real small = 4 * std::numeric_limits<Real>::epsilon() * means_.time;
+      const Real small = 4 * rounding * means_.time;
       std::size_t last = 0;  // that counts
       for (std::size_t k = 1; k < n / 2; ++k) {
         const Integrals term = mean(nodes, cosines, k);
         const Real weight = 2 / Real(k);
         terms_.push_back({weight * term.time, weight * term.alpha, weight * term.phi});
-        const Real size = std::abs(term.time) + std::abs(term.alpha) * means_.time /
-                                                    (std::abs(means_.alpha) + means_.time);
+        const Real size =
+            abs(term.time) + abs(term.alpha) * means_.time / (abs(means_.alpha) + means_.time);
         if (size > small) last = k;
       }
       if (!(last < 3 * n / 8)) continue;
@@ -175,8 +174,8 @@ class FreeCardanGyro {
 
   [[nodiscard]] Integrals integrals(Real theta) const {
     Integrals sum{means_.time * theta, means_.alpha * theta, means_.phi * theta};
-    const Real twice = 2 * std::cos(theta);
-    Real before = 0, s = std::sin(theta);  // sin((k - 1) theta), sin(k theta)
+    const Real twice = 2 * cos(theta);
+    Real before = 0, s = sin(theta);  // sin((k - 1) theta), sin(k theta)
     for (const Integrals& term : terms_) {
       sum.time += term.time * s;
       sum.alpha += term.alpha * s;
@@ -198,7 +197,7 @@ class FreeCardanGyro {
       (off > 0 ? high : low) = theta;
       const Real next = theta - off / slopes(theta).time;
       const Real to = next > low && next < high ? next : (low + high) / 2;
-      if (std::abs(to - theta) <= 16 * std::numeric_limits<Real>::epsilon() * pi) return to;
+      if (abs(to - theta) <= 16 * rounding * pi) return to;
       theta = to;
     }
     return theta;

@@ -25,29 +25,28 @@ nlohmann::json json_of(const std::vector<PendulumTerm<double>>& terms) {
 
 }  // namespace
 
-nlohmann::ordered_json json_of(const SitePendulum& request, const EarthSite<long double>& site,
+nlohmann::ordered_json json_of(const SitePendulum& request, const EarthSite<DoubleDouble>& site,
                                const SiteDeviation& found, double run_time) {
-  const auto number = [](long double x) { return static_cast<double>(x); };
-  const auto& [latitude, azimuth, height, rate] = site;
-  const auto& b = request.body;
+  const auto [latitude, azimuth, height, rate] = site.cast<double>();
+  const auto b = request.body.cast<double>();
   const auto& a = found.answer;
   nlohmann::ordered_json result;
-  result["input"] = {{"latitude", number(latitude)},
-                     {"azimuth", number(azimuth)},
-                     {"height", number(height)},
-                     {"rotation_rate", number(rate)},
+  result["input"] = {{"latitude", latitude},
+                     {"azimuth", azimuth},
+                     {"height", height},
+                     {"rotation_rate", rate},
                      {"gravity", found.gravity},
                      {"gravity_model", request.gravity ? "number" : "normal"},
                      {"gravity_gradient", request.gravity_gradient},
-                     {"mass", number(b.mass)},
-                     {"arm", number(b.arm)},
-                     {"theta_a", number(b.theta_a)},
-                     {"theta_b", number(b.theta_b)},
-                     {"theta_c", number(b.theta_c)},
-                     {"phi_a", number(b.phi_a)},
-                     {"phi_b", number(b.phi_b)},
-                     {"phi_c", number(b.phi_c)},
-                     {"amplitude", number(request.amplitude)}};
+                     {"mass", b.mass},
+                     {"arm", b.arm},
+                     {"theta_a", b.theta_a},
+                     {"theta_b", b.theta_b},
+                     {"theta_c", b.theta_c},
+                     {"phi_a", b.phi_a},
+                     {"phi_b", b.phi_b},
+                     {"phi_c", b.phi_c},
+                     {"amplitude", static_cast<double>(request.amplitude)}};
   result["equilibrium"] = {{"formula_24", json_of(a.equilibrium.formula_24)},
                            {"linear", json_of(a.equilibrium.linear)},
                            {"exact", json_of(a.equilibrium.exact)}};

@@ -11,7 +11,7 @@ namespace kreisel {
 ///
 /// Units : degrees for the site, else SI and radian; run_time in s
 [[nodiscard]] nlohmann::ordered_json json_of(const SitePendulum& request,
-                                             const EarthSite<long double>& site,
+                                             const EarthSite<DoubleDouble>& site,
                                              const SiteDeviation& found, double run_time);
 
 }  // namespace kreisel

@@ -85,7 +85,7 @@ struct FreeGyro {
 }
 
 /// The error of a free Cardan gyro, in the measure of RunReport::error_estimate: the distance from
-/// gyros whose moments differ in the last digits. The rounding of the phase in long double is far
+/// gyros whose moments differ in the last digits. The rounding of the phase in exact::Real is far
 /// less.
 class FreeGyroError {
  public:
