@@ -347,7 +347,7 @@ BOOST_AUTO_TEST_CASE(do_not_shorten_steps_for_rounding) {
 }
 
 // Perturbations of 10 units in the last digit of each step, up or down, are a random walk; a state
-// at rest stays at rest. Of 20000 plane walks 1 % measure below 0.38 in this way and 1 % above 1.9.
+// at rest stays at rest. In this measure 1 % of 20000 plane walks lie below 0.38 and 1 % above 1.9.
 BOOST_AUTO_TEST_CASE(deviate_by_their_perturbation) {
   const auto made = [](double digits) {
     const auto field = [](double, const Eigen::Vector3d& y) {
