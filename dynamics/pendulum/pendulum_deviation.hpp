@@ -243,10 +243,12 @@ template <class S = double, class T>
   answer.period.exact_small = detail::against(n.small, better.small);
   answer.period.relative_change_exact = detail::against(n.small_change, better.small_change);
   answer.period.linear = detail::against(n.linear_period, better.small);
-  constexpr Wide infinite = std::numeric_limits<Wide>::infinity();
-  answer.period.simple = detail::against(n.simple, better.small.value_or(infinite));
-  answer.period.relative_change_formula_25 =
-      detail::against(n.formula_25, better.small_change.value_or(infinite));
+  const auto or_unknown = [](const S& value, const std::optional<Wide>& known) {
+    const Estimated<S> unknown{value, std::numeric_limits<S>::infinity()};
+    return known ? detail::against(value, *known) : unknown;
+  };
+  answer.period.simple = or_unknown(n.simple, better.small);
+  answer.period.relative_change_formula_25 = or_unknown(n.formula_25, better.small_change);
   if (n.finite) {
     Estimated<S> period = detail::against(n.finite->period, better.finite->period);
     period.error += n.finite->quadrature_error;

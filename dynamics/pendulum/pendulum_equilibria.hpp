@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,10 @@ class EquilibriumOptions {
     noise_ = S(8) * std::numeric_limits<S>::epsilon() * size;
     fourth_ = abs(e_) + abs(c.f) + S(16) * (abs(c.h) + abs(c.k));
     floor_ = sqrt(std::numeric_limits<S>::epsilon());
+    if constexpr (is_wide) {
+      coarse_.emplace(PendulumCoefficients<double>{double(c.weight), double(c.delta_e), double(c.f),
+                                                   double(c.h), double(c.k)});
+    }
   }
 
   [[nodiscard]] std::vector<Equilibrium<S>> run() {
@@ -97,6 +102,15 @@ class EquilibriumOptions {
   struct Jet {
     S m, d1, d2, d3;
   };
+
+  /// What a bound proves of a piece of the circle; level: 0 to rounding, or too short for a proof.
+  enum class Piece { without_root, monotone, undecided, level };
+
+  /// With more digits than double the same in double isolates most roots, and begins to polish.
+  static constexpr bool is_wide =
+      std::numeric_limits<S>::digits > std::numeric_limits<double>::digits;
+  template <class>
+  friend class EquilibriumOptions;
 
   [[nodiscard]] Jet jet(const S& x) const {
     using std::cos, std::sin;
@@ -134,27 +148,36 @@ class EquilibriumOptions {
 
   [[nodiscard]] bool positive(const S& x) const { return moment(x) >= S(0); }
 
-  void bisect(const S& low, const S& high) {
+  /// The piece of half-width r about x.
+  [[nodiscard]] Piece piece(const S& x, const S& r) const {
     using std::abs;
-    const S x = (low + high) / S(2);
-    const S r = (high - low) / S(2);
+    if constexpr (is_wide) {
+      const auto found = coarse_->piece(double(x), double(r));
+      if (found != EquilibriumOptions<double>::Piece::level) return Piece(int(found));
+    }
     const Jet at = jet(x);
     const S third = abs(at.d3) + fourth_ * r / S(3);
     const S swing = r * (abs(at.d1) + r * (abs(at.d2) / S(2) + r * third / S(6)));
-    if (abs(at.m) > swing + noise_) return flush_cluster();
-    if (abs(at.d1) > r * (abs(at.d2) + r * third / S(2)) + S(4) * noise_) {
-      flush_cluster();
-      if (positive(low) != positive(high)) found_.push_back({solve(low, high), low, high, false});
-      return;
+    if (abs(at.m) > swing + noise_) return Piece::without_root;
+    if (abs(at.d1) > r * (abs(at.d2) + r * third / S(2)) + S(4) * noise_) return Piece::monotone;
+    return r <= floor_ || abs(at.m) + swing <= noise_ ? Piece::level : Piece::undecided;
+  }
+
+  void bisect(const S& low, const S& high) {
+    const S x = (low + high) / S(2);
+    switch (piece(x, S((high - low) / S(2)))) {
+      case Piece::without_root: return flush_cluster();
+      case Piece::monotone:
+        flush_cluster();
+        if (positive(low) != positive(high)) found_.push_back({solve(low, high), low, high, false});
+        return;
+      case Piece::level:
+        if (!in_cluster_) cluster_low_ = low;
+        in_cluster_ = true;
+        cluster_high_ = high;
+        return;
+      case Piece::undecided: bisect(low, x); bisect(x, high);
     }
-    if (r <= floor_ || abs(at.m) + swing <= noise_) {
-      if (!in_cluster_) cluster_low_ = low;
-      in_cluster_ = true;
-      cluster_high_ = high;
-      return;
-    }
-    bisect(low, x);
-    bisect(x, high);
   }
 
   void flush_cluster() {
@@ -221,13 +244,18 @@ class EquilibriumOptions {
     if (c_.f + c_.h == S(0) && low <= S(0) && S(0) <= high) return S(0);
     if (c_.f == c_.h && low <= -pi_ && -pi_ <= high) return -pi_;
     const bool rising = positive(high);
-    return root_in_bracket(low, high, S((low + high) / S(2)), S(0), [&](const S& x) {
+    S start = (low + high) / S(2);
+    if constexpr (is_wide) {
+      start = std::clamp(S(coarse_->solve(double(low), double(high))), low, high);
+    }
+    return root_in_bracket(low, high, start, S(0), [&](const S& x) {
       const S m = moment(x);
       return std::pair((m >= S(0)) == rising, S(x - m / jet(x).d1));
     });
   }
 
   PendulumCoefficients<S> c_;
+  std::conditional_t<is_wide, std::optional<EquilibriumOptions<double>>, StaticZero> coarse_;
   S e_;
   S pi_, noise_, fourth_, floor_;
   bool in_cluster_ = false;

@@ -114,8 +114,9 @@ void hold(int s) {
     again += 2 * (pair.eigenvalue * pair.vector * pair.covector.transpose()).real();
   }
   const double greatest = radau.inverse.cwiseAbs().maxCoeff();
+  // 2.2e-14 on 64-bit ARM, where Eigen fuses products and sums.
   BOOST_TEST((again - radau.inverse).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
-             2e-14 * greatest);
+             4e-14 * greatest);
 }
 
 BOOST_AUTO_TEST_CASE(integrate_powers_and_split_the_inverse) {
