@@ -139,8 +139,8 @@ class SymmetricGyrostat {
 /// Error  : attitude <= 2u rad, rate <= 2u relative to the greatest: the rounding of the result,
 ///          for exact inputs, near separatrices and steady rotations (tested to 1e-15) and for
 ///          nearly symmetric bodies as elsewhere. In addition 8 * 2^-64 of the angle (L + |h|)
-///          t/I_min, measured 7e-14 rad over 1e4 periods (tests/dynamics/exact/gyrostat.cpp)
-/// Cost   : at() 0.8 us, to construct 5 us (g++ 12 -O2, EPYC)
+///          t/I_min, measured 1.4e-16 rad over 1e4 periods (tests/dynamics/exact/gyrostat.cpp)
+/// Cost   : at() 1.4 us, to construct 4.1 us (g++ 12 -O3, EPYC)
 /// Limits : as with FreeTop, near a separatrix an input's own rounding decides; on the separatrix
 ///          the motion may return after the time in which 2^-120 grows to 1
 class Gyrostat {

@@ -47,7 +47,7 @@ namespace kreisel::exact {
 ///          the motion that ends upright. In addition 8 * 2^-64 of the angle of rotation in the
 ///          time or in one nutation: <= 2e-14 rad over 1e4 nutations
 ///          (tests/dynamics/exact/lagrange_top.cpp)
-/// Cost   : at() 0.9 us, to construct 5 us (g++ 12 -O2, EPYC)
+/// Cost   : at() 2.6 us, to construct 8 us (g++ 12 -O3, EPYC)
 /// Limits : as with FreeTop, next to the motion that ends upright an input's own rounding decides
 class LagrangeTop {
  public:

@@ -38,8 +38,8 @@ inline void require_body(const Vector3<double>& moments) {
   }
 }
 
-/// The greatest power of 2 that is not above |x|; 1 for 0. As a unit of rates and moments it changes
-/// no digit, and their products neither underflow nor overflow.
+/// The greatest power of 2 that is not above |x|; 1 for 0. Rates and moments in such a unit keep
+/// their digits. Their products neither underflow nor overflow.
 [[nodiscard]] inline double power_of_2(double x) { return x == 0 ? 1 : std::exp2(std::ilogb(x)); }
 
 /// A rate in such a unit. A component below 2^-480 of it counts as 0, because its square would

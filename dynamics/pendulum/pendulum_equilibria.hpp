@@ -103,7 +103,7 @@ class EquilibriumOptions {
     S m, d1, d2, d3;
   };
 
-  /// What a bound proves of a piece of the circle; level: 0 to rounding, or too short for a proof.
+  /// The result of a bound on a piece of the circle; level: 0 to rounding, or too short for a proof.
   enum class Piece { without_root, monotone, undecided, level };
 
   /// With more digits than double the same in double isolates most roots, and begins to polish.

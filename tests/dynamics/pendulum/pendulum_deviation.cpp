@@ -573,7 +573,7 @@ BOOST_AUTO_TEST_CASE(guide_at_rest) {
   BOOST_TEST(!std::signbit(answer.equilibrium.formula_24.value));
 }
 
-// Rounding is added; the same period in long double shows it.
+// Rounding is added; the same period in DoubleDouble shows it.
 BOOST_AUTO_TEST_CASE(great_swings_report_the_quadrature_error) {
   const auto rod = PendulumBody<double>::thin_rod(0.75);
   const auto swing = [](const auto& body, const auto& guide, double amplitude) {
@@ -584,8 +584,8 @@ BOOST_AUTO_TEST_CASE(great_swings_report_the_quadrature_error) {
   for (const double amplitude : {0.5, 1.894, 3.0, 3.14157112, 3.14158814, 3.14159171}) {
     const auto found = swing(rod, refused::hanging, amplitude);
     const auto wide =
-        swing(rod.cast<long double>(), refused::hanging.cast<long double>(), amplitude);
-    const auto rounding = std::abs(found.period - wide.period);
+        swing(rod.cast<DoubleDouble>(), refused::hanging.cast<DoubleDouble>(), amplitude);
+    const auto rounding = abs(found.period - wide.period);
     const auto told = deviation(rod, refused::hanging, amplitude).period.at_amplitude;
     BOOST_TEST_REQUIRE(told.has_value());
     BOOST_TEST(told->error >= double(rounding + found.quadrature_error));
