@@ -99,8 +99,7 @@ class SteadyPendulumMotion {
     require_finite(time, "time");
     const S from_zero = time + begin_time_;
     const S turns = round(S(from_zero / period()));
-    const S theta = phase_at(S(from_zero - turns * period()));
-    const S pace = at_phase(theta).pace;
+    const auto [theta, pace] = phase_at(S(from_zero - turns * period()));
     if (swing_) {
       const S radius = (swing_->right - swing_->left) / S(2);
       const S half = sin(S(theta / S(2)));
@@ -112,9 +111,10 @@ class SteadyPendulumMotion {
   }
 
  private:
+  template <class N>
   struct Phase {
-    S time;  ///< t(theta)
-    S pace;  ///< dt/dtheta
+    N time;  ///< t(theta)
+    N pace;  ///< dt/dtheta
   };
 
   static constexpr std::size_t most_nodes = 2048;
@@ -248,35 +248,57 @@ class SteadyPendulumMotion {
     throw ComputationFailed("the pendulum is so near a barrier that its series does not converge");
   }
 
-  [[nodiscard]] Phase at_phase(const S& theta) const {
+  /// In S, or with the digits of another number type.
+  template <class N>
+  [[nodiscard]] Phase<N> at_phase(const N& theta) const {
     using std::cos, std::sin;
-    const S c = cos(theta);
-    const S s = sin(theta);
-    S ck = c;  // cos(k theta)
-    S sk = s;
-    Phase sum{S(0), S(0)};
+    const N c = cos(theta);
+    const N s = sin(theta);
+    N ck = c;  // cos(k theta)
+    N sk = s;
+    Phase<N> sum{N(0), N(0)};
     for (std::size_t i = 0; i < sine_terms_.size(); ++i) {
-      const S k(double(i + 1));
-      sum.time += sine_terms_[i] * sk + cosine_terms_[i] * ck;
-      sum.pace += k * (sine_terms_[i] * ck - cosine_terms_[i] * sk);
-      const S next = ck * c - sk * s;
+      const N k(double(i + 1));
+      const N of_sine(sine_terms_[i]);
+      const N of_cosine(cosine_terms_[i]);
+      sum.time += of_sine * sk + of_cosine * ck;
+      sum.pace += k * (of_sine * ck - of_cosine * sk);
+      const N next = ck * c - sk * s;
       sk = ck * s + sk * c;
       ck = next;
     }
-    return {pace_ * theta + sum.time, pace_ + sum.pace};
+    const N pace(pace_);
+    return {pace * theta + sum.time, pace + sum.pace};
   }
 
   /// The phase at a time, by Newton's method: t(theta) increases and differs from its mean by less
   /// than a period.
-  [[nodiscard]] S phase_at(const S& time) const {
+  /// With more digits than double the iterations begin in double.
+  struct PhaseAt {
+    S theta;
+    S pace;
+  };
+  [[nodiscard]] PhaseAt phase_at(const S& time) const {
     const S mean = time / pace_;
-    const S turn = S(2) * pi();
-    return detail::root_in_bracket(S(mean - turn), S(mean + turn), mean,
-                                   S(S(4) * std::numeric_limits<S>::epsilon() * pi()),
-                                   [&](const S& theta) {
-                                     const Phase phase = at_phase(theta);
-                                     const S off = phase.time - time;
-                                     return std::pair(off > S(0), S(theta - off / phase.pace));
+    S start = mean;
+    if constexpr (std::numeric_limits<S>::digits > std::numeric_limits<double>::digits) {
+      double pace = 0;
+      start = phase_from(double(mean), double(time), double(mean), pace);
+    }
+    S pace(0);
+    const S theta = phase_from(mean, time, start, pace);
+    return {theta, pace};
+  }
+  template <class N>
+  [[nodiscard]] N phase_from(const N& mean, const N& time, const N& start, N& pace) const {
+    const N turn(S(2) * pi());
+    return detail::root_in_bracket(N(mean - turn), N(mean + turn), start,
+                                   N(N(2) * std::numeric_limits<N>::epsilon() * turn),
+                                   [&](const N& theta) {
+                                     const Phase<N> phase = at_phase(theta);
+                                     const N off = phase.time - time;
+                                     pace = phase.pace;
+                                     return std::pair(off > N(0), N(theta - off / phase.pace));
                                    });
   }
 
