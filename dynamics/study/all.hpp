@@ -8,6 +8,7 @@
 #include <dynamics/study/equilibrium.hpp>
 #include <dynamics/study/floquet.hpp>
 #include <dynamics/study/floquet_bodies.hpp>
+#include <dynamics/study/frame_terms.hpp>
 #include <dynamics/study/harmonic_response.hpp>
 #include <dynamics/study/increments.hpp>
 #include <dynamics/study/interpolated_motion.hpp>

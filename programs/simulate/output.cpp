@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <dynamics/file/contacts.hpp>
+#include <dynamics/file/greatest_terms.hpp>
 #include <dynamics/file/printable.hpp>
 #include <dynamics/file/readings.hpp>
 #include <dynamics/json/joints.hpp>
@@ -168,6 +170,40 @@ ordered_json final_state(const Result& result, const kreisel::SceneScale& scale 
   return final;
 }
 
+/// The greatest terms of each kind in the joints of frames; null without rotors. Numbers below
+/// `rounding` times the greatest of all are 0.
+ordered_json terms_by_kind(const Result& result, double rounding) {
+  const auto terms = kreisel::greatest_terms(result.scene, result.model, result.run);
+  if (!terms) return nullptr;
+  using Terms = kreisel::FrameTerms;
+  static constexpr std::pair<const char*, Eigen::VectorXd Terms::*> kinds[] = {
+      {"inertia", &Terms::inertia},
+      {"gyroscopic", &Terms::gyroscopic},
+      {"restraint", &Terms::restraint},
+      {"guide_change", &Terms::guide_change},
+      {"guide_inertia", &Terms::guide_inertia},
+      {"guide_gyroscopic", &Terms::guide_gyroscopic},
+      {"left_out", &Terms::left_out}};
+  double greatest = 0;
+  for (const auto& [name, kind] : kinds) {
+    greatest = std::max(greatest, (*terms.*kind).lpNorm<Eigen::Infinity>());
+  }
+  ordered_json table = ordered_json::object();
+  for (const auto& link : result.model.tree().links()) {
+    using Kind = kreisel::detail::LinkKind;
+    const int several = link.kind == Kind::spherical ? 3 : link.kind == Kind::free ? 6 : 0;
+    const int count = link.has_one_rate() ? 1 : several;
+    for (const auto& [name, kind] : kinds) {
+      for (int i = 0; i < count; ++i) {
+        const double size = (*terms.*kind)[link.v + i];
+        const std::string& joint = result.scene.bodies[at(link.body)].name;
+        table[joint][name].push_back(json_of(size < rounding * greatest ? 0 : size));
+      }
+    }
+  }
+  return table;
+}
+
 void print_terms(const char* title, const std::vector<TermLine>& terms) {
   fmt::print("\n{}\n", title);
   for (const TermLine& term : terms) fmt::print("  {:56} {}\n", term.name, term.reason);
@@ -263,24 +299,28 @@ ordered_json summary(const Result& result) {
                      {"model", json_of(parts.model)}};
   if (const auto distance = result.model.model_distance()) error["distance"] = json_of(*distance);
   const auto whole = [](double count) { return static_cast<long long>(count); };
-  return {{"title", result.scene.title},
-          {"method", r.method},
-          {"method_changes", r.changes},
-          {"model", name(result.scene.model)},
-          {"steps", whole(r.effort.steps)},
-          {"rejected", whole(r.effort.rejected)},
-          {"evaluations", whole(r.effort.evaluations)},
-          {"all_evaluations", whole(r.all_evaluations)},
-          {"run_time_s", r.run_time},
-          {"tolerance", r.tolerance},
-          {"error_estimate", json_of(whole_error(result))},
-          {"error", error},
-          {"tolerance_kept", r.tolerance_kept},
-          {"invariants", invariants},
-          {"warnings", warnings(result)},
-          {"terms_kept", terms_json(terms_kept(result))},
-          {"terms_dropped", terms_json(terms_dropped(result))},
-          {"final", final_state(result)}};
+  ordered_json all = {{"title", result.scene.title},
+                      {"method", r.method},
+                      {"method_changes", r.changes},
+                      {"model", name(result.scene.model)},
+                      {"steps", whole(r.effort.steps)},
+                      {"rejected", whole(r.effort.rejected)},
+                      {"evaluations", whole(r.effort.evaluations)},
+                      {"all_evaluations", whole(r.all_evaluations)},
+                      {"run_time_s", r.run_time},
+                      {"tolerance", r.tolerance},
+                      {"error_estimate", json_of(whole_error(result))},
+                      {"error", error},
+                      {"tolerance_kept", r.tolerance_kept},
+                      {"invariants", invariants},
+                      {"warnings", warnings(result)},
+                      {"terms_kept", terms_terms_json(terms_kept(result))},
+                      {"terms_dropped", terms_terms_json(terms_dropped(result))},
+                      {"final", final_state(result)}};
+  if (!result.terms) return all;
+  const ordered_json kinds = terms_by_kind(result, 0);
+  if (!kinds.is_null()) all["terms_by_kind"] = kinds;
+  return all;
 }
 
 /// The keys of the first number that is not finite (null in JSON); nothing if all are finite.
@@ -351,7 +391,13 @@ void print_summary(const Result& result) {
   for (const std::string& warning : warnings(result)) {
     fmt::print("\nwarning: {}\n", kreisel::printable(warning));
   }
-  if (result.terms) joint_tables::print("terms of the law, N and N m", final["terms"]);
+  if (result.terms) {
+    joint_tables::print("terms of the law, N and N m", final["terms"]);
+    const ordered_json kinds = terms_by_kind(result, 1e-12);
+    if (!kinds.is_null()) {
+      joint_tables::print("greatest terms of frames with rotors, N and N m", kinds);
+    }
+  }
   if (logged) {
     joint_tables::print("error of the log at the end, SI", final["error_of_log"]);
   }

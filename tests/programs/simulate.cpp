@@ -820,6 +820,20 @@ BOOST_AUTO_TEST_CASE(foeppls_equations_report_their_error) {
   }
 }
 
+// A horizon in a turn: 1.2 N m s of spin in a turn of 0.05 rad/s are a spring of 0.06 N m/rad.
+BOOST_AUTO_TEST_CASE(terms_of_frames_have_sizes) {
+  const json all = answer(scene("horizon_in_turn") + " --terms");
+  const json& outer = all.at("terms_by_kind").at("outer");
+  const auto size = [&outer](const char* kind) { return outer.at(kind).at(0).get<double>(); };
+  // The greatest angle of the outer ring is 0.0533 rad.
+  check_near("restraint", size("restraint"), 0.06 * 0.0532, 2e-5);
+  BOOST_TEST(size("gyroscopic") > 1e3 * size("left_out"));
+  BOOST_TEST(size("guide_inertia") == 0);
+  BOOST_TEST(run(scene("horizon_in_turn") + " --terms").out.find("guide_gyroscopic") !=
+             std::string::npos);
+  BOOST_TEST(!answer(scene("heavy_top") + " --terms").contains("terms_by_kind"));
+}
+
 // Mirrored axes, a spin about the negative axis and turned bodies are the same gyro.
 BOOST_AUTO_TEST_CASE(foeppls_equations_on_any_axes) {
   const Scratch folder;
