@@ -115,15 +115,20 @@ std::string title_of(const AnalysisResult& result, const std::string& what) {
 }
 
 void draw(const AnalysisResult& result, const std::filesystem::path& folder) {
+  gnuplot::require_installed();
   gnuplot::open_folder(folder);
   const Analysis& a = result.analysis;
-  if (a.linear && !a.linear->modes.empty()) {
-    gnuplot::draw(folder / "roots", 560, roots(result, *a.linear));
-  }
-  if (a.campbell && !a.campbell->curves.empty())
-    gnuplot::draw(folder / "campbell", 560, campbell_script(result, *a.campbell));
+  const bool has_roots = a.linear && !a.linear->modes.empty();
+  const bool has_curves = a.campbell && !a.campbell->curves.empty();
+  const bool has_multipliers = a.floquet && !a.floquet->multipliers.empty();
+  if (has_roots) gnuplot::draw(folder / "roots", 560, roots(result, *a.linear));
+  if (has_curves) gnuplot::draw(folder / "campbell", 560, campbell_script(result, *a.campbell));
   if (a.response) gnuplot::draw(folder / "response", 720, response_script(result, *a.response));
-  if (a.floquet && !a.floquet->multipliers.empty()) {
+  if (has_multipliers) {
     gnuplot::draw(folder / "multipliers", 640, multipliers(result, *a.floquet));
+  }
+  if (!has_roots && !has_curves && !a.response && !has_multipliers) {
+    fmt::print(stderr,
+               "analyze: no picture: there are no roots, sweeps, responses or multipliers\n");
   }
 }

@@ -125,17 +125,20 @@ std::string output_of(const std::string& script) {
 
 namespace gnuplot {
 
-void require_installed() {
+bool is_installed() {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    if (std::filesystem::exists(std::filesystem::path(folder) / "gnuplot")) return;
+    if (std::filesystem::exists(std::filesystem::path(folder) / "gnuplot")) return true;
   }
-  fail("is not installed");
+  return false;
+}
+
+void require_installed() {
+  if (!is_installed()) fail("is not installed");
 }
 
 void open_folder(const std::filesystem::path& folder) {
-  require_installed();
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw kreisel::InvalidInput("--plot " + folder.string() + ": " + error.message());

@@ -35,12 +35,15 @@ inline std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+/// True if gnuplot is on the PATH.
+[[nodiscard]] bool is_installed();
+
 /// Throws : kreisel::ComputationFailed if gnuplot is not on the PATH
 void require_installed();
 
 /// Makes the folder of --plot.
 ///
-/// Throws : kreisel::InvalidInput; and as require_installed()
+/// Throws : kreisel::InvalidInput
 void open_folder(const std::filesystem::path& folder);
 
 /// Draws one picture by a script that sets a terminal and no output. gnuplot gets no file name: it

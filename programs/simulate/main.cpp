@@ -17,7 +17,6 @@
 #include <motor/error.hpp>
 
 #include "../shared/exit_status.hpp"
-#include "../shared/gnuplot.hpp"
 #include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
 #include "output.hpp"
@@ -292,7 +291,6 @@ int run(const Request& request) {
   if (request.resume && !scene.columns.empty()) {
     throw kreisel::InvalidInput("--resume: the rows hold the columns of [output] alone, no states");
   }
-  if (request.plot) gnuplot::require_installed();
   const std::unique_ptr<kreisel::SceneSolver> model = make_model(scene);
   std::optional<Record> record;
   if (request.csv) {

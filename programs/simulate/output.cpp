@@ -314,8 +314,8 @@ ordered_json summary(const Result& result) {
                       {"tolerance_kept", r.tolerance_kept},
                       {"invariants", invariants},
                       {"warnings", warnings(result)},
-                      {"terms_kept", terms_terms_json(terms_kept(result))},
-                      {"terms_dropped", terms_terms_json(terms_dropped(result))},
+                      {"terms_kept", terms_json(terms_kept(result))},
+                      {"terms_dropped", terms_json(terms_dropped(result))},
                       {"final", final_state(result)}};
   if (!result.terms) return all;
   const ordered_json kinds = terms_by_kind(result, 0);

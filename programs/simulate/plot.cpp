@@ -359,6 +359,10 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   gnuplot::open_folder(folder);
   write_view(result, folder / "view.html");
   gnuplot::wrote(folder / "view.html");
+  if (!gnuplot::is_installed()) {
+    fmt::print(stderr, "simulate: gnuplot is not installed: there are no other pictures\n");
+    return;
+  }
   const Samples samples(result, most_points);
   const Series times = samples.all([](double t, const kreisel::JointState&) { return t; });
   warn_of_coarse_curves(result, samples, times);

@@ -119,6 +119,17 @@ bool has_browser() {
 
 }  // namespace
 
+BOOST_AUTO_TEST_CASE(the_view_needs_no_gnuplot) {
+  const Scratch folder;
+  const auto file = folder.write("scene.toml", all_joints);
+  const Outcome outcome = test::run("PATH=/nowhere " + std::string(KREISEL_SIMULATE) + " " +
+                                    file.string() + " --plot " + folder.path().string());
+  BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+  BOOST_TEST(outcome.err.find("gnuplot is not installed") != std::string::npos);
+  BOOST_TEST(std::filesystem::exists(folder.path() / "view.html"));
+  BOOST_TEST(!std::filesystem::exists(folder.path() / "rates.svg"));
+}
+
 BOOST_AUTO_TEST_CASE(a_browser_shows_every_joint_correctly) {
   if (!has_browser()) return;
   const Scratch folder;
