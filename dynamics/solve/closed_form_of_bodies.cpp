@@ -18,6 +18,8 @@
 
 namespace kreisel::detail {
 
+namespace {
+
 /// The only body of a tree, if no joint force and no load acts on it.
 [[nodiscard]] const BodyDescription* lone_body(const BodyTree& tree) {
   const bool alone = tree.bodies().size() == 1 && tree.rotors().empty() && is_free_of_forces(tree);
@@ -286,6 +288,29 @@ class TopOnGuideError {
   double turning_ = 0;  ///< the greatest angular velocity of the guide so far
 };
 
+/// The same motion, with the given start to the last bit, as that of steps has it.
+[[nodiscard]] ClosedForm<Eigen::VectorXd> from_start(ClosedForm<Eigen::VectorXd> motion,
+                                                     double begin, const Eigen::VectorXd& y) {
+  motion.at = [begin, y, later = std::move(motion.at)](double t) {
+    return t == begin ? y : later(t);
+  };
+  return motion;
+}
+
+[[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> motion_of(const BodyDescription& body,
+                                                                   const Vector3<double>& gravity,
+                                                                   double begin,
+                                                                   const Eigen::VectorXd& y) {
+  switch (body.joint.kind) {
+    case JointKind::revolute: return pendulum_motion(body, gravity, begin, y);
+    case JointKind::spherical:
+    case JointKind::free: return top_motion(body, gravity, begin, y);
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace
+
 std::optional<ClosedForm<Eigen::VectorXd>> closed_form_on_guide(
     const BodyTree& tree, std::function<GuideAttitude(double)> guide, double begin,
     const Eigen::VectorXd& y) {
@@ -310,22 +335,20 @@ std::optional<ClosedForm<Eigen::VectorXd>> closed_form_on_guide(
         turning->top, begin, {attitude, Vector3<double>(w + rounding * Vector3<double>::Unit(i))});
     beside.emplace_back(guide, joint, *other, start);
   }
-  return ClosedForm<Eigen::VectorXd>{top->name + ", on a moving guide",
-                                     [motion](double t) { return motion.at(t); },
-                                     TopOnGuideError(motion, beside, top->error, w.norm(), begin)};
+  return from_start(
+      ClosedForm<Eigen::VectorXd>{top->name + ", on a moving guide",
+                                  [motion](double t) { return motion.at(t); },
+                                  TopOnGuideError(motion, beside, top->error, w.norm(), begin)},
+      begin, y);
 }
 
 std::optional<ClosedForm<Eigen::VectorXd>> closed_form(const BodyTree& tree,
                                                        const Vector3<double>& gravity, double begin,
                                                        const Eigen::VectorXd& y) {
   const BodyDescription* body = lone_body(tree);
-  if (!body) return gyro_motion(tree, begin, y);
-  switch (body->joint.kind) {
-    case JointKind::revolute: return pendulum_motion(*body, gravity, begin, y);
-    case JointKind::spherical:
-    case JointKind::free: return top_motion(*body, gravity, begin, y);
-    default: return std::nullopt;
-  }
+  auto motion = body ? motion_of(*body, gravity, begin, y) : gyro_motion(tree, begin, y);
+  if (!motion) return std::nullopt;
+  return from_start(std::move(*motion), begin, y);
 }
 
 }  // namespace kreisel::detail

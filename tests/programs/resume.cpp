@@ -240,6 +240,31 @@ BOOST_AUTO_TEST_CASE(continues_after_new_steps) {
   }
 }
 
+// The first row is the start of the scene to the last bit.
+BOOST_AUTO_TEST_CASE(continues_a_closed_form_from_a_row) {
+  const Scratch folder;
+  const std::string scene =
+      folder
+          .write("top.toml",
+                 "[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[[body]]\nname = \"top\"\n"
+                 "joint = { kind = \"spherical\" }\nmass = 0.1\ncentre = [0, 0, 0.05]\n"
+                 "inertia = [0.5e-4, 0.5e-4, 1e-4]\ninitial = { attitude = [0.9689124217106447, "
+                 "0.24740395925452294, 0, 0], angular_velocity = [0, 0, 3000] }\n"
+                 "[solve]\nt_end = 1\noutput_step = 0.1\n")
+          .string();
+  const std::string command =
+      simulate + " " + scene + " --csv " + (folder.path() / "part.csv").string();
+  BOOST_REQUIRE(test::run(command).status == 0);
+  const std::string whole = folder.read("part.csv");
+  const auto third_row = whole.find('\n', whole.find('\n', whole.find('\n') + 1) + 1) + 1;
+  folder.write("part.csv", whole.substr(0, third_row));
+  const Outcome outcome = test::run(command + " --resume");
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  const std::string all = folder.read("part.csv");
+  BOOST_TEST(std::count(all.begin(), all.end(), '\n') ==
+             std::count(whole.begin(), whole.end(), '\n'));
+}
+
 BOOST_AUTO_TEST_CASE(does_not_lose_the_row_of_the_start) {
   for (const char* const times : {"2", "2\nt_begin = -1", "2\nt_begin = 1"}) {
     const Case c("taylor", times);
