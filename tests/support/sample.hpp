@@ -104,7 +104,7 @@ class Sample {
 
   /// One to six masses: a point, a needle, a disc, a body.
   [[nodiscard]] std::vector<PointMass> masses() {
-    std::vector<PointMass> masses(1 + engine_() % 6);
+    std::vector<PointMass> masses(static_cast<std::size_t>(1 + engine_() % 6));
     const double scale = magnitude(-1, 1);
     const Vector3<double> centre = once_in(4) ? Vector3<double>::Zero() : vector(-1, 1);
     for (auto& [mass, place] : masses) {
