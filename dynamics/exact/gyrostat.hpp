@@ -356,7 +356,7 @@ class Gyrostat {
 
     [[nodiscard]] Real period() const {
       // sn cn on one axis, dn on the other: they repeat after 2 K.
-      const bool half = std::ranges::any_of(factors_, [](const auto& f) {
+      const bool half = std::any_of(factors_.begin(), factors_.end(), [](const auto& f) {
         return f == std::array{sine, cosine};
       });
       return scaled(functions_.quarter(), half ? 2 : 4) / lambda_;

@@ -25,5 +25,5 @@ first = numbers[machines[0]]
 print("units in the last place, from", machines[0])
 print(f"{'':28}", *(f"{machine:>8}" for machine in machines[1:]), f"  {machines[0]}")
 for name, value in first.items():
-    apart = [(numbers[machine][name] - value) / math.ulp(value) for machine in machines[1:]]
+    apart = [(numbers[machine].get(name, math.nan) - value) / math.ulp(value) for machine in machines[1:]]
     print(f"{name:28}", *(f"{off:8.0f}" for off in apart), f"  {value!r}")
