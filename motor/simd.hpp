@@ -137,7 +137,7 @@ inline constexpr int native_lanes = 2;
 
 template <int n>
 [[nodiscard, gnu::always_inline]] inline LanesOfDouble<n> same_in_all_lanes(double x) {
-  LanesOfDouble<n> result;
+  LanesOfDouble<n> result = {};
   for (int i = 0; i < n; ++i) result[i] = x;
   return result;
 }
@@ -162,7 +162,7 @@ template <class Bools, class Doubles>
 [[nodiscard, gnu::always_inline]] inline Doubles lanes_select(const Bools& mask, const Doubles& yes,
                                                               const Doubles& no) {
 #ifdef KREISEL_PORTABLE_SIMD
-  Doubles result;
+  Doubles result = {};
   for (int i = 0; i < int(sizeof(Doubles) / sizeof(double)); ++i) {
     result[i] = mask[i] != 0 ? yes[i] : no[i];
   }
@@ -175,7 +175,7 @@ template <class Bools, class Doubles>
 template <class Doubles>
 [[nodiscard, gnu::always_inline]] inline Doubles lanes_abs(const Doubles& x) {
 #ifdef KREISEL_PORTABLE_SIMD
-  Doubles result;
+  Doubles result = {};
   for (int i = 0; i < int(sizeof(Doubles) / sizeof(double)); ++i) result[i] = std::abs(x[i]);
   return result;
 #else

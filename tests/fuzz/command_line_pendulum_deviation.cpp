@@ -16,6 +16,6 @@ void examine(int argc, char** argv) {
   if (request->sites.empty()) std::abort();
   if (request->plot && request->mode == Request::Mode::single) std::abort();
   for (const Site& site : request->sites) {
-    if (!(std::abs(site.place.latitude) <= 90 && std::isfinite(site.place.azimuth))) std::abort();
+    if (!(abs(site.place.latitude) <= 90 && isfinite(site.place.azimuth))) std::abort();
   }
 }

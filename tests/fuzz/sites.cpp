@@ -13,8 +13,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const kreisel::test::MemoryFile file(data, size);
   try {
-    for (const Site& site : listed_sites(file.path(), Real(7.292115e-5L))) {
-      if (!(std::abs(site.place.latitude) <= 90)) std::abort();
+    for (const Site& site : listed_sites(file.path(), Real(7.292115e-5))) {
+      if (!(abs(site.place.latitude) <= 90)) std::abort();
     }
   } catch (const kreisel::InvalidInput&) {  // the expected refusal
   }
