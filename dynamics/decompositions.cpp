@@ -27,10 +27,15 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   if (!A.allFinite()) detail::check_convergence(Eigen::NoConvergence);
   const Eigen::Index n = A.rows();
   const double scale = A.isZero(0) ? 1 : A.cwiseAbs().maxCoeff();  // lest anything overflow
-  const Eigen::MatrixXd hessenberg =
-      Eigen::HessenbergDecomposition<Eigen::MatrixXd>(A / scale).matrixH();
   Eigen::RealSchur<Eigen::MatrixXd> schur(n);
-  schur.computeFromHessenberg(hessenberg, Eigen::MatrixXd(), false);
+  const auto compute = [&schur](const Eigen::MatrixXd& scaled) {
+    const Eigen::HessenbergDecomposition<Eigen::MatrixXd> hessenberg(scaled);
+    schur.computeFromHessenberg(hessenberg.matrixH(), Eigen::MatrixXd(), false);
+  };
+  compute(A / scale);
+  // Eigen's iteration goes round in circles on some matrices with equal pairs of eigenvalues. In the
+  // reverse order of rows and columns it takes another path.
+  if (schur.info() != Eigen::Success) compute(A.reverse() / scale);
   detail::check_convergence(schur.info());
   const Eigen::MatrixXd& T = schur.matrixT();  // triangular but for a block of each complex pair
   Eigen::VectorXcd values(n);
@@ -53,9 +58,11 @@ namespace detail {
 
 Eigenpairs eigenpairs(const Eigen::MatrixXd& A) {
   if (A.size() == 0) return {};
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  if (solver.info() == Eigen::Success) return {solver.eigenvalues(), solver.eigenvectors()};
+  solver.compute(A.reverse());  // as in eigenvalues()
   check_convergence(solver.info());
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  return {solver.eigenvalues(), solver.eigenvectors().colwise().reverse()};
 }
 
 RealEigenpairs<Eigen::MatrixXd> symmetric_eigenpairs(const Eigen::MatrixXd& A) {

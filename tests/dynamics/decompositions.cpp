@@ -15,6 +15,29 @@ using namespace kreisel;
 
 BOOST_AUTO_TEST_SUITE(decompositions)
 
+// The Jacobian of a top, with an equal pair of eigenvalues: Eigen's QR iteration does not end on it.
+BOOST_AUTO_TEST_CASE(eigenvalues_of_an_equal_pair) {
+  constexpr double a = 0x1.979e58975b0dcp+0, b = 0x1.5d2ab2c65091ep-1, c = 0x1.8ec609545c35ap-1;
+  constexpr double d = 0x1.f67bbbc1e95fap-2, e = 0x1.14b178af01fbp-5, f = 0x1.6f1d2d01c8b24p-7;
+  constexpr double g = 0x1.6d007b50d5b2cp-4, h = 0x1.31b6c271844a5p+1, i = 0x1.2b1486ff45284p+0;
+  constexpr double k = 0x1.17555bd1da0e5p-1, l = 0x1.3f04d4437cf7cp-1;
+  Eigen::MatrixXd A(7, 7);
+  A << 0, a, -b, c, -d, e, f,   //
+      -a, 0, c, b, -e, -d, g,   //
+      b, -c, 0, a, -f, -g, -d,  //
+      -c, -b, -a, 0, g, -f, e,  //
+      0, 0, 0, 0, 0, -a, -b,    //
+      0, 0, 0, 0, h, 0, i,      //
+      0, 0, 0, 0, -k, -l, 0;
+  const double bound = 20 * 7 * test::u<> * A.squaredNorm();
+  const Eigen::VectorXcd values = eigenvalues(A);
+  BOOST_TEST(std::abs(values.sum()) <= bound);
+  BOOST_TEST(std::abs(values.array().square().sum() - (A * A).trace()) <= bound);
+  const auto pairs = detail::eigenpairs(A);
+  const Eigen::MatrixXcd off = A * pairs.vectors - pairs.vectors * pairs.values.asDiagonal();
+  BOOST_TEST(off.norm() <= bound);
+}
+
 // Each eigenvalue makes A - value 1 singular, up to the effect of rounding A. All together they
 // have the traces of A and of A A.
 BOOST_AUTO_TEST_CASE(eigenvalues_make_singular) {
