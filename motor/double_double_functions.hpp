@@ -75,10 +75,11 @@ namespace kreisel {
   if (!(size > 0) || std::isinf(size)) return size + (x.hi + y.hi);
   int exponent = 0;
   std::frexp(size, &exponent);
+  exponent = std::max(exponent, -1000);
   const double down = std::ldexp(1.0, -exponent);
-  const DoubleDouble a = down * x;
-  const DoubleDouble b = down * y;
-  return sqrt(a * a + b * b) * std::ldexp(1.0, exponent);
+  const DoubleDouble a = scaled(x, down);
+  const DoubleDouble b = scaled(y, down);
+  return scaled(sqrt(a * a + b * b), std::ldexp(1.0, exponent));
 }
 
 /// The greatest integer that is not above x.

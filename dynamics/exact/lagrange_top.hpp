@@ -68,12 +68,14 @@ class LagrangeTop {
     const bool vertical =
         (attitude0.x() == 0 && attitude0.y() == 0) || (attitude0.w() == 0 && attitude0.z() == 0);
     const bool sleeping = vertical && omega0.x() == 0 && omega0.y() == 0;
-    if (weight_moment == 0) {
+    const double moment = detail::power_of_2(A);
+    unit_ =
+        detail::power_of_2(std::max(omega0.cwiseAbs().maxCoeff(), std::sqrt(weight_moment / A)));
+    // Less weight turns the top by less than a last digit of a last digit, after any time.
+    constexpr double no_weight = 1e-80;
+    if (weight_moment / moment / unit_ / unit_ <= no_weight || weight_moment == 0) {
       free_.emplace(Vector3<double>(A, A, C), omega0, attitude0);
     } else if (!sleeping) {
-      const double moment = detail::power_of_2(A);
-      unit_ =
-          detail::power_of_2(std::max(omega0.cwiseAbs().maxCoeff(), std::sqrt(weight_moment / A)));
       nutation_.emplace(A / moment, C / moment, weight_moment / moment / unit_ / unit_,
                         detail::in_unit(omega0, unit_), attitude0);
     }

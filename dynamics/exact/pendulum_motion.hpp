@@ -46,7 +46,12 @@ class PendulumMotion {
     const Real h = std::abs(rate0) / scaled(root_k_, 2);
     if (rate0 < 0) direction_ = -1;
     const Real s = direction_ * sign * sine;
-    root_e_ = hypot(s, h);
+    // Quotients of numbers below 1e-291 would lose digits, those of subnormal ones everything.
+    const double up = std::max(abs(s), h) < 0x1p-900 ? 0x1p900 : 1;
+    const Real s_up = scaled(s, up);
+    const Real h_up = scaled(h, up);
+    const Real root_up = hypot(s_up, h_up);
+    root_e_ = scaled(root_up, 1 / up);
     const Real e = root_e_ * root_e_;  // 0 for swings whose nonlinearity is 0 to rounding
     const Real lacking = (c - h) * (c + h);
     if (lacking < 0) {
@@ -55,7 +60,7 @@ class PendulumMotion {
       u0_ = EllipticFunctions::argument({s, c, h / root_e_});
     } else if (root_e_ > 0) {
       functions_ = {e, lacking};
-      u0_ = EllipticFunctions::argument({s / root_e_, h / root_e_, c});
+      u0_ = EllipticFunctions::argument({s_up / root_up, h_up / root_up, c});
     }
   }
 
