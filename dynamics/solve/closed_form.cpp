@@ -34,7 +34,7 @@ std::optional<ClosedForm<EulerTop::State>> closed_form(const EulerTop& top, doub
         [rate, begin, taken_off](double t, double /*smallest*/) {
           constexpr double u = std::numeric_limits<double>::epsilon() / 2;
           const double angle = rate * std::abs(t - begin) + taken_off;
-          return 3 * u + 0x1p-63 * angle;
+          return 3 * u + 0x1p-70 * angle;
         }};
   };
   if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));
@@ -44,7 +44,7 @@ std::optional<ClosedForm<EulerTop::State>> closed_form(const EulerTop& top, doub
   }
   if (!rotor && symmetric && along_z(k) && k.z() > 0) {
     const exact::LagrangeTop motion(I.x(), I.z(), k.z(), w, q);
-    const double taken_off = 0x1p-60 / 0x1p-63 * motion.starting_angle();
+    const double taken_off = 8 * motion.starting_angle();
     return made("Lagrange's top, elliptic functions", motion, taken_off);
   }
   return std::nullopt;
