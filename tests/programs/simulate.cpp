@@ -965,11 +965,12 @@ BOOST_AUTO_TEST_CASE(writes_pictures) {
   const Outcome outcome =
       run(scene("cardan_gyro_springs") + " --t-end 0.5 --reactions --json --plot " + pictures);
   BOOST_TEST(outcome.status == 0, outcome.err);
-  BOOST_TEST(outcome.err == "");
   BOOST_TEST(test::parsed(outcome.out).contains("final"));
+  BOOST_TEST(outcome.err.starts_with("wrote " + pictures + "/view.html\n"), outcome.err);
   for (const char* const name :
        {"coordinates", "rates", "reactions", "invariants", "error", "axis"}) {
     const std::string path = std::string("pictures/") + name;
+    BOOST_TEST(outcome.err.find(path + ".svg and .png\n") != std::string::npos, outcome.err);
     BOOST_TEST(folder.read(path + ".svg").find("<svg") != std::string::npos, name);
     BOOST_TEST(folder.read(path + ".png").substr(1, 3) == "PNG", name);
   }
