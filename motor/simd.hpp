@@ -9,8 +9,10 @@
 #include <type_traits>
 #include <utility>
 
-#ifdef __SSE2__
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 /// Packed vectors and matrices of doubles: every part of the library that is tuned for a processor
