@@ -33,6 +33,10 @@ VectorXd rounding_of(const PanelSeries::Function& function, double begin, double
   return result;
 }
 
+/// After so many halvings in a row, coefficients that are no smaller count as rounding, which the
+/// error contains. At a kink they would be smaller by 2^halvings; jumps are among the breaks.
+constexpr int halvings_of_rounding = 6;
+
 VectorXd last_two(const MatrixXd& coefficients) {
   return coefficients.rightCols(2).cwiseAbs().rowwise().sum();
 }
@@ -61,7 +65,9 @@ PanelSeries::PanelSeries(const Function& function, double begin, double end,
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const VectorXd most_rounding = amplified_rounding * rounding;
   rounding += rounding_of(function, begin, end);
-  VectorXd of_longer;  // the last two coefficients of the panel that was halved
+  VectorXd of_longer;   // the last two coefficients of the panel that was halved
+  VectorXd of_longest;  // of the first panel that was halved in this row
+  int halvings = 0;
   VectorXd size = VectorXd::Zero(rounding.size());
   std::vector<double> stops = breaks;
   std::erase_if(stops, [end](double t) { return t >= end; });
@@ -78,7 +84,9 @@ PanelSeries::PanelSeries(const Function& function, double begin, double end,
     const VectorXd last = last_two(coefficients);
     for (Eigen::Index i = 0; i < of_longer.size(); ++i) {
       const bool falls = last[i] < of_longer[i] / 2;
-      if (!falls && last[i] <= most_rounding[i]) rounding[i] = std::max(rounding[i], last[i]);
+      const bool stays = halvings >= halvings_of_rounding && last[i] > of_longest[i] / 2;
+      const bool rounds = !falls && last[i] <= most_rounding[i];
+      if (stays || rounds) rounding[i] = std::max(rounding[i], last[i]);
     }
     const VectorXd off = truncation(coefficients, 8 * (rounding + epsilon * size));
     // Panels too short to matter may contain a kink or a jump.
@@ -86,10 +94,12 @@ PanelSeries::PanelSeries(const Function& function, double begin, double end,
     const VectorXd allowed = shortness * shortness * relative * size;
     if ((off.array() > allowed.array()).any()) {
       panels.halve();
+      if (halvings++ == 0) of_longest = last;
       of_longer = last;
       continue;
     }
     of_longer.resize(0);
+    halvings = 0;
     panels_.push_back({t, h, coefficients});
     panels.advance((off.array() <= std::ldexp(1.0, -panel_nodes) * allowed.array()).all());
   }

@@ -174,7 +174,6 @@ inline Instrument pendulous_gyrocompass() {
             const double tuned = C * speed / (R * north);  // m s
             return set("solve.model", "\"exact\"") + set("body.rotor.rotor.speed", speed) +
                    set("body.inner.centre", Vector3<double>(tuned / 0.4, 0, 0)) +
-                   set("body.inner.initial.angle", -0.00169856) +  // at rest against the earth
                    set("guide.acceleration.points",
                        "[[100, 0], [120, 0.01], [200, 0.01], [220, 0]]") +
                    until(250);
