@@ -23,7 +23,7 @@ using Real = DoubleDouble;
 /// Source : B. C. Carlson, Computing elliptic integrals by duplication (1979), Numerical computation
 ///          of real or complex elliptic integrals (1995); the series: NIST Handbook of Mathematical
 ///          Functions, 19.19
-/// Error  : 2^-64, relative                              (tests/dynamics/exact/elliptic.cpp)
+/// Error  : 2^-63, relative (tests/dynamics/exact/elliptic.cpp)
 namespace carlson {
 
 namespace detail {
@@ -163,7 +163,7 @@ struct Phase {
 ///
 /// Source : Gauss' transformation (descending Landen), in the cotangent after R. Bulirsch (1965),
 ///          so that cn and dn keep their digits where they are small
-/// Error  : the effect of an error of the argument of some units of 2^-70 of |u| + K
+/// Error  : the effect of an error of the argument of 2^-75 of |u| + K
 class EllipticFunctions {
  public:
   EllipticFunctions() : EllipticFunctions(0, 1) {}
