@@ -107,7 +107,7 @@ class FreeCardanGyro {
  private:
   static constexpr Real pi = std::numbers::pi_v<Real>;
   static constexpr std::size_t most_nodes = 2048;
-  static constexpr double rounding = 0x1p-64;  ///< that of a double is not to be seen
+  static constexpr double rounding = 0x1p-64;  ///< of the series, far below that of a double
 
   /// Time and angles as functions of theta, or their means and terms.
   struct Integrals {

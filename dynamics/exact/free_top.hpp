@@ -42,8 +42,7 @@ namespace kreisel::exact {
 /// Units  : kg m^2, rad/s, s
 /// Error  : attitude <= 2u rad, rate <= 2u relative: the rounding of the result, for exact inputs,
 ///          near the separatrix (tested to 1e-15) and for symmetric bodies as elsewhere. In
-///          addition 8 * 2^-64 of the angle L t/I_min: <= 5e-14 rad over 1e4 periods, measured
-///          5e-16 (tests/dynamics/exact/free_top.cpp)
+///          addition 2^-67 of the angle L t/I_min (tests/dynamics/exact/free_top.cpp)
 /// Cost   : at() 1.4 us, to construct 4.3 us (g++ 12 -O3, EPYC)
 /// Limits : a component of the rate below 1e-144 of the greatest counts as 0;
 ///          near the separatrix the rounding of an input to double changes D by u L^2, and each

@@ -71,7 +71,7 @@ class SymmetricRotation {
 /// Source : Wangerin 1889, Volterra 1899; Wittenburg, Dynamics of Multibody Systems, sect. 4.6
 /// Frame  : body z is the axis of symmetry and of the rotor; attitudes rotate body to inertial
 /// Units  : kg m^2, N m s, rad/s, s
-/// Error  : attitude <= 2u rad, rate <= 2u relative, and 4 * 2^-64 of the angle of rotation
+/// Error  : attitude <= 2u rad, rate <= 2u relative, and 2^-67 of the angle of rotation
 ///          (tests/dynamics/exact/gyrostat.cpp)
 class SymmetricGyrostat {
  public:
@@ -138,8 +138,8 @@ class SymmetricGyrostat {
 /// Units  : kg m^2, N m s, rad/s, s
 /// Error  : attitude <= 2u rad, rate <= 2u relative to the greatest: the rounding of the result,
 ///          for exact inputs, near separatrices and steady rotations (tested to 1e-15) and for
-///          nearly symmetric bodies as elsewhere. In addition 8 * 2^-64 of the angle (L + |h|)
-///          t/I_min, measured 1.4e-16 rad over 1e4 periods (tests/dynamics/exact/gyrostat.cpp)
+///          nearly symmetric bodies as elsewhere. In addition 2^-67 of the angle (L + |h|)
+///          t/I_min (tests/dynamics/exact/gyrostat.cpp)
 /// Cost   : at() 1.4 us, to construct 4.1 us (g++ 12 -O3, EPYC)
 /// Limits : as with FreeTop, near a separatrix an input's own rounding decides; on the separatrix
 ///          the motion may return after the time in which 2^-120 grows to 1

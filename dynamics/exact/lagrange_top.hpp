@@ -44,11 +44,11 @@ namespace kreisel::exact {
 /// Units  : kg m^2, N m, rad/s, s
 /// Error  : attitude <= 2u rad, rate <= 2u of the greatest: the rounding of the result, for exact
 ///          inputs, at cusps, through and within 1e-12 of the vertical, in small nutations and near
-///          the motion that ends upright. In addition 8 * 2^-64 of the angle of rotation in the
-///          time or in one nutation: <= 2e-14 rad over 1e4 nutations
-///          (tests/dynamics/exact/lagrange_top.cpp)
+///          the motion that ends upright. In addition 2^-67 of the angle of rotation in the
+///          time and 2^-64 of starting_angle() (tests/dynamics/exact/lagrange_top.cpp)
 /// Cost   : at() 2.6 us, to construct 8 us (g++ 12 -O3, EPYC)
-/// Limits : as with FreeTop, next to the motion that ends upright an input's own rounding decides
+/// Limits : as with FreeTop, next to the motion that ends upright an input's own rounding decides;
+///          a weight below 1e-80 of the rotation's moment counts as 0
 class LagrangeTop {
  public:
   /// Moments about the fixed point, A across and C along the axis of symmetry. The centre of mass
@@ -71,7 +71,7 @@ class LagrangeTop {
     const double moment = detail::power_of_2(A);
     unit_ =
         detail::power_of_2(std::max(omega0.cwiseAbs().maxCoeff(), std::sqrt(weight_moment / A)));
-    // Less weight turns the top by less than a last digit of a last digit, after any time.
+    // Its effect after n radians is n^2 times this at most.
     constexpr double no_weight = 1e-80;
     if (weight_moment / moment / unit_ / unit_ <= no_weight || weight_moment == 0) {
       free_.emplace(Vector3<double>(A, A, C), omega0, attitude0);
@@ -102,7 +102,7 @@ class LagrangeTop {
 
   /// 2 (|psi_alpha(0)| + sqrt(r2) |psi_beta(0)|), in rad, with the psi counted from the greatest
   /// tilt. It is subtracted at every time, because the motion begins within a nutation; the
-  /// rounding error is 2^-60 of it (tests/dynamics/exact/lagrange_top). It is above 1e4 rad for
+  /// rounding error is 2^-64 of it (tests/dynamics/exact/lagrange_top). It is above 1e4 rad for
   /// tops that hardly nutate.
   [[nodiscard]] double starting_angle() const {
     return nutation_ ? static_cast<double>(nutation_->starting_angle()) : 0.0;

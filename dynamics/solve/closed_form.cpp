@@ -34,7 +34,7 @@ std::optional<ClosedForm<EulerTop::State>> closed_form(const EulerTop& top, doub
         [rate, begin, taken_off](double t, double /*smallest*/) {
           constexpr double u = std::numeric_limits<double>::epsilon() / 2;
           const double angle = rate * std::abs(t - begin) + taken_off;
-          return 3 * u + 0x1p-70 * angle;
+          return 3 * u + 0x1p-67 * angle;
         }};
   };
   if (free && !rotor) return made("free top, elliptic functions", exact::FreeTop(I, w, q));
