@@ -3,19 +3,13 @@
 #include <utility>
 
 #include <dynamics/file/columns.hpp>
+#include <dynamics/file/overloaded.hpp>
 #include <dynamics/file/scene_sensor.hpp>
 #include <dynamics/signal/same_time.hpp>
 
 namespace kreisel {
 
 namespace {
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
 
 SensorPart vector(const char* name, const char* unit) {
   return {name, {"x", "y", "z"}, {unit, unit, unit}};
@@ -82,33 +76,33 @@ std::vector<SensorPart> parts(const SceneSensor& sensor,
     return result;
   };
   return std::visit(
-      Overloaded{[&](const Gyro&) {
-                   return instrument(integrates ? vector("dtheta", "rad")
-                                                : vector("value", "rad/s"));
-                 },
-                 [&](const Accelerometer&) {
-                   return instrument(integrates ? vector("dv", "m/s") : vector("value", "m/s^2"));
-                 },
-                 [](const PointSensor&) {
-                   return Parts{vector("position", "m"), vector("velocity", "m/s"),
-                                vector("acceleration", "m/s^2")};
-                 },
-                 [](const scene_sensor::Attitude& attitude) {
-                   return attitude.as_angles
-                              ? Parts{{"value", {"yaw", "pitch", "roll"}, {"rad", "rad", "rad"}}}
-                              : Parts{{"value", {"qw", "qx", "qy", "qz"}, {"1", "1", "1", "1"}}};
-                 },
-                 [&](const scene_sensor::Joint& joint) {
-                   return Parts{joint_part(bodies[static_cast<std::size_t>(joint.body)])};
-                 },
-                 [&](const ReactionSensor&) { return reaction; },
-                 [&](const ElementSensor&) { return reaction; },
-                 [](const AzimuthSensor&) {
-                   return Parts{{"value", {"azimuth"}, {"rad"}}};
-                 },
-                 [](const scene_sensor::Outputs& outputs) {
-                   return Parts{{"value", outputs.drives, outputs.units}};
-                 }},
+      detail::Overloaded{
+          [&](const Gyro&) {
+            return instrument(integrates ? vector("dtheta", "rad") : vector("value", "rad/s"));
+          },
+          [&](const Accelerometer&) {
+            return instrument(integrates ? vector("dv", "m/s") : vector("value", "m/s^2"));
+          },
+          [](const PointSensor&) {
+            return Parts{vector("position", "m"), vector("velocity", "m/s"),
+                         vector("acceleration", "m/s^2")};
+          },
+          [](const scene_sensor::Attitude& attitude) {
+            return attitude.as_angles
+                       ? Parts{{"value", {"yaw", "pitch", "roll"}, {"rad", "rad", "rad"}}}
+                       : Parts{{"value", {"qw", "qx", "qy", "qz"}, {"1", "1", "1", "1"}}};
+          },
+          [&](const scene_sensor::Joint& joint) {
+            return Parts{joint_part(bodies[static_cast<std::size_t>(joint.body)])};
+          },
+          [&](const ReactionSensor&) { return reaction; },
+          [&](const ElementSensor&) { return reaction; },
+          [](const AzimuthSensor&) {
+            return Parts{{"value", {"azimuth"}, {"rad"}}};
+          },
+          [](const scene_sensor::Outputs& outputs) {
+            return Parts{{"value", outputs.drives, outputs.units}};
+          }},
       sensor.kind);
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include <dynamics/file/overloaded.hpp>
 #include <dynamics/file/scene_system.hpp>
 #include <dynamics/guide/course.hpp>
 #include <dynamics/guide/earth_frame.hpp>
@@ -25,13 +26,6 @@ using Motion = FrameMotion<Guide, Inertial>;
 /// Steps that end at t_end may evaluate the guide a rounding error later.
 double just_after(double end) { return end + 1e-12 * std::abs(end); }
 
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
-
 Displacement<Inertial, Guide> pose(const scene_guide::Start& start) {
   return {Pose<>::from(start.attitude, start.origin_position)};
 }
@@ -47,7 +41,7 @@ SceneGuide within(Frame known) {
 
 SceneGuide make_link(const scene_guide::Link& link, double t_end) {
   return std::visit(
-      Overloaded{
+      detail::Overloaded{
           [](const scene_guide::Resting&) -> SceneGuide { return RestingFrame<>{}; },
           [](const scene_guide::Rotating& kind) -> SceneGuide {
             return RotatingFrame<>{kind.angular_velocity, kind.origin_acceleration,
@@ -162,8 +156,8 @@ SceneBodies bodies_in_gravity(const SceneFile& scene) {
       if (body.inertia.value.mass > 0) body.loads.emplace_back(load);
     }
   };
-  std::visit(
-      Overloaded{[](const scene_gravity::None&) {},
+  std::visit(detail::Overloaded{
+                 [](const scene_gravity::None&) {},
                  [&result](const UniformGravity<Guide>& g) { result.gravity = g; },
                  [&result](const UniformGravity<Inertial>& g) { result.gravity = g; },
                  [&](const scene_gravity::Ellipsoid&) { add_to_all(EarthGravitation{}); },
@@ -179,7 +173,7 @@ SceneBodies bodies_in_gravity(const SceneFile& scene) {
                      add_to_all(SiteWeight{level_frame(scene), site.magnitude});
                    }
                  }},
-      scene.gravity);
+             scene.gravity);
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include <dynamics/guide/ellipsoid.hpp>
 #include <dynamics/guide/motion.hpp>
 #include <dynamics/guide/power_series.hpp>
 #include <dynamics/guide/series.hpp>
@@ -24,12 +25,12 @@ struct OrbitElements {
   S semi_major_axis = S(0);
   S eccentricity = S(0);
   S inclination = S(0);
-  S node = S(0);                              ///< of the ascending node, from x
-  S perigee = S(0);                           ///< argument, from the node
-  S anomaly = S(0);                           ///< TRUE anomaly at t = 0, from the perigee
-  S parameter = S(3986004418LL) * S(100000);  ///< mu; the default is the earth's, as is `radius`
-  S j2 = S(0);  ///< 0: node and perigee are fixed; the earth's is 1.08262982131e-3
-  S radius = S(6378137);
+  S node = S(0);                      ///< of the ascending node, from x
+  S perigee = S(0);                   ///< argument, from the node
+  S anomaly = S(0);                   ///< TRUE anomaly at t = 0, from the perigee
+  S parameter = S(Wgs84::parameter);  ///< mu; the default is the earth's, as is `radius`
+  S j2 = S(0);                        ///< 0: node and perigee are fixed; the earth's is Wgs84::j2
+  S radius = S(Wgs84::radius);
 };
 
 /// Refuses elements that do not describe an ellipse.

@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include <dynamics/guide/ellipsoid.hpp>
 #include <dynamics/load/load.hpp>
 #include <dynamics/load/planet_field.hpp>
 #include <motor/error.hpp>
@@ -27,9 +28,9 @@ struct OblateGravitation {
   static constexpr bool ignores_spin = true;
   static constexpr bool rests_inertially = true;  ///< its potential does not move with the guide
 
-  S parameter = S(3986004418LL) * S(100000);  ///< GM
-  S radius = S(6378137);                      ///< R, equatorial
-  S j2 = S(1.08262982131e-3);                 ///< 0: a sphere
+  S parameter = S(Wgs84::parameter);  ///< GM
+  S radius = S(Wgs84::radius);        ///< R, equatorial
+  S j2 = S(Wgs84::j2);                ///< 0: a sphere
   Vector3<S> centre = Vector3<S>::Zero();
   Vector3<S> pole = Vector3<S>::UnitZ();  ///< of length 1
   bool gradient = false;
