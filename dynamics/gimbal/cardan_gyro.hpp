@@ -140,7 +140,7 @@ struct CardanRates {
 /// Parameter : number type of moments and bearings: double, or a pack for several gyros side by
 ///             side
 template <class M, class Rotor = FreeRotor, class Parameter = double>
-class CardanGyro {
+class CardanGyro : public detail::CardanStates {
   static_assert(detail::is_guide<M>,
                 "the guide of a gyro must return a FrameMotion<Guide, Inertial>");
   static_assert(std::is_same_v<Rotor, FreeRotor> || std::is_same_v<Rotor, FrictionlessRotor> ||
@@ -148,10 +148,6 @@ class CardanGyro {
                 "the rotor is a FreeRotor, FrictionlessRotor, DrivenRotor or RegulatedRotor");
 
  public:
-  using Vector = Eigen::Matrix<double, 6, 1>;
-
-  using State = CardanState;
-
   CardanGyro(const CardanMoments& moments, const CardanBearings& bearings, M guide,
              Rotor rotor = {})
       : moments_(moments),
@@ -411,18 +407,6 @@ class CardanGyro {
   }
   [[nodiscard]] CardanGyro without(RingInertia /*what*/, double /*begin*/, double /*end*/) const {
     return {{moments_.rotor}, bearings_, guide_, rotor_};
-  }
-
-  /// For integrators. Each component is a block of its own: the angle of a stiff bearing is far
-  /// smaller than the other, and phi far greater.
-  static constexpr std::array<int, 6> blocks = {1, 1, 1, 1, 1, 1};
-
-  [[nodiscard]] static Vector to_vector(const State& s) {
-    return (Vector() << s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate).finished();
-  }
-
-  [[nodiscard]] static State from_vector(const Vector& y) {
-    return {y[0], y[1], y[2], y[3], y[4], y[5]};
   }
 
  private:

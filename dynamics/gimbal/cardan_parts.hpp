@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -59,6 +62,28 @@ struct CardanState {
   double beta_rate = 0;   ///< against the outer ring
   double phi_rate = 0;    ///< against the inner ring
 };
+
+namespace detail {
+
+/// The state of a Cardan gyro as numbers, for integrators.
+struct CardanStates {
+  using Vector = Eigen::Matrix<double, 6, 1>;
+  using State = CardanState;
+
+  /// Each component is a block of its own: the angle of a stiff bearing is far smaller than the
+  /// other, and phi far greater.
+  static constexpr std::array<int, 6> blocks = {1, 1, 1, 1, 1, 1};
+
+  [[nodiscard]] static Vector to_vector(const State& s) {
+    return (Vector() << s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate).finished();
+  }
+
+  [[nodiscard]] static State from_vector(const Vector& y) {
+    return {y[0], y[1], y[2], y[3], y[4], y[5]};
+  }
+};
+
+}  // namespace detail
 
 /// A free rotor. Friction acts between rotor and inner ring, in N m s/rad.
 struct FreeRotor {

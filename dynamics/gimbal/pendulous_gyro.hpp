@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -92,13 +91,10 @@ template <class N>
 ///
 /// Loads : none, UniformGravity<Guide> or UniformGravity<Inertial>
 template <class M, class Rotor = FreeRotor, class... Loads>
-class PendulousGyro {
+class PendulousGyro : public detail::CardanStates {
   static_assert((detail::is_field<Loads> && ...), "the loads are fields of uniform gravity");
 
  public:
-  using Vector = Eigen::Matrix<double, 6, 1>;
-  using State = CardanState;
-
   PendulousGyro(const PendulousBodies& bodies, const CardanBearings& bearings, M guide,
                 Rotor rotor = {}, const Loads&... gravity)
       : bodies_(bodies),
@@ -181,16 +177,6 @@ class PendulousGyro {
     list.add("load", "drive and friction of the rotor", !regulated,
              regulated ? "the motor keeps phi'" : "");
     return list;
-  }
-
-  /// For integrators, as CardanGyro.
-  static constexpr std::array<int, 6> blocks = {1, 1, 1, 1, 1, 1};
-
-  [[nodiscard]] static Vector to_vector(const State& s) {
-    return (Vector() << s.alpha, s.beta, s.phi, s.alpha_rate, s.beta_rate, s.phi_rate).finished();
-  }
-  [[nodiscard]] static State from_vector(const Vector& y) {
-    return {y[0], y[1], y[2], y[3], y[4], y[5]};
   }
 
  private:

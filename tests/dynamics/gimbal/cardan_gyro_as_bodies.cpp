@@ -14,8 +14,8 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/step/integrator.hpp>
-#include <dynamics/tree/body_system.hpp>
 
+#include "gyro_as_bodies.hpp"
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
@@ -26,38 +26,11 @@ namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-BodyDescription described(const char* name, const char* parent, int axis,
-                          const Vector3<double>& moments, const JointForce& force) {
-  const Symmetric3<> tensor{moments.x(), moments.y(), moments.z()};
-  return {.name = name,
-          .parent = parent,
-          .joint = {.kind = JointKind::revolute, .axis = Vector3<double>::Unit(axis)},
-          .inertia = {{2, Vector3<double>::Zero(), tensor}},
-          .forces = {force}};
-}
-
-/// The drive's torque, for the three kinds of rotors.
-template <class Rotor>
-double torque_of(const Rotor& rotor) {
-  if constexpr (requires { rotor.torque; }) {
-    return rotor.torque;
-  } else {
-    return 0;
-  }
-}
-
-template <class M, class Rotor>
-BodySystem<M> as_bodies(const CardanMoments& m, const CardanBearings& b, const M& guide,
-                        const Rotor& rotor) {
-  const auto spring = [](const CardanBearing& bearing) {
-    return JointForce{bearing.stiffness, bearing.reference, bearing.damping, 0};
+PendulousBodies bodies_of(const CardanMoments& moments) {
+  const auto body = [](const Vector3<double>& m) {
+    return Inertia<>{2, Vector3<double>::Zero(), {m.x(), m.y(), m.z()}};
   };
-  std::vector<BodyDescription> bodies{
-      described("outer ring", "guide", 0, m.outer_ring, spring(b.outer)),
-      described("inner ring", "outer ring", 1, m.inner_ring, spring(b.inner)),
-      described("rotor", "inner ring", 2, m.rotor, {0, 0, rotor.friction, torque_of(rotor)})};
-  if (std::is_same_v<Rotor, RegulatedRotor>) bodies[2].rule = JointRule::driven;
-  return {guide, std::move(bodies)};
+  return {body(moments.rotor), body(moments.inner_ring), body(moments.outer_ring)};
 }
 
 /// The gyro's angles are 0 with slack springs, the bodies' at the joints' zero.
@@ -81,7 +54,7 @@ template <class M, class Rotor>
 void compare(const CardanMoments& m, const CardanBearings& b, const M& guide, const Rotor& rotor,
              double t, const Vector6& y, Worst& worst) {
   const CardanGyro gyro(m, b, guide, rotor);
-  const BodySystem<M> bodies = as_bodies(m, b, guide, rotor);
+  const BodySystem<M> bodies = test::as_bodies(bodies_of(m), b, guide, rotor);
   BodyWorkspace w = bodies.workspace();
   const Eigen::VectorXd z = counted_from_zero(b, y);
   const Vector3<double> dv = gyro.rates(t, y).template tail<3>();
@@ -170,7 +143,7 @@ BOOST_AUTO_TEST_CASE(move_together) {
   const CardanMoments m{{.0055, .0045, .008}, {.002, .0015, .0028}, {.006, .0045, .005}};
   const CardanBearings b{{2, 0.002, 0.25}, {1.5, 0.003, -0.5}};
   const CardanGyro gyro(m, b, guide, DrivenRotor{0.005, 0.0001});
-  const auto bodies = as_bodies(m, b, guide, DrivenRotor{0.005, 0.0001});
+  const auto bodies = test::as_bodies(bodies_of(m), b, guide, DrivenRotor{0.005, 0.0001});
   const Vector6 start = (Vector6() << 0.1, -0.2, 0.3, 0.5, -0.4, 60).finished();
   Integrator run(gyro, 0, gyro.from_vector(start));
   Integrator bodies_run(bodies, 0, bodies.from_vector(counted_from_zero(b, start)));

@@ -17,8 +17,8 @@
 #include <dynamics/guide/resting.hpp>
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/study/floquet.hpp>
-#include <dynamics/tree/body_system.hpp>
 
+#include "gyro_as_bodies.hpp"
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
@@ -52,46 +52,12 @@ HarmonicFrame<> ship(Sample& sample) {
   return {series(0.7), series(3), 0, 2};
 }
 
-/// The torque of a drive as a joint force.
-template <class Rotor>
-double torque_of(const Rotor& rotor) {
-  if constexpr (requires { rotor.torque; }) {
-    return rotor.torque;
-  } else {
-    return 0;
-  }
-}
-
-template <class M, class Rotor>
-BodySystem<M> as_bodies(const PendulousBodies& b, const CardanBearings& bearings, const M& guide,
-                        const Rotor& rotor, const Gravity& gravity) {
-  const auto described = [](const char* name, const char* parent, int axis,
-                            const Inertia<>& inertia, const JointForce& force) {
-    return BodyDescription{
-        .name = name,
-        .parent = parent,
-        .joint = {.kind = JointKind::revolute, .axis = Vector3<double>::Unit(axis)},
-        .inertia = {inertia},
-        .forces = {force}};
-  };
-  const auto spring = [](const CardanBearing& bearing) {
-    return JointForce{bearing.stiffness, bearing.reference, bearing.damping, 0};
-  };
-  std::vector<BodyDescription> all{
-      described("outer", "guide", 0, b.outer_ring, spring(bearings.outer)),
-      described("inner", "outer", 1, b.inner_ring, spring(bearings.inner)),
-      described("rotor", "inner", 2, b.rotor, {0, 0, rotor.friction, torque_of(rotor)})};
-  all[0].joint.position = b.point;
-  if (std::is_same_v<Rotor, RegulatedRotor>) all[2].rule = JointRule::driven;
-  return {guide, std::move(all), gravity};
-}
-
 template <class M, class Rotor, class Field>
 double difference(Sample& sample, const PendulousBodies& b, const M& guide, const Rotor& rotor,
                   const Field& field) {
   const CardanBearings bearings{{2, 0.01, 0.3}, {1, 0.02, -0.2}};
   const PendulousGyro gyro(b, bearings, guide, rotor, field);
-  const auto bodies = as_bodies(b, bearings, guide, rotor, field);
+  const auto bodies = test::as_bodies(b, bearings, guide, rotor, field);
   Vector6 y;
   for (double& number : y) number = sample.uniform(-3, 3);
   Eigen::VectorXd z = y;
