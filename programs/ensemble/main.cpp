@@ -19,8 +19,10 @@
 #include <motor/error.hpp>
 
 #include "../shared/exit_status.hpp"
+#include "../shared/gnuplot.hpp"
 #include "../shared/outputs.hpp"
 #include "../shared/progress.hpp"
+#include "plot.hpp"
 #include "request.hpp"
 
 using namespace kreisel;
@@ -100,6 +102,10 @@ int run(const Request& request) {
   if (request.csv) {
     outputs::refuse_input("--csv", *request.csv, files_read(request.scene, ensemble.scene()));
   }
+  if (request.plot) {
+    gnuplot::require_installed();
+    gnuplot::open_folder(*request.plot);
+  }
   std::optional<kreisel::AtomicFile> table;
   if (request.csv) table.emplace(*request.csv);
   const std::vector<SceneMember> members = compute(ensemble, request.threads);
@@ -108,6 +114,7 @@ int run(const Request& request) {
     outputs::leave_standard_output_to(*request.csv);
   }
   const EnsembleSummary all = summary(ensemble, members);
+  if (request.plot && signals::caught() == 0) draw(ensemble, members, all, *request.plot);
   if (request.json) {
     print_json(ensemble.request(), all);
   } else {

@@ -22,6 +22,7 @@ std::optional<Request> read_request(int argc, char** argv) {
   Request request;
   std::string scene;
   std::string csv;
+  std::string plot;
   std::vector<std::string> varied;
   const auto value = [&app](const std::string& option, std::optional<double>& target,
                             const std::string& help) {
@@ -63,9 +64,12 @@ std::optional<Request> read_request(int argc, char** argv) {
                  "a row for each member: what was drawn, joints at the end, error estimate, and "
                  "the reason where it failed")
       ->type_name("FILE");
+  app.add_option("--plot", plot, "the members over what was drawn, SVG and PNG, by gnuplot")
+      ->type_name("FOLDER");
   if (!command_line::parse(app, argc, argv)) return {};
   request.scene = scene;
   if (!csv.empty()) request.csv = csv;
+  if (!plot.empty()) request.plot = plot;
   if (request.ensemble.solve.tolerance &&
       !(*request.ensemble.solve.tolerance >= 1e-15 && *request.ensemble.solve.tolerance <= 1e-2)) {
     throw InvalidInput("--tolerance lies outside [1e-15, 1e-2]");

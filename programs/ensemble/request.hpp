@@ -12,6 +12,7 @@ struct Request {
   int threads = 0;
   bool json = false;
   std::optional<std::filesystem::path> csv;
+  std::optional<std::filesystem::path> plot;
 };
 
 /// The command line; nothing if only help was requested.

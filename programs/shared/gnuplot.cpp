@@ -147,7 +147,10 @@ void open_folder(const std::filesystem::path& folder) {
 std::string terminal(bool svg, std::size_t height) {
   return svg ? fmt::format("set terminal svg size 800,{} font 'Helvetica,14' background 'white'\n",
                            height)
-             : fmt::format("set terminal pngcairo size 800,{} font 'Helvetica,11'\n", height);
+             : fmt::format(
+                   "set terminal pngcairo size 1600,{} font 'Helvetica,11' fontscale 2 linewidth "
+                   "2 pointscale 2\n",
+                   2 * height);
 }
 
 void draw_picture(const std::filesystem::path& file, const std::string& script) {

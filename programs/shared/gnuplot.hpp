@@ -53,7 +53,7 @@ void open_folder(const std::filesystem::path& folder);
 ///          after a signal
 void draw_picture(const std::filesystem::path& file, const std::string& script);
 
-/// Draws the pictures `place`.svg and .png, 800 wide.
+/// Draws the pictures `place`.svg, 800 wide, and .png of twice that.
 ///
 /// Throws : as draw_picture()
 void draw(const std::filesystem::path& place, std::size_t height, const std::string& script);
@@ -61,7 +61,7 @@ void draw(const std::filesystem::path& place, std::size_t height, const std::str
 /// Prints the name of a file that was written, on standard error.
 void wrote(const std::filesystem::path& file);
 
-/// The first line of a script: the terminal for an SVG or a PNG, 800 wide.
+/// The first line of a script: the terminal for an SVG, 800 wide, or for a PNG of twice that.
 std::string terminal(bool svg, std::size_t height);
 
 }  // namespace gnuplot

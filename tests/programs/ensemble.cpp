@@ -205,6 +205,29 @@ BOOST_AUTO_TEST_CASE(keeps_its_results_when_interrupted) {
   BOOST_TEST(computed > 0U);
 }
 
+BOOST_AUTO_TEST_CASE(draws_the_members_over_what_was_drawn) {
+  const test::Scratch folder;
+  const std::string pictures = (folder.path() / "pictures").string();
+  const std::string wheel = scene("wheel_spun_up") + " --members 9 --t-end 5 --plot " + pictures;
+  test::Outcome outcome =
+      run(wheel + " --vary 'body.wheel.rotor.torque=linear(1,3)' 'body.wheel.mass=uniform(1,2)'");
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(outcome.err == "wrote " + pictures + "/members.svg and .png\n");
+  const std::string picture = folder.read("pictures/members.svg");
+  for (const char* const text : {"body.wheel.rotor.torque", "body.wheel.mass", "wheel.rate"}) {
+    BOOST_TEST(picture.find(text) != std::string::npos, text);
+  }
+  BOOST_TEST(folder.read("pictures/members.png").substr(1, 3) == "PNG");
+
+  outcome = run(wheel + " --vary 'body.wheel.rotor.torque=linear(1,1)'");
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(outcome.err == "ensemble: nothing to draw: all members end alike\n");
+
+  folder.write("file", "");
+  outcome = run(wheel + "/../file/pictures --vary 'body.wheel.rotor.torque=linear(1,3)'");
+  BOOST_TEST(outcome.status == 2, outcome.err);
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_exits_with_2_and_writes_nothing) {
   const test::Scratch folder;
   const std::string csv = " --csv " + (folder.path() / "out.csv").string();
