@@ -15,7 +15,7 @@
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/step/integrator.hpp>
 
-#include "gyro_as_bodies.hpp"
+#include <support/gyro_as_bodies.hpp>
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 

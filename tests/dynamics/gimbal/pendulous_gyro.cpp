@@ -18,7 +18,7 @@
 #include <dynamics/guide/rotating.hpp>
 #include <dynamics/study/floquet.hpp>
 
-#include "gyro_as_bodies.hpp"
+#include <support/gyro_as_bodies.hpp>
 #include <support/sample.hpp>
 #include <support/worst.hpp>
 
