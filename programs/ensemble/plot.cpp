@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <sstream>
@@ -46,6 +47,16 @@ void write_points(std::ostream& s, const std::vector<SceneMember>& members) {
   s << "END\n";
 }
 
+/// 1, 2 or 5 times a power of ten: at most five of them in the range of a column.
+double tics(const ColumnSpread& column) {
+  const double least = (column.greatest - column.least) / 4;
+  const double power = std::pow(10, std::floor(std::log10(least)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= least) return step * power;
+  }
+  return 10 * power;
+}
+
 std::string ends_over_keys(const SceneEnsemble& ensemble, const std::vector<SceneMember>& members,
                            const EnsembleSummary& all, std::size_t keys,
                            const std::vector<std::size_t>& columns) {
@@ -55,14 +66,18 @@ std::string ends_over_keys(const SceneEnsemble& ensemble, const std::vector<Scen
   const std::string& title = ensemble.scene().title;
   fmt::print(s,
              "set multiplot layout {},{} title {} margins char 13, char 4, char 5, char 4 "
-             "spacing char 2, char 2\n",
+             "spacing char 6, char 2\n",
              columns.size(), keys,
              quoted(fmt::format("{}{} members at the end", title.empty() ? "" : title + ": ",
                                 members.size())));
   for (const std::size_t column : columns) {
     const bool is_last = column == columns.back();
+    fmt::print(s, "set ytics {:.9g}\n", tics(all.columns[column]));
     for (std::size_t key = 0; key < keys; ++key) {
-      s << (is_last ? "set xlabel " + quoted(ensemble.keys()[key]) + "\nset format x '%g'\n"
+      const ColumnSpread& drawn = all.columns[key];
+      s << (drawn.least < drawn.greatest ? fmt::format("set xtics {:.9g}\n", tics(drawn))
+                                         : "set xtics autofreq\n");
+      s << (is_last ? "set xlabel " + quoted(ensemble.keys()[key]) + "\nset format x '%.5g'\n"
                     : "unset xlabel\nset format x ''\n")
         << (key == 0 ? "set ylabel " + quoted(all.columns[column].name) + "\nset format y '%.5g'\n"
                      : "unset ylabel\nset format y ''\n");
