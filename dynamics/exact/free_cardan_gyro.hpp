@@ -51,22 +51,23 @@ class FreeCardanGyro {
     const Real A = rotor.x();
     const Real carried = Real(inner_ring.z()) + (regulated ? Real(rotor.z()) : 0);
     spin_moment_ = rotor.z();
-    B_ = A + inner_ring.y();
+    ring_moment_ = A + inner_ring.y();
     j_0_ = A + inner_ring.x() + outer_ring.x();
     j_1_ = A + inner_ring.x() - carried;
     half_turns_ = round(start.beta / pi);
     side_ = fmod(half_turns_, Real(2)) == 0 ? 1 : -1;
     const Real s = sin(start.beta);
-    H_ = spin_moment_ * (start.phi_rate + (regulated ? 0 : start.alpha_rate * s));
+    spin_momentum_ = spin_moment_ * (start.phi_rate + (regulated ? 0 : start.alpha_rate * s));
     const Real J = moment(s);
-    const Real e = B_ * start.beta_rate * start.beta_rate + J * start.alpha_rate * start.alpha_rate;
-    p_ = J * start.alpha_rate + H_ * s;
-    K_ = H_ * H_ + e * j_1_;
-    if (!(K_ > 0)) throw ComputationFailed("free Cardan gyro: its rings turn over or rest");
-    middle_ = p_ * H_ / K_;
+    const Real e =
+        ring_moment_ * start.beta_rate * start.beta_rate + J * start.alpha_rate * start.alpha_rate;
+    p_ = J * start.alpha_rate + spin_momentum_ * s;
+    factor_ = spin_momentum_ * spin_momentum_ + e * j_1_;
+    if (!(factor_ > 0)) throw ComputationFailed("free Cardan gyro: its rings turn over or rest");
+    middle_ = p_ * spin_momentum_ / factor_;
     // (middle - s) and the sine's part: their sum of squares is the amplitude's.
-    const Real cosine = (J * start.alpha_rate * H_ - e * j_1_ * s) / K_;
-    const Real sine = side_ * start.beta_rate * sqrt(B_ * J / K_);
+    const Real cosine = (J * start.alpha_rate * spin_momentum_ - e * j_1_ * s) / factor_;
+    const Real sine = side_ * start.beta_rate * sqrt(ring_moment_ * J / factor_);
     amplitude_ = hypot(cosine, sine);
     const Real begin = atan2(sine, cosine);
     if (!(abs(middle_) + amplitude_ < 1)) {
@@ -99,8 +100,8 @@ class FreeCardanGyro {
     state.phi = regulated_ ? start_.phi + start_.phi_rate * time
                            : start_.phi + (now.phi - begin_.phi) + whole * means_.phi;
     state.alpha_rate = alpha_rate;
-    state.beta_rate = side_ * amplitude_ * sin(theta) * sqrt(K_ / (B_ * moment(s)));
-    state.phi_rate = regulated_ ? start_.phi_rate : H_ / spin_moment_ - alpha_rate * s;
+    state.beta_rate = side_ * amplitude_ * sin(theta) * sqrt(factor_ / (ring_moment_ * moment(s)));
+    state.phi_rate = regulated_ ? start_.phi_rate : spin_momentum_ / spin_moment_ - alpha_rate * s;
     return state;
   }
 
@@ -119,15 +120,16 @@ class FreeCardanGyro {
   /// alpha' = (p - H s)/J, with p - H middle = p (1 - H^2/K).
   [[nodiscard]] Real rate_of_alpha(Real theta) const {
     const Real c = amplitude_ * cos(theta);
-    return (p_ * ((K_ - H_ * H_) / K_) + H_ * c) / moment(middle_ - c);
+    return (p_ * ((factor_ - spin_momentum_ * spin_momentum_) / factor_) + spin_momentum_ * c) /
+           moment(middle_ - c);
   }
 
   /// The derivatives with respect to theta.
   [[nodiscard]] Integrals slopes(Real theta) const {
     const Real s = middle_ - amplitude_ * cos(theta);
-    const Real time = sqrt(B_ * moment(s) / (K_ * (1 - s) * (1 + s)));
+    const Real time = sqrt(ring_moment_ * moment(s) / (factor_ * (1 - s) * (1 + s)));
     const Real alpha = rate_of_alpha(theta);
-    return {time, alpha * time, (H_ / spin_moment_ - alpha * s) * time};
+    return {time, alpha * time, (spin_momentum_ / spin_moment_ - alpha * s) * time};
   }
 
   /// Doubles the nodes until the last terms are as small as rounding.
@@ -205,16 +207,16 @@ class FreeCardanGyro {
 
   bool regulated_;
   State start_;
-  Real spin_moment_ = 0;            ///< C_1
-  Real B_ = 0, j_0_ = 0, j_1_ = 0;  ///< the constants above
-  Real H_ = 0, p_ = 0, K_ = 0;      ///< conserved
-  Real half_turns_ = 0;             ///< whole ones of beta at the start
-  Real side_ = 1;                   ///< of cos(beta)
-  Real middle_ = 0;                 ///< (s_1 + s_2)/2
-  Real amplitude_ = 0;              ///< (s_2 - s_1)/2
-  Integrals means_ = {};            ///< of the slopes
-  std::vector<Integrals> terms_;    ///< of sin(k theta) in the integrals, k = 1, 2, ..
-  Integrals begin_ = {};            ///< at the start's phase
+  Real spin_moment_ = 0;                         ///< C_1
+  Real ring_moment_ = 0, j_0_ = 0, j_1_ = 0;     ///< B, j_0, j_1
+  Real spin_momentum_ = 0, p_ = 0, factor_ = 0;  ///< H, p, K, conserved
+  Real half_turns_ = 0;                          ///< whole ones of beta at the start
+  Real side_ = 1;                                ///< of cos(beta)
+  Real middle_ = 0;                              ///< (s_1 + s_2)/2
+  Real amplitude_ = 0;                           ///< (s_2 - s_1)/2
+  Integrals means_ = {};                         ///< of the slopes
+  std::vector<Integrals> terms_;                 ///< of sin(k theta) in the integrals, k = 1, 2, ..
+  Integrals begin_ = {};                         ///< at the start's phase
 };
 
 }  // namespace kreisel::exact

@@ -109,7 +109,7 @@ class LagrangeTop {
   }
 
  private:
-  using Complex = kreisel::Complex<Real>;
+  using Complex = ComplexOf<Real>;
 
   /// A Cayley-Klein parameter and its rate of change.
   struct Parameter {

@@ -208,9 +208,9 @@ class PendulousGyro : public detail::CardanStates {
     const Vector3<N> x = Ring::back(1, beta, Vector3<N>::UnitX());
     const auto parts = [&](const Inertia<>& body, const Vector3<N>& b, const Vector3<N>& a) {
       const Symmetric3<N> T = detail::lifted<N>(body).tensor;
-      const Vector3<N> Tb = T * b;
-      const Vector3<N> Ta = T * a;
-      return Symmetric3<N>{T.zz, b.dot(Tb), a.dot(Ta), Tb.z(), Ta.z(), a.dot(Tb)};
+      const Vector3<N> of_b = T * b;
+      const Vector3<N> of_a = T * a;
+      return Symmetric3<N>{T.zz, b.dot(of_b), a.dot(of_a), of_b.z(), of_a.z(), a.dot(of_b)};
     };
     const Symmetric3<N> rotor =
         parts(bodies_.rotor, Ring::back(2, phi, Vector3<N>::UnitY()), Ring::back(2, phi, x));

@@ -40,7 +40,7 @@ struct GuideAttitude {
 
 /// The closed form of a tree on a guide that turns, under any uniform gravity.
 KREISEL_API [[nodiscard]] std::optional<ClosedForm<Eigen::VectorXd>> closed_form_on_guide(
-    const BodyTree& tree, std::function<GuideAttitude(double)> guide, double begin,
+    const BodyTree& tree, const std::function<GuideAttitude(double)>& guide, double begin,
     const Eigen::VectorXd& y);
 
 /// A closed form on y = (coordinates; rates) as one on states.

@@ -312,7 +312,7 @@ class TopOnGuideError {
 }  // namespace
 
 std::optional<ClosedForm<Eigen::VectorXd>> closed_form_on_guide(
-    const BodyTree& tree, std::function<GuideAttitude(double)> guide, double begin,
+    const BodyTree& tree, const std::function<GuideAttitude(double)>& guide, double begin,
     const Eigen::VectorXd& y) {
   const BodyDescription* body = lone_body(tree);
   if (!body || body->joint.kind != JointKind::spherical || !y.allFinite()) return std::nullopt;

@@ -17,7 +17,7 @@ namespace kreisel {
 namespace detail::radau {
 
 using Real = DoubleDouble;
-using Value = Complex<Real>;
+using Value = ComplexOf<Real>;
 using Reals = std::vector<Real>;
 
 [[nodiscard]] inline Real number(std::size_t i) { return Real(i); }
