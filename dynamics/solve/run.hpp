@@ -92,8 +92,8 @@ class SteppedRun : public Run {
   /// Writes the state at a time within the last step.
   virtual void read(double t, double* y) = 0;
 
-  /// Tries a first step of length h, or to `end` if that is nearer. False, without a step, if the
-  /// step is rejected.
+  /// Tries a first step of length h at least, or to `end` if that is nearer. False if no such step
+  /// is accepted: the run is then of no more use.
   [[nodiscard]] virtual bool try_first_step(double /*h*/, double /*end*/, double /*output*/) {
     return false;
   }

@@ -38,13 +38,14 @@ class RunOfSteps final : public SteppedRun {
     steps_.step_towards(end);
   }
 
-  [[nodiscard]] bool try_first_step(double h, double end, double /*output*/) override {
+  [[nodiscard]] bool try_first_step(double h, double end, double output) override {
     if constexpr (requires { steps_.try_first_step(h, end); }) {
       take_samples(steps_);
       from_ = steps_.t();
       return steps_.try_first_step(h, end);
-    } else {
-      return false;
+    } else {  // the length of a series' step is not given
+      step_towards(end, output);
+      return length() >= std::min(h, std::abs(end - from_));
     }
   }
 

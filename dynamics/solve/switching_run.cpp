@@ -151,7 +151,7 @@ void SwitchingRun::adopt(Method method, std::unique_ptr<SteppedRun> run, double 
   if (method != Method::radau13) explicit_ = method;
   run_ = std::move(run);
   needless_ = 0;
-  next_look_ = first_look;
+  next_look_ = method == Method::radau13 ? first_look_back : first_look;
 }
 
 void SwitchingRun::choose_method(double end, double output) {
@@ -161,11 +161,39 @@ void SwitchingRun::choose_method(double end, double output) {
     next_look_ *= looks_ && try_radau(end, output) ? 1.25 : 2;
     return;
   }
-  // Explicit steps can be as long as such short implicit steps.
-  constexpr int many = 50;
+  // Explicit steps of this length are stable.
+  constexpr double stable_series = 6;  // of order 20
+  const double stable = explicit_ == Method::taylor ? stable_series : 0.8 * Verner98::stable;
   const auto& radau = static_cast<const RadauRun&>(*run_);
-  needless_ = radau.fastest_times_step() < 1 ? needless_ + 1 : 0;
-  if (needless_ >= many) change_to(explicit_);
+  needless_ = radau.fastest_times_step() < stable ? needless_ + 1 : 0;
+  if (needless_ >= next_look_ && !try_explicit(end, output)) next_look_ *= 2;
+}
+
+/// Changes from radau13 to explicit steps if one of the same length is accepted: it costs less.
+bool SwitchingRun::try_explicit(double end, double output) {
+  auto trial = run_by(explicit_, present());
+  trial->know_sizes(sizes());
+  const double from = run_->t();
+  const auto is_accepted = [&] {
+    try {
+      return trial->try_first_step(run_->length(), end, output);
+    } catch (const SeriesFailed&) {
+      return false;
+    }
+  };
+  const bool pays = is_accepted();
+  if (pays) {
+    adopt(explicit_, std::move(trial), from);
+  } else {
+    finished_ = sum(finished_, trial->effort());
+  }
+  return pays;
+}
+
+/// True after a change back from radau13.
+bool SwitchingRun::was_implicit() const {
+  return std::any_of(changes_.begin(), changes_.end(),
+                     [](const Change& change) { return change.to == Method::radau13; });
 }
 
 /// Changes from taylor to verner98 if steps three times as long are stable and accepted. In a fast
@@ -195,7 +223,7 @@ bool SwitchingRun::try_radau(double end, double output) {
   constexpr double soon = 1e-3;  // of the time left
   const bool dies_soon =
       fastest.real() < -0.5 * speed && speed * std::abs(end - run_->t()) > 1 / soon;
-  if (dies_soon) {
+  if (dies_soon && !was_implicit()) {
     change_to(Method::radau13);
     return true;
   }

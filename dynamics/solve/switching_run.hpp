@@ -68,9 +68,12 @@ class SwitchingRun final : public SteppedRun {
   void choose_method(double end, double output);
   [[nodiscard]] bool try_verner98(double end, double output);
   [[nodiscard]] bool try_radau(double end, double output);
+  [[nodiscard]] bool try_explicit(double end, double output);
+  [[nodiscard]] bool was_implicit() const;
   void pass_changes(Checkpoint& checkpoint);
 
   static constexpr double first_look = 16;  // steps
+  static constexpr double first_look_back = 50;
 
   const SteppedScene& scene_;
   bool other_;
@@ -83,8 +86,8 @@ class SwitchingRun final : public SteppedRun {
   std::unique_ptr<SteppedRun> run_;
   std::vector<Change> changes_;
   IntegrationStatistics finished_;  ///< of the methods before
-  double next_look_ = first_look;
-  int needless_ = 0;  ///< consecutive steps of radau13 that could have been explicit
+  double next_look_ = first_look;   ///< number of steps
+  double needless_ = 0;             ///< consecutive steps of radau13 that could have been explicit
 };
 
 }  // namespace kreisel::detail
