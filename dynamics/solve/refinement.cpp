@@ -71,8 +71,22 @@ bool Refinement::looks_again(const TryResult& tried) {
 }
 
 bool Refinement::is_by_chance(const TryResult& tried) const {
+  const double power = is_implicit(tried) ? rules::power_of_implicit_steps : 1;
   return !tried.knows_growth && !tried.too_coarse && !is_last() && tried.complete &&
-         levels_.follows_its_order(accuracy_) && missed_.falls_by_chance(accuracy_);
+         levels_.follows_its_order(accuracy_) && missed_.falls_by_chance(accuracy_, power);
+}
+
+bool Refinement::is_implicit(const TryResult& tried) const {
+  return tried.is_implicit || levels_.method() == Method::radau13;
+}
+
+/// Finer steps than those of a try whose error fell by more than expected. Where implicit steps pass
+/// over an oscillation, and finer ones resolve it, this is no chance.
+void Refinement::confirm(const TryResult& tried) {
+  missed_ = {accuracy_, tried.output, tried.error};
+  accuracy_ = levels_.tightened(accuracy_, rules::confirms);
+  known_ = {};
+  coarse_starts_off_ = false;
 }
 
 bool Refinement::only_rounds(const TryResult& tried) const {
@@ -104,6 +118,10 @@ Next Refinement::next(const TryResult& tried) {
   const bool too_close = lost > 2 * std::max(digits_, 1.0);
   if (too_close) digits_ = lost;
   const bool by_chance = is_by_chance(tried);
+  if (by_chance && is_implicit(tried)) {
+    confirm(tried);
+    return Next::begin_again;
+  }
   const bool stays = by_chance || (tried.too_coarse && only_rounds(tried));
   if (tried.too_coarse && missed_.error == 0) missed_ = {accuracy_, tried.output, tried.error};
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -29,10 +30,10 @@ struct Missed {
            now > rules::departs * error * (at / accuracy);
   }
 
-  /// True if the error at finer steps is less than a tenth of the expected one. It was rounding
-  /// then, and two runs agree by chance.
-  [[nodiscard]] bool falls_by_chance(double at) const {
-    return error > 0 && now < error * (at / accuracy) / rules::departs;
+  /// True if the error at finer steps is less than a tenth of the expected one, which decreases with
+  /// a power of the accuracy. It was rounding then, and two runs agree by chance.
+  [[nodiscard]] bool falls_by_chance(double at, double power) const {
+    return error > 0 && now < error * std::pow(at / accuracy, power) / rules::departs;
   }
 
   template <class Checkpoint>
@@ -161,6 +162,8 @@ class KREISEL_API Refinement {
  private:
   [[nodiscard]] bool looks_again(const TryResult& tried);
   [[nodiscard]] bool is_by_chance(const TryResult& tried) const;
+  [[nodiscard]] bool is_implicit(const TryResult& tried) const;
+  void confirm(const TryResult& tried);
   [[nodiscard]] bool only_rounds(const TryResult& tried) const;
   void begin_with_another_method();
 

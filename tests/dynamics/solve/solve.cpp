@@ -741,7 +741,7 @@ BOOST_AUTO_TEST_CASE(ignores_instability_of_coarse_steps) {
 BOOST_AUTO_TEST_CASE(recognises_rounding_by_its_order) {
   const auto judged = [](double error, double now) {
     const detail::Missed missed{.accuracy = 1e-9, .error = error, .now = now};
-    return std::pair(missed.stays(1e-10), missed.falls_by_chance(1e-10));
+    return std::pair(missed.stays(1e-10), missed.falls_by_chance(1e-10, 1));
   };
   BOOST_TEST((judged(1e-6, 1e-7) == std::pair(false, false)));
   BOOST_TEST((judged(1e-6, 2e-6) == std::pair(true, false)));
