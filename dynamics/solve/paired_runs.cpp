@@ -36,28 +36,27 @@ Trajectory<double> PairedRuns::solve(const std::vector<double>& checkpoint) {
   }
 }
 
-/// A run with a step that ends at `stop`. One whose start is moved upwards is also perturbed.
-RunSoFar PairedRuns::made(RunRequest request, double stop) const {
+/// A run whose start is moved upwards is also perturbed.
+RunSoFar PairedRuns::made(RunRequest request) const {
   const Levels& levels = refinement_.levels();
   if (refinement_.pair_is_perturbed() && request.moved > 0) {
     request.perturbed = levels.pair_digits();
   }
-  return {maker_.run(levels, request), maker_.start().size(), stop};
+  return {maker_.run(levels, request), maker_.start().size(), request.stops_at};
 }
 
 RunSoFar PairedRuns::coarse_run() const {
   const double moved = refinement_.coarse_starts_off() ? refinement_.digits() : 0;
-  return made({.accuracy = refinement_.accuracy(), .moved = moved}, end_);
+  return made({.accuracy = refinement_.accuracy(), .moved = moved, .stops_at = coarse_stops_at_});
 }
 
-/// A step of a finer run ends between start and end, so that a short run is not the same single
-/// step in both runs. The time differs from run to run, because the runs may continue side by side.
+/// Steps of a finer run end between two discontinuities, so that a short way is not the same single
+/// step in both runs. The place differs from run to run, because the runs may continue side by side.
 /// Equal steps do not need it.
 RunSoFar PairedRuns::finer_run(double accuracy, double moved) const {
   const double part = moved > 0 ? 1.0 / 2 : moved < 0 ? 2.0 / 5 : 1.0 / 3;
-  const double stop = options_.begin + part * (end_ - options_.begin);
-  return made({.accuracy = accuracy, .moved = moved, .beside = refinement_.accuracy()},
-              refinement_.levels().adapts() ? stop : end_);
+  return made(
+      {.accuracy = accuracy, .moved = moved, .beside = refinement_.accuracy(), .stops_at = part});
 }
 
 RunSoFar PairedRuns::finer_run() const {
@@ -189,6 +188,7 @@ void PairedRuns::prepare(Next next) {
   if (next == Next::look_for_rounding) return look_for_rounding();
   if (next == Next::shift) return shift();
   spent_ += coarse_->spent() + fine_->spent();
+  coarse_stops_at_ = 0;
   coarse_.reset();
   fine_.reset();
 }
@@ -206,6 +206,7 @@ void PairedRuns::look_for_rounding() {
 
 void PairedRuns::shift() {
   spent_ += coarse_->spent();
+  coarse_stops_at_ = fine_->stops_at();
   if (!fine_->knows_all()) {
     fine_->replace_by(coarse_run());
     for (std::size_t i = 0; i <= try_->done; ++i) (void)fine_->at_output(i, times_[i], end_);
@@ -244,7 +245,7 @@ double PairedRuns::spent_beside() const {
 
 void PairedRuns::pass_setting(Checkpoint& numbers) {
   refinement_.pass(numbers);
-  numbers(spent_);
+  numbers(spent_, coarse_stops_at_);
 }
 
 void PairedRuns::pass_runs(Checkpoint& numbers) {

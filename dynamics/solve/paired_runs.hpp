@@ -51,7 +51,7 @@ class PairedRuns {
     bool too_coarse = false;
   };
 
-  [[nodiscard]] RunSoFar made(RunRequest request, double stop) const;
+  [[nodiscard]] RunSoFar made(RunRequest request) const;
   [[nodiscard]] RunSoFar coarse_run() const;
   [[nodiscard]] RunSoFar finer_run() const;
   [[nodiscard]] RunSoFar finer_run(double accuracy, double moved) const;
@@ -84,6 +84,7 @@ class PairedRuns {
   double end_;
   ComparisonTimes times_;
   Refinement refinement_;
+  double coarse_stops_at_ = 0;  ///< RunRequest::stops_at, of the coarser run
   std::optional<RunSoFar> coarse_;
   std::optional<RunSoFar> fine_;
   std::optional<Try> try_;

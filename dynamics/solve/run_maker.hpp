@@ -15,6 +15,7 @@ struct RunRequest {
   double moved = 0;  ///< start, by so many last digits; the perturbed copy of the scene if not 0
   double perturbed = 0;  ///< each step, by so many last digits
   double beside = 0;     ///< accuracy of the coarser run of the pair; 0 for that run
+  double stops_at = 0;   ///< a step ends at this part of each way between discontinuities; 0: none
 };
 
 /// Makes the runs of a scene from one start.
@@ -41,6 +42,7 @@ class RunMaker {
 
  private:
   [[nodiscard]] Eigen::VectorXd start_of(const RunRequest& request) const;
+  [[nodiscard]] SolveOptions options_of(const RunRequest& request) const;
   [[nodiscard]] bool is_other(const RunRequest& request) const {
     return request.moved != 0 && scene_.has_other();
   }

@@ -19,26 +19,29 @@ namespace kreisel::detail {
 /// A run with its outputs so far, which can be read again.
 class RunSoFar {
  public:
-  /// stop  : a time before the end at which a step ends, whatever the outputs are; or the end
-  RunSoFar(std::unique_ptr<Run> run, Eigen::Index components, double stop)
-      : run_(std::move(run)), components_(static_cast<std::size_t>(components)), stop_(stop) {}
+  /// stops_at : as RunRequest::stops_at
+  RunSoFar(std::unique_ptr<Run> run, Eigen::Index components, double stops_at)
+      : run_(std::move(run)),
+        components_(static_cast<std::size_t>(components)),
+        stops_at_(stops_at) {}
 
   /// The state at the i-th output, valid until the next call. Outputs must be read in order, each
   /// time from the first one on.
   [[nodiscard]] std::span<const double> at_output(std::size_t i, double t, double end) {
-    if (i == first_ + known_) advance_to(t, end);
+    if (i == first_ + known_) run_->on_the_way(t, end, next_state());
     return {states_.data() + (i - first_) * components_, components_};
   }
 
   /// True if the run has its outputs from the first one on; false if a checkpoint began it.
   [[nodiscard]] bool knows_all() const { return first_ == 0; }
 
-  /// Replaces this run by another, which takes over cost and stop.
+  /// Replaces this run by another, which takes over its cost.
   void replace_by(RunSoFar other) {
     other.spent_before_ = spent();
-    other.stop_ = stop_;
     *this = std::move(other);
   }
+
+  [[nodiscard]] double stops_at() const { return stops_at_; }
 
   /// The number of evaluations so far.
   [[nodiscard]] double spent() const { return std::max(spent_before_, effort().evaluations); }
@@ -53,7 +56,7 @@ class RunSoFar {
   void pass(std::size_t done, Checkpoint& checkpoint) {
     if (known_ == 0) first_ = done;
     run_->pass(checkpoint);
-    checkpoint(spent_before_, stop_, has_stopped_);
+    checkpoint(spent_before_);
     std::size_t ahead = first_ + known_ - done;
     checkpoint(ahead);
     for (std::size_t i = done; i < done + ahead; ++i) {
@@ -64,17 +67,6 @@ class RunSoFar {
   }
 
  private:
-  /// Takes steps to t and keeps the state there. If the stop lies ahead, a step ends at it.
-  void advance_to(double t, double end) {
-    const bool before = stop_ == end || (t < stop_) == (stop_ < end);
-    if (!before && !has_stopped_) {
-      std::vector<double> y(components_);
-      run_->on_the_way(stop_, stop_, y.data());
-      has_stopped_ = true;
-    }
-    run_->on_the_way(t, has_stopped_ ? end : stop_, next_state());
-  }
-
   [[nodiscard]] double* next_state() {
     known_ += 1;
     states_.resize(known_ * components_);
@@ -83,8 +75,7 @@ class RunSoFar {
 
   std::unique_ptr<Run> run_;
   std::size_t components_;
-  double stop_;
-  bool has_stopped_ = false;
+  double stops_at_;
   std::size_t first_ = 0;       ///< output that is kept
   std::size_t known_ = 0;       ///< number of outputs kept
   std::vector<double> states_;  ///< one after another
