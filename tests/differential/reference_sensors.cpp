@@ -131,8 +131,9 @@ Real Tree::azimuth(Real t, const Sensor& sensor, const Motion& guide, const Fram
   const Real speed = p.v.norm() + guide.w.norm() * r.norm();
   const Real pull = p.a.norm() + guide.dw.norm() * r.norm() + guide.w.norm() * speed +
                     guide_.gravity(t, guide, pivot).norm() + guide.a.norm();
+  const Real reach = r.norm() + 1e-12L * pivot.norm();  // where r is 0 but for rounding
   const Real angle =
-      principal_angle(level * form * level.transpose(), speed * speed + pull * r.norm());
+      principal_angle(level * form * level.transpose(), speed * speed + pull * reach);
   const bool on_earth = !scene_.guide.empty() && scene_.guide.front().kind == LinkKind::earth;
   return on_earth ? angle + Real(scene_.guide.front().azimuth) * two_pi / 360 : angle;
 }
