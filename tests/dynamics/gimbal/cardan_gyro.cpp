@@ -387,7 +387,7 @@ BOOST_AUTO_TEST_CASE(agrees_with_newton_and_euler_in_50_digits) {
   BOOST_TEST(worst_reaction < 1e-12);
 }
 
-// E11 of the catalogue of hard cases: light rings, almost 90 degrees.
+// Light rings, almost 90 degrees.
 BOOST_AUTO_TEST_CASE(keeps_its_digits_at_gimbal_lock) {
   for (const CardanMoments& heavy : {symmetric, unsymmetric}) {
     for (const double factor : {1.0, 1e-4, 1e-8, 0.0}) {

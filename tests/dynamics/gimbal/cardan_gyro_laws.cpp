@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(frequencies_are_foeppls) {
   const CardanFrequencies f = cardan_frequencies(symmetric, springs, 50);
   BOOST_TEST(close(f.nutation, number(foeppl.at("omega_nutation")), 1e-15));
   BOOST_TEST(close(f.precession, number(foeppl.at("omega_precession")), 1e-15));
-  // E1: the nutation between no springs; 63.11 from the kinematics as printed.
+  // The nutation between no springs; 63.11 from the kinematics as printed.
   BOOST_TEST(close(cardan_frequencies(symmetric, {}, 50).nutation, 43.5142634576, 1e-11));
   BOOST_TEST(cardan_frequencies(symmetric, {}, 50).precession == 0);
   BOOST_TEST(
@@ -355,7 +355,7 @@ BOOST_AUTO_TEST_CASE(equations_35_to_39_corrected_are_the_scene) {
   BOOST_TEST(worst < 1e-11);
 }
 
-// E1: two rings at rest turn with the rotor, by (38) third line and (39) as printed.
+// Two rings at rest turn with the rotor, by (38) third line and (39) as printed.
 BOOST_AUTO_TEST_CASE(printed_38_39_turn_rings_at_rest) {
   const double u_c = 100, b = 30 * degree;
   BOOST_TEST(close(u_c * std::sin(b), 50, 1e-15));  // u'_A3 by (39); u'_C2 = 100 by (38)
@@ -370,7 +370,7 @@ BOOST_AUTO_TEST_CASE(printed_38_39_turn_rings_at_rest) {
   BOOST_TEST(close(wrong.M_A21, .3680165670, 1e-9));
 }
 
-// E3, E7
+// The torque of (40) as printed and as corrected.
 BOOST_AUTO_TEST_CASE(equation_40_has_the_sine_not_its_square) {
   double corrected = 0, printed = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -400,7 +400,7 @@ BOOST_AUTO_TEST_CASE(equation_40_has_the_sine_not_its_square) {
   BOOST_TEST(close(M_A12 - forty(ones, y, dy.tail<3>(), 1, 0, 2)[0], 0.367405, 2e-6));
 }
 
-// E4: at 90 degrees all is finite if the rings have mass. det M = C_1 (A_3 + C_2)(B_2 + Q) there.
+// At 90 degrees all is finite if the rings have mass. det M = C_1 (A_3 + C_2)(B_2 + Q) there.
 BOOST_AUTO_TEST_CASE(equations_keep_their_meaning_at_90_degrees) {
   const CardanGyro gyro(symmetric, {}, RestingFrame<>{});
   const auto at = [&gyro](double t) { return Integrator(gyro, 0, {0, 1.2, 0, 0, 6, 50}).to(t); };

@@ -71,7 +71,7 @@ Outcome run(const char* name, double stiffness, double damping, bool deviations,
 
 }  // namespace
 
-// E12: 1e12 N m/rad costs no more than 1e3.
+// 1e12 N m/rad costs no more than 1e3.
 BOOST_AUTO_TEST_CASE(costs_the_same_at_any_stiffness) {
   struct Case {
     const char* name;
@@ -90,7 +90,7 @@ BOOST_AUTO_TEST_CASE(costs_the_same_at_any_stiffness) {
   }
 }
 
-// E15: an angle of 0.3 cannot represent a moment of 1e-2 N m at 1e12 N m/rad, the deviation can.
+// An angle of 0.3 cannot represent a moment of 1e-2 N m at 1e12 N m/rad, the deviation can.
 BOOST_AUTO_TEST_CASE(has_its_moment_to_ten_digits) {
   const Outcome outcome = run("S4f_cardan_k1e12_d2e9_dev", 1e12, 2e9, true,
                               {.relative = 5e-11, .absolute_scale = 1e-13});

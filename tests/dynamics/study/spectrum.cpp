@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(damped_platform_agrees_with_the_reference) {
   BOOST_TEST_MESSAGE("damped platform: error " << worst << " rad/s");
 }
 
-// Paper 000 section 4.5: L cos(beta_0)/sqrt(A B), the gyro of two rings.
+// Two rings on a fixed base: L cos(beta_0)/sqrt(A B), the gyro of two rings.
 BOOST_AUTO_TEST_CASE(gyro_in_two_rings_has_its_nutation) {
   const Json& all = rotors().at("eigenvalues");
   const Json& bodies = rotors().at("models").at("cardan").at("bodies");
@@ -285,8 +285,8 @@ BOOST_AUTO_TEST_CASE(gyroscopic_stabilisation_is_recognised) {
   BOOST_TEST(unstable.back().root.real() != 0);
 }
 
-// Circulatory torques: the precession is damped, the nutation grows (rotors.json, section 4.6 of
-// paper 000's equations). Also a double root without a second vector.
+// Circulatory torques: the precession is damped, the nutation grows (rotors.json). Also a double
+// root without a second vector.
 BOOST_AUTO_TEST_CASE(damped_and_circulatory_systems) {
   Coefficients c;
   c.mass = 0.002 * Eigen::Matrix2d::Identity();
