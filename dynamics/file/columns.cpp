@@ -142,18 +142,19 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
   return values;
 }
 
-std::vector<double> shown_row(const BodyTree& tree, std::vector<double> values,
+std::vector<double> shown_row(const SceneSolver& model, std::vector<double> values,
                               const SceneScale& scale) {
   std::size_t at = 1;
   const auto show = [&](const std::string& unit, int count) {
     const double size = scale.of(unit);
     for (int k = 0; k < count; ++k, ++at) values[at] = shown(values[at], size);
   };
-  for (const auto& body : tree.bodies()) {
+  for (const auto& body : model.tree().bodies()) {
     for (const JointQuantity& quantity : joint_quantities(body.joint.kind)) {
       show(quantity.unit, quantity.count());
     }
   }
+  at += static_cast<std::size_t>(model.memory());
   while (at < values.size()) {
     show("N", 3);
     show("N m", 4);

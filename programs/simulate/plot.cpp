@@ -80,6 +80,7 @@ Panels panels(const Result& result, const std::vector<std::vector<double>>& rows
     take_all(all.coordinates, type.coordinates);
     take_all(all.rates, type.rates);
   }
+  at += static_cast<std::size_t>(result.model.memory());
   if (!result.reactions) return all;
   for (const auto& body : result.scene.bodies) {
     take(all.reactions, "force on " + body.name + ", body axes", "N", xyz);
@@ -368,7 +369,7 @@ void draw(const Result& result, const std::filesystem::path& folder) {
   warn_of_coarse_curves(result, samples, times);
   const kreisel::SceneScale scale = scale_of(result);
   const auto rows = samples.all([&](double t, const kreisel::JointState& state) {
-    return shown_row(result.model.tree(), row(result.model, t, state, {result.reactions}), scale);
+    return shown_row(result.model, row(result.model, t, state, {result.reactions}), scale);
   });
   const std::string& title = result.scene.title;
   const auto over = [&](const char* name, const char* what, const std::vector<Panel>& panels) {

@@ -181,8 +181,9 @@ void write_view(const Result& result, const std::filesystem::path& place) {
                    {"bodies", bodies(tree)},
                    {"columns", columns(tree, false)},
                    {"rows", samples.all([&](double t, const kreisel::JointState& state) {
-                      return rounded(shown_row(tree, row(result.model, t, state, {}), scale),
-                                     row_digits);
+                      return rounded(
+                          shown_row(result.model, row(result.model, t, state, {}), scale),
+                          row_digits);
                     })}};
   if (!result.scene.sensors.empty()) {
     run["sensors"] = sensors(result.scene);
