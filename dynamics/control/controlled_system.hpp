@@ -314,6 +314,15 @@ class ControlledSystem {
   }
   [[nodiscard]] bool may_be_stiff() const { return true; }
 
+  /// As BodySystem::corners(), with the winches of the controllers.
+  [[nodiscard]] bool has_corners() const { return system_.has_corners(); }
+  [[nodiscard]] double corner_frequency() const { return system_.corner_frequency(); }
+  [[nodiscard]] std::vector<Corner> corners(double t, const Vector& y) const {
+    Workspace w = workspace();
+    act(t, y, w);
+    return detail::corners(tree(), t, &w.bodies.outside, w.joints, w.bodies);
+  }
+
   /// The motion of all bodies and the reactions, for sensors.
   [[nodiscard]] SystemKinematics kinematics(double t, const Vector& y, Workspace& w) const {
     return kinematics_after_samples(t, after_samples(t, y), w);

@@ -8,6 +8,8 @@
 #include <ostream>
 #include <vector>
 
+#include <dynamics/model/corner.hpp>
+
 namespace kreisel {
 
 /// The scene computes its rates: a vector of the state's type, or one in a workspace of the scene.
@@ -98,6 +100,18 @@ concept HasSamples = requires(const S& scene, double t, typename S::Vector& y) {
   scene.sample(t, y);
 };
 
+/// The field has corners where parts of the scene begin or end to act, as ropes do:
+///
+///   has_corners()      : true if there may be any
+///   corners(t, y)      : the functions whose changes of sign are corners
+///   corner_frequency() : rad/s, the fastest oscillation of these functions at given states
+template <class S>
+concept HasCorners = requires(const S& scene, double t, const typename S::Vector& y) {
+  { scene.has_corners() } -> std::convertible_to<bool>;
+  { scene.corners(t, y) } -> std::convertible_to<std::vector<Corner>>;
+  { scene.corner_frequency() } -> std::convertible_to<double>;
+};
+
 /// terms(): the terms of the equations of motion, kept and dropped.
 template <class S>
 concept HasTerms = requires(const S& scene) {
@@ -120,7 +134,7 @@ struct SceneHook {
 
 /// The optional hooks of a scene, each marked if the library recognises it.
 template <Scene S>
-[[nodiscard]] constexpr std::array<SceneHook, 9> check_scene() {
+[[nodiscard]] constexpr std::array<SceneHook, 10> check_scene() {
   return {{
       {"rates(t, y) of dual numbers", HasDualRates<S>, "radau13, linearize()",
        "radau13 takes a Jacobian by differences, linearize() is refused"},
@@ -133,6 +147,7 @@ template <Scene S>
        "rounding of parameters is not part of the error"},
       {"sample_times(begin, end), sample(t, y)", HasSamples<S>, "solve()",
        "the state is continuous"},
+      {"corners(t, y)", HasCorners<S>, "solve()", "steps do not end at corners of the field"},
       {"terms()", HasTerms<S>, "terms(), simulate", "terms(scene) is refused"},
       {"tree()", HasTree<S>, "linearize(), equilibria",
        "names of directions come from the scene's own `names`"},

@@ -165,6 +165,13 @@ bool Signal<Value>::is_constant() const {
 }
 
 template <class Value>
+double Signal<Value>::greatest_frequency() const {
+  double greatest = 0;
+  for (const Term& term : terms_) greatest = std::max(greatest, std::abs(term.frequency));
+  return greatest;
+}
+
+template <class Value>
 Signal<Value> Signal<Value>::scaled(double factor) const {
   Signal result = *this;
   for (Line& line : result.lines_) {

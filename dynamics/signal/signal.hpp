@@ -102,6 +102,9 @@ class KREISEL_API Signal {
   /// True if it is constant.
   [[nodiscard]] bool is_constant() const;
 
+  /// The greatest frequency of its oscillations; 0 if it has none.
+  [[nodiscard]] double greatest_frequency() const;
+
   /// The signal times a factor.
   [[nodiscard]] Signal scaled(double factor) const;
 

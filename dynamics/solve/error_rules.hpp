@@ -83,7 +83,7 @@ inline constexpr double greatest_tightening = 1e-4;
 inline constexpr double least_shortening = 0.9;
 inline constexpr double greatest_shortening = 0.2;
 /// The error of implicit steps falls faster than their accuracy where they begin to resolve a motion
-/// that coarser ones damp: with a power up to this, in rods between springs of gears.
+/// that coarser ones damp. The power was up to this, in rods between springs of gears.
 inline constexpr double power_of_implicit_steps = 1.6;
 /// The accuracy of implicit steps changes by this to confirm an error that is far below the expected.
 inline constexpr double confirms = 1e-2;

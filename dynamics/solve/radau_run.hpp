@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <dynamics/solve/run.hpp>
@@ -44,6 +45,12 @@ class RadauRun final : public SteppedRun {
     take_samples(steps_);
     return steps_.try_first_step(*field_, h, end, output);
   }
+  void prepare_undo() override { notes_ = steps_.notes(); }
+  [[nodiscard]] bool undo_step() override {
+    if (!notes_) return false;
+    steps_.undo_step(*notes_);
+    return true;
+  }
   [[nodiscard]] double allowed() const { return steps_.allowed(); }
   [[nodiscard]] double fastest_times_step() const { return steps_.fastest_times_step(); }
 
@@ -70,6 +77,7 @@ class RadauRun final : public SteppedRun {
  private:
   std::unique_ptr<StiffField> field_;
   RadauIntegrator steps_;
+  std::optional<RadauIntegrator::Notes> notes_ = std::nullopt;  ///< before the last step
   double from_;
 };
 

@@ -36,7 +36,7 @@ double RoundingGrowth::at(double t, double end) {
 double RoundingGrowth::distance_at(double t, double end) {
   while (!calm_->covers(t)) {
     stop_if_requested(stop_);
-    calm_->step_towards(end, t);
+    calm_->step(end, t);
     for (const auto& run : perturbed_) run->follow(*calm_);
   }
   calm_->read(t, calm_state_.data());

@@ -72,12 +72,22 @@ class SteppedRun : public Run {
     while (!covers(t)) {
       stop_if_requested(stop_);
       note_sizes();
-      step_towards(end, t);
+      step(end, t);
     }
     read(t, y);
   }
 
-  /// Takes one step towards `end`; `output` is the next time at which the state is read.
+  /// Takes one step towards `end`, not beyond a corner; `output` is the next time at which the state
+  /// is read.
+  void step(double end, double output) {
+    if (has_corners_) {
+      step_to_corner(end, output);
+    } else {
+      step_towards(end, output);
+    }
+  }
+
+  /// The same, whatever the corners are.
   virtual void step_towards(double end, double output) = 0;
 
   [[nodiscard]] virtual double t() const = 0;
@@ -98,6 +108,11 @@ class SteppedRun : public Run {
     return false;
   }
 
+  /// Prepares for undo_step() after the next step.
+  virtual void prepare_undo() {}
+  /// Undoes the last step. False, with no effect, if the run cannot.
+  [[nodiscard]] virtual bool undo_step() { return false; }
+
   /// As TaylorSteps::is_short_for_little().
   [[nodiscard]] virtual bool is_short_for_little() const { return false; }
 
@@ -112,7 +127,7 @@ class SteppedRun : public Run {
 
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
-  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_, sampled_at_); }
+  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_, sampled_at_, crosses_); }
 
  protected:
   /// Takes the samples at the present time, once, before a step. States of fixed size have none.
@@ -126,6 +141,20 @@ class SteppedRun : public Run {
   }
 
  private:
+  /// A corner within the last step, by the function that changes its sign there; or a time at which
+  /// a function comes so near to 0 that the step is too long to show on which side.
+  struct CornerTime {
+    double t;
+    std::size_t function;
+    bool is_sure;
+  };
+
+  /// Takes a step that ends at the first corner on its way, or crosses the corner at its begin.
+  KREISEL_API void step_to_corner(double end, double output);
+  void end_step_at(const CornerTime& corner, double output);
+  [[nodiscard]] std::optional<CornerTime> first_corner(double from, const Eigen::VectorXd& y) const;
+  [[nodiscard]] std::vector<Corner> corners_here() const;
+
   void note_sizes() {
     const std::span<const double> y = state();
     const Eigen::Map<const Eigen::VectorXd> components(y.data(),
@@ -139,7 +168,9 @@ class SteppedRun : public Run {
 
   const SteppedScene& scene_;
   bool has_samples_;
-  double sampled_at_;  ///< time of the last samples, or the begin
+  bool has_corners_;
+  double crosses_ = 0;  ///< length of the next step, across a corner; 0: no corner
+  double sampled_at_;   ///< time of the last samples, or the begin
   std::vector<int> blocks_;
   std::vector<double> sizes_;
   std::stop_token stop_;
@@ -191,6 +222,11 @@ class SteppedScene {
   /// The state after the samples at t; the same if there are none.
   [[nodiscard]] virtual Eigen::VectorXd sampled(double t, const Eigen::VectorXd& y) const = 0;
 
+  /// The functions whose changes of sign are corners of the field.
+  [[nodiscard]] virtual bool has_corners() const = 0;
+  [[nodiscard]] virtual std::vector<Corner> corners(double t, std::span<const double> y) const = 0;
+  [[nodiscard]] virtual double corner_frequency() const = 0;
+
   /// True if a part of the scene may make it stiff, or if the scene does not declare this.
   [[nodiscard]] virtual bool may_be_stiff() const = 0;
 
@@ -221,6 +257,7 @@ class SteppedScene {
 inline SteppedRun::SteppedRun(const SteppedScene& scene, const SolveOptions& options)
     : scene_(scene),
       has_samples_(scene.has_samples()),
+      has_corners_(scene.has_corners()),
       sampled_at_(options.begin),
       blocks_(scene.blocks()),
       sizes_(blocks_.size(), options.absolute_scale),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -49,6 +50,19 @@ class RunOfSteps final : public SteppedRun {
     }
   }
 
+  void prepare_undo() override {
+    if constexpr (can_undo) notes_ = steps_.notes();
+  }
+  [[nodiscard]] bool undo_step() override {
+    if constexpr (can_undo) {
+      if (!notes_) return false;
+      steps_.undo_step(*notes_);
+      return true;
+    } else {
+      return false;
+    }
+  }
+
   [[nodiscard]] bool is_short_for_little() const override {
     if constexpr (requires { steps_.is_short_for_little(); }) {
       return steps_.is_short_for_little();
@@ -80,8 +94,20 @@ class RunOfSteps final : public SteppedRun {
   }
 
  private:
+  static constexpr bool can_undo = requires(const Steps& steps) { steps.notes(); };
+  template <class S>
+  struct NotesOf {
+    struct type {};
+  };
+  template <class S>
+  requires requires(const S& steps) { steps.notes(); }
+  struct NotesOf<S> {
+    using type = typename S::Notes;
+  };
+
   Steps steps_;
-  double from_ = 0;  ///< start of the last step
+  double from_ = 0;                                                    ///< start of the last step
+  std::optional<typename NotesOf<Steps>::type> notes_ = std::nullopt;  ///< before that step
 };
 
 template <class Steps>

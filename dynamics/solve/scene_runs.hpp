@@ -97,6 +97,27 @@ class SceneRuns final : public SteppedScene {
     }
     return state;
   }
+  [[nodiscard]] bool has_corners() const override {
+    if constexpr (HasCorners<Scene>) {
+      return scene_.has_corners();
+    } else {
+      return false;
+    }
+  }
+  [[nodiscard]] std::vector<Corner> corners(double t, std::span<const double> y) const override {
+    if constexpr (HasCorners<Scene>) {
+      return scene_.corners(t, vector_of<Own>(y));
+    } else {
+      return {};
+    }
+  }
+  [[nodiscard]] double corner_frequency() const override {
+    if constexpr (HasCorners<Scene>) {
+      return scene_.corner_frequency();
+    } else {
+      return 0;
+    }
+  }
   [[nodiscard]] bool may_be_stiff() const override {
     if constexpr (HasStiffness<Scene>) {
       return scene_.may_be_stiff();

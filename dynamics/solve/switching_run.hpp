@@ -42,6 +42,8 @@ class SwitchingRun final : public SteppedRun {
   [[nodiscard]] double length() const override { return run_->length(); }
   [[nodiscard]] bool covers(double t) const override { return run_->covers(t); }
   void read(double t, double* y) override { run_->read(t, y); }
+  void prepare_undo() override { run_->prepare_undo(); }
+  [[nodiscard]] bool undo_step() override { return run_->undo_step(); }
   void know_sizes(std::span<const double> sizes) override { run_->know_sizes(sizes); }
 
   [[nodiscard]] IntegrationStatistics effort() const override;

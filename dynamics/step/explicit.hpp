@@ -195,6 +195,25 @@ class ExplicitRungeKutta {
     before_.rate.setZero();
   }
 
+  /// All that a step notes besides time and state.
+  struct Notes {
+    detail::BlockSizes<Vector> sizes;
+    Scalar squares;
+    unsigned steps_taken;
+    int short_steps;
+  };
+  [[nodiscard]] Notes notes() const { return {sizes_, squares_, steps_taken_, short_steps_}; }
+
+  /// Goes back to the begin of the last step, with the notes of that time.
+  void undo_step(const Notes& notes) {
+    time_ = before_.time;
+    state_ = before_.state;
+    sizes_ = notes.sizes;
+    squares_ = notes.squares;
+    steps_taken_ = notes.steps_taken;
+    short_steps_ = notes.short_steps;
+  }
+
   /// Error of the state due to rounding of its rates, relative to size; sampled at intervals.
   [[nodiscard]] Scalar rounding_level() const { return Scalar(0.5) * sizes_.wander(squares_); }
 

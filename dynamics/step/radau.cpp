@@ -379,6 +379,14 @@ void RadauIntegrator::jump_to(const Eigen::VectorXd& y) {
   sizes_.note(y);
 }
 
+void RadauIntegrator::undo_step(const Notes& notes) {
+  time_ = before_.time;
+  state_ = before_.state;
+  sizes_ = notes.sizes;
+  rounding_level_ = notes.rounding_level;
+  h_before_ = 0;
+}
+
 void RadauIntegrator::back_to(StiffField& field, double time) {
   const Eigen::VectorXd there = at(field, time);
   time_ = {time, 0};

@@ -150,6 +150,14 @@ class KREISEL_API RadauIntegrator {
   [[nodiscard]] bool covers(double time) const;
   [[nodiscard]] Eigen::VectorXd at(StiffField& field, double time);
   void back_to(StiffField& field, double time);
+  /// All that a step notes besides time and state.
+  struct Notes {
+    BlockSizes<Eigen::VectorXd> sizes;
+    Eigen::VectorXd rounding_level;
+  };
+  [[nodiscard]] Notes notes() const { return {sizes_, rounding_level_}; }
+  /// Goes back to the begin of the last step, with the notes of that time.
+  void undo_step(const Notes& notes);
   [[nodiscard]] double rounding_level() const;
 
   template <class Checkpoint>

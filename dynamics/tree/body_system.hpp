@@ -305,6 +305,15 @@ class BodySystem {
                        [](const JointForce& f) { return f.stiffness != 0 || f.damping != 0; });
   }
 
+  /// The stretches of ropes, at whose zeros the forces have corners.
+  [[nodiscard]] bool has_corners() const { return detail::has_ropes(tree_); }
+  [[nodiscard]] double corner_frequency() const { return detail::frequency_of_ropes(tree_); }
+  [[nodiscard]] std::vector<Corner> corners(double t, const Vector& y) const {
+    BodyWorkspace w = workspace();
+    detail::require(tree_, y, 0, w);
+    return detail::corners(tree_, t, nullptr, y, w);
+  }
+
   /// Inverse dynamics: the joint forces, in addition to those of the description, that cause the
   /// accelerations dv.
   void joint_forces(double t, const Vector& y, const Vector& dv, Vector& result,

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include <dynamics/tree/elements.hpp>
 
 namespace kreisel::detail {
@@ -70,6 +74,43 @@ void element_forces(const BodyTree& tree, double t, const double* q, const doubl
     const auto m = motion_between(rope.ends, tree.element_places()[index].slot, t, w);
     result[index] += winch_force(rope, m, paid_out);
   }
+}
+
+bool has_ropes(const BodyTree& tree) {
+  return std::any_of(tree.elements().begin(), tree.elements().end(), [](const Element& element) {
+    return std::holds_alternative<RopeElement>(element);
+  });
+}
+
+double frequency_of_ropes(const BodyTree& tree) {
+  double greatest = 0;
+  for (const Element& element : tree.elements()) {
+    const auto* const rope = std::get_if<RopeElement>(&element);
+    if (rope != nullptr) greatest = std::max(greatest, rope->length.greatest_frequency());
+  }
+  return greatest;
+}
+
+std::vector<Corner> rope_stretches(const BodyTree& tree, double t,
+                                   const OutsideForces<double>* outside, const MotionSpace<>& w) {
+  std::vector<Corner> result;
+  const std::vector<std::pair<int, double>> none;
+  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
+    const auto* const rope = std::get_if<RopeElement>(&tree.elements()[k]);
+    if (rope == nullptr) continue;
+    const auto m = motion_between(rope->ends, tree.element_places()[k].slot, t, w);
+    const double distance = m.reach.norm();
+    const double parting = distance > 0 ? m.reach.dot(m.velocity) / distance : 0;
+    double length = rope->length(t);
+    for (const auto& [at, paid_out] : outside == nullptr ? none : outside->winches) {
+      if (static_cast<std::size_t>(at) == k) length += paid_out;
+    }
+    const double paying_out = rope->length.derivative(t, 1);
+    constexpr double digits = 1e-14;
+    result.push_back({distance - length, parting - paying_out, -paying_out,
+                      digits * (distance + std::abs(length))});
+  }
+  return result;
 }
 
 }  // namespace kreisel::detail

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include <dynamics/model/corner.hpp>
 #include <dynamics/tree/loads.hpp>
 
 /// The elements of a tree: forces between bodies and between joints.
@@ -138,6 +139,17 @@ void take_off_outside(const BodyTree& tree, const OutsideForces<S>& outside, con
 /// The potential energy of all elements. Needs poses and positions in w.
 [[nodiscard]] KREISEL_API double element_energy(const BodyTree& tree, double t, const double* q,
                                                 const MotionSpace<>& w);
+
+[[nodiscard]] KREISEL_API bool has_ropes(const BodyTree& tree);
+
+/// The greatest frequency with which the length of a rope oscillates.
+[[nodiscard]] KREISEL_API double frequency_of_ropes(const BodyTree& tree);
+
+/// The stretches L - l of all ropes, with winches of `outside`, which may be null. A rope begins or
+/// ceases to pull where its stretch changes sign. Needs poses and positions in w.
+[[nodiscard]] std::vector<Corner> rope_stretches(const BodyTree& tree, double t,
+                                                 const OutsideForces<double>* outside,
+                                                 const MotionSpace<>& w);
 
 /// The point of an element's second body about which its torque is reported.
 [[nodiscard]] Vector3<double> second_point(const Element& element);

@@ -345,6 +345,13 @@ BodyBalance balance(const BodyTree& tree, const Surroundings& now, const Eigen::
   return balance(tree, now.t, now.guide, now.gravity, y.data(), v, w);
 }
 
+std::vector<Corner> corners(const BodyTree& tree, double t, const OutsideForces<double>* outside,
+                            const Eigen::VectorXd& y, BodyWorkspace& w) {
+  set_poses(tree, y.data(), w);
+  set_places(tree, rates_of(tree, y), w);
+  return rope_stretches(tree, t, outside, w);
+}
+
 std::vector<std::pair<std::string, double>> conserved(const BodyTree& tree, const Surroundings& now,
                                                       const Eigen::VectorXd& y, BodyWorkspace& w) {
   std::vector<std::pair<std::string, double>> result;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <dynamics/law/relative.hpp>
+#include <dynamics/model/corner.hpp>
 #include <dynamics/model/terms.hpp>
 #include <dynamics/tree/balance.hpp>
 #include <dynamics/tree/loads.hpp>
@@ -105,6 +106,11 @@ KREISEL_API [[nodiscard]] Terms terms(const BodyTree& tree, bool guide_rests,
 
 KREISEL_API [[nodiscard]] BodyBalance balance(const BodyTree& tree, const Surroundings& now,
                                               const Eigen::VectorXd& y, BodyWorkspace& w);
+
+/// Where ropes become taut or slack: detail::rope_stretches.
+KREISEL_API [[nodiscard]] std::vector<Corner> corners(const BodyTree& tree, double t,
+                                                      const OutsideForces<double>* outside,
+                                                      const Eigen::VectorXd& y, BodyWorkspace& w);
 
 KREISEL_API [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(
     const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y, BodyWorkspace& w);

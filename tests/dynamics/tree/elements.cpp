@@ -241,6 +241,53 @@ BOOST_AUTO_TEST_CASE(a_rope_catches_and_throws) {
   BOOST_TEST(!has_potential(RopeElement{.length = Signal<double>(1, -0.1, {})}));
 }
 
+// A winch tightens a rope for a moment, by 0.1 to 0.5 mm, and pulls a sled that rests. Without a
+// look at corners steps of seconds pass over it.
+BOOST_AUTO_TEST_CASE(a_winch_pulls_a_sled_at_rest) {
+  const double m = 2, k = 500, w = 0.7, l = 1.1;
+  for (const double shortened : {0.1005, 0.1001}) {
+    const RopeElement rope{.name = "r",
+                           .ends = {{{"guide"}, {"a"}}},
+                           .stiffness = k,
+                           .length = Signal<double>(l, 0, {{-shortened, w, 0}})};
+    const Resting system(RestingFrame<>{}, {slider("a", m)}, {}, {rope});
+    Resting::State start = system.rest();
+    start.coordinates[0] = 1;
+    // x'' = -W^2 (x - length) from the time at which the rope becomes taut.
+    const double W = std::sqrt(k / m);
+    const double taut = std::asin((l - 1) / shortened) / w;
+    const double forced = shortened * W * W / (W * W - w * w);
+    const double a = 1 - l + forced * std::sin(w * taut);
+    const double b = forced * w * std::cos(w * taut) / W;
+    const auto x = [&](double t) {
+      const double angle = W * (t - taut);
+      return l - forced * std::sin(w * t) + a * std::cos(angle) + b * std::sin(angle);
+    };
+    const auto stretch = [&](double t) { return x(t) - l + shortened * std::sin(w * t); };
+    double held = taut + 0.01;
+    double slack = taut + 0.2;
+    while (slack - held > 1e-15 * slack) {
+      const double middle = (held + slack) / 2;
+      if (middle <= held || middle >= slack) break;
+      (stretch(middle) > 0 ? held : slack) = middle;
+    }
+    const double thrown = -forced * w * std::cos(w * slack) +
+                          W * (b * std::cos(W * (slack - taut)) - a * std::sin(W * (slack - taut)));
+    for (const double end : {6.0, 100.0}) {
+      const double right = x(slack) + thrown * (end - slack);
+      for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
+        const auto run =
+            solve(system, start, {.output_times = {end}, .tolerance = 1e-8, .method = method});
+        BOOST_TEST_CONTEXT(shortened << ", " << end << ", " << name(method)) {
+          BOOST_TEST(run.report.tolerance_kept);
+          BOOST_TEST(std::abs(run.states[0].coordinates[0] - right) <=
+                     1.1 * run.report.error_estimate + 1e-12);
+        }
+      }
+    }
+  }
+}
+
 // A damper alone never makes a rope push.
 BOOST_AUTO_TEST_CASE(a_rope_never_pushes) {
   const RopeElement rope{.name = "r", .stiffness = 10, .length = 1, .damping = 3};
