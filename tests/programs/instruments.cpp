@@ -9,6 +9,7 @@
 #include <fstream>
 #include <programs/instruments_bodies.hpp>
 #include <programs/instruments_gyros.hpp>
+#include <programs/instruments_loops.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -45,6 +46,14 @@ const std::vector<Instrument>& instruments() {
                                            course_error(),
                                            platform_stiffness(),
                                            platform_drift(),
+                                           servo_stiffness(),
+                                           servo_compliance(),
+                                           servo_decoupling(),
+                                           servo_bandwidth(),
+                                           servo_drift(),
+                                           damping_error(),
+                                           damped_oscillation(),
+                                           damping_ratio(),
                                            swing_in_orbit(),
                                            control_moment_gyros(),
                                            nutation(),

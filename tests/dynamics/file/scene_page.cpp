@@ -544,7 +544,7 @@ BOOST_AUTO_TEST_CASE(defaults_agree_with_the_page) {
   for (const auto& entry : std::filesystem::directory_iterator(KREISEL_SCENES)) {
     scenes += entry.path().extension() == ".toml" ? 1 : 0;
   }
-  BOOST_TEST(scenes == 45);
+  BOOST_TEST(scenes == 48);
 }
 
 // A scene that is only a pendulum or a top uses its closed form with method auto.
