@@ -62,7 +62,7 @@ std::vector<double> row(const SceneSolver& model, double t, const JointState& st
 void append_joint(const BodyTree& tree, int body, const JointState& state,
                   std::vector<double>& values);
 
-/// The row as pictures show it, with reactions or without: numbers that are rounding relative to the
+/// The row as pictures show it, with reactions or without. Numbers that are rounding relative to the
 /// scale are 0. The memory of controllers has no scale.
 std::vector<double> shown_row(const SceneSolver& model, std::vector<double> values,
                               const SceneScale& scale);

@@ -141,8 +141,8 @@ class SteppedRun : public Run {
   }
 
  private:
-  /// A corner within the last step, by the function that changes its sign there; or a time at which
-  /// a function comes so near to 0 that the step is too long to show on which side.
+  /// A corner within the last step, by the function that changes its sign there. An unsure one is a
+  /// time at which the function comes too near to 0 for the length of the step.
   struct CornerTime {
     double t;
     std::size_t function;
