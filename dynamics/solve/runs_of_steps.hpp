@@ -97,17 +97,17 @@ class RunOfSteps final : public SteppedRun {
   static constexpr bool can_undo = requires(const Steps& steps) { steps.notes(); };
   template <class S>
   struct NotesOf {
-    struct type {};
+    struct Type {};
   };
   template <class S>
   requires requires(const S& steps) { steps.notes(); }
   struct NotesOf<S> {
-    using type = typename S::Notes;
+    using Type = typename S::Notes;
   };
 
   Steps steps_;
   double from_ = 0;                                                    ///< start of the last step
-  std::optional<typename NotesOf<Steps>::type> notes_ = std::nullopt;  ///< before that step
+  std::optional<typename NotesOf<Steps>::Type> notes_ = std::nullopt;  ///< before that step
 };
 
 template <class Steps>

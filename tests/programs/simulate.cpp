@@ -976,6 +976,15 @@ BOOST_AUTO_TEST_CASE(writes_pictures) {
   }
 }
 
+// The memory of a controller is part of the rows, and no part of the pictures.
+BOOST_AUTO_TEST_CASE(draws_scenes_with_controllers) {
+  const Scratch folder;
+  const Outcome outcome = run(scene("speed_regulator") + " --t-end 0.05 --reactions --plot " +
+                              (folder.path() / "out").string());
+  BOOST_TEST(outcome.status == 0, outcome.err);
+  BOOST_TEST(folder.read("out/reactions.svg").find("<svg") != std::string::npos);
+}
+
 // A page without further requests, with the rows of the CSV file in it, to nine digits.
 BOOST_AUTO_TEST_CASE(shows_the_run_on_a_page) {
   const Scratch folder;
