@@ -155,7 +155,7 @@ template <Scene S>
 }
 
 /// One line a hook: "yes" or "no ", its name, what uses it or what happens without.
-inline std::ostream& operator<<(std::ostream& out, const std::array<SceneHook, 9>& hooks) {
+inline std::ostream& operator<<(std::ostream& out, const std::array<SceneHook, 10>& hooks) {
   for (const SceneHook& hook : hooks) {
     out << (hook.recognised ? "yes  " : "no   ") << hook.name << ": "
         << (hook.recognised ? hook.used_by : hook.without) << '\n';

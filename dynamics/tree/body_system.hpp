@@ -305,9 +305,9 @@ class BodySystem {
                        [](const JointForce& f) { return f.stiffness != 0 || f.damping != 0; });
   }
 
-  /// The stretches of ropes, at whose zeros the forces have corners.
-  [[nodiscard]] bool has_corners() const { return detail::has_ropes(tree_); }
-  [[nodiscard]] double corner_frequency() const { return detail::frequency_of_ropes(tree_); }
+  /// Where ropes become taut or slack, and at the points of a spring's table, the forces have corners.
+  [[nodiscard]] bool has_corners() const { return detail::has_corners(tree_); }
+  [[nodiscard]] double corner_frequency() const { return detail::corner_frequency(tree_); }
   [[nodiscard]] std::vector<Corner> corners(double t, const Vector& y) const {
     BodyWorkspace w = workspace();
     detail::require(tree_, y, 0, w);

@@ -76,13 +76,15 @@ void element_forces(const BodyTree& tree, double t, const double* q, const doubl
   }
 }
 
-bool has_ropes(const BodyTree& tree) {
+bool has_corners(const BodyTree& tree) {
   return std::any_of(tree.elements().begin(), tree.elements().end(), [](const Element& element) {
-    return std::holds_alternative<RopeElement>(element);
+    const auto* const spring = std::get_if<SpringElement>(&element);
+    return std::holds_alternative<RopeElement>(element) ||
+           (spring != nullptr && spring->table.size() > 2);
   });
 }
 
-double frequency_of_ropes(const BodyTree& tree) {
+double corner_frequency(const BodyTree& tree) {
   double greatest = 0;
   for (const Element& element : tree.elements()) {
     const auto* const rope = std::get_if<RopeElement>(&element);
@@ -91,24 +93,31 @@ double frequency_of_ropes(const BodyTree& tree) {
   return greatest;
 }
 
-std::vector<Corner> rope_stretches(const BodyTree& tree, double t,
-                                   const OutsideForces<double>* outside, const MotionSpace<>& w) {
+std::vector<Corner> element_corners(const BodyTree& tree, double t,
+                                    const OutsideForces<double>* outside, const MotionSpace<>& w) {
   std::vector<Corner> result;
   const std::vector<std::pair<int, double>> none;
   for (std::size_t k = 0; k < tree.elements().size(); ++k) {
-    const auto* const rope = std::get_if<RopeElement>(&tree.elements()[k]);
-    if (rope == nullptr) continue;
-    const auto m = motion_between(rope->ends, tree.element_places()[k].slot, t, w);
-    const double distance = m.reach.norm();
-    const double parting = distance > 0 ? m.reach.dot(m.velocity) / distance : 0;
-    double length = rope->length(t);
-    for (const auto& [at, paid_out] : outside == nullptr ? none : outside->winches) {
-      if (static_cast<std::size_t>(at) == k) length += paid_out;
+    const std::array<std::size_t, 2>& slot = tree.element_places()[k].slot;
+    const auto add = [&](const auto& kind, double length, double length_rate) {
+      const auto m = motion_between(kind.ends, slot, t, w);
+      const double squared = m.reach.squaredNorm();
+      const double in_time = -2 * length * length_rate;
+      constexpr double digits = 1e-14;
+      result.push_back({squared - length * length, 2 * m.reach.dot(m.velocity) + in_time, in_time,
+                        digits * (squared + length * length)});
+    };
+    if (const auto* const rope = std::get_if<RopeElement>(&tree.elements()[k])) {
+      double length = rope->length(t);
+      for (const auto& [at, paid_out] : outside == nullptr ? none : outside->winches) {
+        if (static_cast<std::size_t>(at) == k) length += paid_out;
+      }
+      add(*rope, length, rope->length.derivative(t, 1));
+    } else if (const auto* const spring = std::get_if<SpringElement>(&tree.elements()[k])) {
+      for (std::size_t i = 1; i + 1 < spring->table.size(); ++i) {
+        add(*spring, spring->table[i].length, 0);
+      }
     }
-    const double paying_out = rope->length.derivative(t, 1);
-    constexpr double digits = 1e-14;
-    result.push_back({distance - length, parting - paying_out, -paying_out,
-                      digits * (distance + std::abs(length))});
   }
   return result;
 }

@@ -140,16 +140,19 @@ void take_off_outside(const BodyTree& tree, const OutsideForces<S>& outside, con
 [[nodiscard]] KREISEL_API double element_energy(const BodyTree& tree, double t, const double* q,
                                                 const MotionSpace<>& w);
 
-[[nodiscard]] KREISEL_API bool has_ropes(const BodyTree& tree);
+/// True if there are ropes, or springs with tables that have corners.
+[[nodiscard]] KREISEL_API bool has_corners(const BodyTree& tree);
 
 /// The greatest frequency with which the length of a rope oscillates.
-[[nodiscard]] KREISEL_API double frequency_of_ropes(const BodyTree& tree);
+[[nodiscard]] KREISEL_API double corner_frequency(const BodyTree& tree);
 
-/// The stretches L - l of all ropes, with winches of `outside`, which may be null. A rope begins or
-/// ceases to pull where its stretch changes sign. Needs poses and positions in w.
-[[nodiscard]] std::vector<Corner> rope_stretches(const BodyTree& tree, double t,
-                                                 const OutsideForces<double>* outside,
-                                                 const MotionSpace<>& w);
+/// L^2 - l^2 of all ropes, and for all points of the tables of springs. L is the distance of the ends,
+/// and l the length at which the force has a corner, with winches of `outside`, which may be null.
+/// Squares are nearly polynomials of time, also where the ends pass each other. Needs poses and
+/// positions in w.
+[[nodiscard]] std::vector<Corner> element_corners(const BodyTree& tree, double t,
+                                                  const OutsideForces<double>* outside,
+                                                  const MotionSpace<>& w);
 
 /// The point of an element's second body about which its torque is reported.
 [[nodiscard]] Vector3<double> second_point(const Element& element);

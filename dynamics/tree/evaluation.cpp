@@ -349,7 +349,7 @@ std::vector<Corner> corners(const BodyTree& tree, double t, const OutsideForces<
                             const Eigen::VectorXd& y, BodyWorkspace& w) {
   set_poses(tree, y.data(), w);
   set_places(tree, rates_of(tree, y), w);
-  return rope_stretches(tree, t, outside, w);
+  return element_corners(tree, t, outside, w);
 }
 
 std::vector<std::pair<std::string, double>> conserved(const BodyTree& tree, const Surroundings& now,

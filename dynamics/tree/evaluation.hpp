@@ -107,7 +107,7 @@ KREISEL_API [[nodiscard]] Terms terms(const BodyTree& tree, bool guide_rests,
 KREISEL_API [[nodiscard]] BodyBalance balance(const BodyTree& tree, const Surroundings& now,
                                               const Eigen::VectorXd& y, BodyWorkspace& w);
 
-/// Where ropes become taut or slack: detail::rope_stretches.
+/// As element_corners().
 KREISEL_API [[nodiscard]] std::vector<Corner> corners(const BodyTree& tree, double t,
                                                       const OutsideForces<double>* outside,
                                                       const Eigen::VectorXd& y, BodyWorkspace& w);

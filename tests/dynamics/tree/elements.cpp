@@ -288,6 +288,32 @@ BOOST_AUTO_TEST_CASE(a_winch_pulls_a_sled_at_rest) {
   }
 }
 
+// A sled flies for 4.8 s to a stop of a tenth of a metre, and comes back. Steps that see no force
+// before the stop would end far behind it.
+BOOST_AUTO_TEST_CASE(a_stop_throws_a_sled_back) {
+  const double m = 2, k = 1000, length = 0.2, v = 1, from = 5;
+  const SpringElement stop{.name = "s",
+                           .ends = {{{"guide"}, {"a"}}},
+                           .table = {{length - 0.1, -0.1 * k}, {length, 0}, {1, 0}}};
+  const Resting system(RestingFrame<>{}, {slider("a", m)}, {}, {stop});
+  Resting::State start = system.rest();
+  start.coordinates[0] = from;
+  start.rates[0] = -v;
+  const double leaves = (from - length) / v + std::numbers::pi / std::sqrt(k / m);
+  for (const double end : {10.0, 40.0, 1000.0}) {
+    for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
+      const auto run =
+          solve(system, start, {.output_times = {end}, .tolerance = 1e-9, .method = method});
+      BOOST_TEST_CONTEXT(end << ", " << name(method)) {
+        BOOST_TEST(run.report.tolerance_kept);
+        const double right = length + v * (end - leaves);
+        BOOST_TEST(std::abs(run.states[0].coordinates[0] - right) <=
+                   1.1 * right * run.report.error_estimate + 1e-12);
+      }
+    }
+  }
+}
+
 // A damper alone never makes a rope push.
 BOOST_AUTO_TEST_CASE(a_rope_never_pushes) {
   const RopeElement rope{.name = "r", .stiffness = 10, .length = 1, .damping = 3};
