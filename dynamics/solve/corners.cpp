@@ -174,7 +174,7 @@ void SteppedRun::step_to_corner(double end, double output) {
   const Eigen::VectorXd y = vector_of<Eigen::VectorXd>(state());
   prepare_undo();
   step_towards(end, output);
-  constexpr int most = 8;
+  constexpr int most = 50;
   for (int i = 0; i < most && crosses_ == 0 && t() != from; ++i) {
     const std::optional<CornerTime> corner = first_corner(from, y);
     if (!corner) return;

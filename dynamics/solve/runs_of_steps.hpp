@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <dynamics/solve/run.hpp>
@@ -24,6 +25,16 @@ namespace kreisel::detail {
 template <class Vector>
 void write(double* y, const Vector& from) {
   std::copy_n(from.data(), from.size(), y);
+}
+
+/// The notes of steps that can be undone; of others nothing.
+template <class Steps>
+[[nodiscard]] auto notes_of(const Steps& steps) {
+  if constexpr (requires { steps.notes(); }) {
+    return steps.notes();
+  } else {
+    return std::monostate();
+  }
 }
 
 /// A run by ExplicitRungeKutta or TaylorSteps.
@@ -95,19 +106,11 @@ class RunOfSteps final : public SteppedRun {
 
  private:
   static constexpr bool can_undo = requires(const Steps& steps) { steps.notes(); };
-  template <class S>
-  struct NotesOf {
-    struct Type {};
-  };
-  template <class S>
-  requires requires(const S& steps) { steps.notes(); }
-  struct NotesOf<S> {
-    using Type = typename S::Notes;
-  };
+  using Notes = decltype(notes_of(std::declval<const Steps&>()));
 
   Steps steps_;
-  double from_ = 0;                                                    ///< start of the last step
-  std::optional<typename NotesOf<Steps>::Type> notes_ = std::nullopt;  ///< before that step
+  double from_ = 0;                            ///< start of the last step
+  std::optional<Notes> notes_ = std::nullopt;  ///< before that step
 };
 
 template <class Steps>

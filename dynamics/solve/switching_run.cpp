@@ -161,33 +161,36 @@ void SwitchingRun::choose_method(double end, double output) {
     next_look_ *= looks_ && try_radau(end, output) ? 1.25 : 2;
     return;
   }
-  // Explicit steps of this length are stable.
+  // Explicit steps of this length are stable, and cost less.
   constexpr double stable_series = 6;  // of order 20
   const double stable = explicit_ == Method::taylor ? stable_series : 0.8 * Verner98::stable;
   const auto& radau = static_cast<const RadauRun&>(*run_);
   needless_ = radau.fastest_times_step() < stable ? needless_ + 1 : 0;
-  if (needless_ >= next_look_ && !try_explicit(end, output)) next_look_ *= 2;
+  if (needless_ < next_look_) return;
+  if (!try_run(explicit_, run_by(explicit_, present()), run_->length(), end, output)) {
+    next_look_ *= 2;
+  }
 }
 
-/// Changes from radau13 to explicit steps if one of the same length is accepted: it costs less.
-bool SwitchingRun::try_explicit(double end, double output) {
-  auto trial = run_by(explicit_, present());
+/// Changes to a method if its run, which begins here, accepts a first step of this length.
+bool SwitchingRun::try_run(Method method, std::unique_ptr<SteppedRun> trial, double length,
+                           double end, double output) {
   trial->know_sizes(sizes());
   const double from = run_->t();
-  const auto is_accepted = [&] {
+  const auto accepts = [&] {
     try {
-      return trial->try_first_step(run_->length(), end, output);
+      return trial->try_first_step(length, end, output);
     } catch (const SeriesFailed&) {
       return false;
     }
   };
-  const bool pays = is_accepted();
-  if (pays) {
-    adopt(explicit_, std::move(trial), from);
+  const bool accepted = accepts();
+  if (accepted) {
+    adopt(method, std::move(trial), from);
   } else {
     finished_ = sum(finished_, trial->effort());
   }
-  return pays;
+  return accepted;
 }
 
 /// True after a change back from radau13.
@@ -203,16 +206,7 @@ bool SwitchingRun::try_verner98(double end, double output) {
   const Eigen::VectorXd y = present();
   const double speed = std::abs(dominant_eigenvalue(scene_, other_, run_->t(), y));
   if (speed * 3 * run_->length() > Verner98::stable) return false;
-  auto trial = run_by(Method::verner98, y);
-  trial->know_sizes(sizes());
-  const double from = run_->t();
-  const bool pays = trial->try_first_step(3 * run_->length(), end, output);
-  if (pays) {
-    adopt(Method::verner98, std::move(trial), from);
-  } else {
-    finished_ = sum(finished_, trial->effort());
-  }
-  return pays;
+  return try_run(Method::verner98, run_by(Method::verner98, y), 3 * run_->length(), end, output);
 }
 
 /// Changes to radau13 if that pays; else true if it may pay later.
@@ -237,12 +231,8 @@ bool SwitchingRun::try_radau(double end, double output) {
   const bool dies = remains * trial->allowed() < accuracy_.relative;
   const bool well_damped = fastest.real() < -0.2 * speed;
   if (angle < 1.5 && !well_damped && !dies) return false;
-  trial->know_sizes(sizes());
-  const double from = run_->t();
-  if (trial->try_first_step((dies ? 2 : 10) * run_->length(), end, output)) {
-    adopt(Method::radau13, std::move(trial), from);
-  } else {
-    finished_ = sum(finished_, trial->effort());
+  if (try_run(Method::radau13, std::move(trial), (dies ? 2 : 10) * run_->length(), end, output)) {
+    return true;
   }
   return fastest.real() < 0 && angle >= 1.5;
 }

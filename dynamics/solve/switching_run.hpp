@@ -70,7 +70,8 @@ class SwitchingRun final : public SteppedRun {
   void choose_method(double end, double output);
   [[nodiscard]] bool try_verner98(double end, double output);
   [[nodiscard]] bool try_radau(double end, double output);
-  [[nodiscard]] bool try_explicit(double end, double output);
+  [[nodiscard]] bool try_run(Method method, std::unique_ptr<SteppedRun> trial, double length,
+                             double end, double output);
   [[nodiscard]] bool was_implicit() const;
   void pass_changes(Checkpoint& checkpoint);
 
