@@ -114,13 +114,13 @@ int run(const Request& request) {
     outputs::leave_standard_output_to(*request.csv);
   }
   const EnsembleSummary all = summary(ensemble, members);
-  if (request.plot && signals::caught() == 0) draw(ensemble, members, all, *request.plot);
   if (request.json) {
     print_json(ensemble.request(), all);
   } else {
     print_summary(ensemble.request(), all);
   }
   if (std::fflush(stdout) != 0) throw kreisel::ComputationFailed("standard output: not written");
+  if (request.plot && signals::caught() == 0) draw(ensemble, members, all, *request.plot);
   if (all.failed > 0) {
     fmt::print(stderr, "ensemble: {} of {} members failed; {}\n", all.failed, members.size(),
                all.message);

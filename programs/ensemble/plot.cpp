@@ -95,7 +95,7 @@ void draw(const SceneEnsemble& ensemble, const std::vector<SceneMember>& members
           const EnsembleSummary& all, const std::filesystem::path& folder) {
   std::vector<std::size_t> columns = spread_columns(all, ensemble.keys().size());
   if (columns.empty()) {
-    fmt::print(stderr, "ensemble: nothing to draw: all members end alike\n");
+    fmt::print(stderr, "ensemble: nothing to draw: no two complete members end apart\n");
     return;
   }
   const std::size_t keys = std::min(ensemble.keys().size(), most_keys);

@@ -221,7 +221,7 @@ BOOST_AUTO_TEST_CASE(draws_the_members_over_what_was_drawn) {
 
   outcome = run(wheel + " --vary 'body.wheel.rotor.torque=linear(1,1)'");
   BOOST_TEST(outcome.status == 0, outcome.err);
-  BOOST_TEST(outcome.err == "ensemble: nothing to draw: all members end alike\n");
+  BOOST_TEST(outcome.err == "ensemble: nothing to draw: no two complete members end apart\n");
 
   folder.write("file", "");
   outcome = run(wheel + "/../file/pictures --vary 'body.wheel.rotor.torque=linear(1,3)'");
