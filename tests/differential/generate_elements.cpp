@@ -21,6 +21,7 @@ Element spring(Random& r) {
   for (double& x : result.at[1]) x += sign(r) * rounded(r.between(0.05, 0.1), 3);
   if (r.chance(0.2)) {
     result.table = {{0, -10}, {1, 0}, {2, 30}};
+    if (r.chance(0.5)) result.table = {{0, -100}, {0.3, 0}, {5, 0}, {5.5, 200}};  // two stops
   } else {
     result.stiffness = stiffness(r);
     if (r.chance(0.6)) result.length = plain(r, 0.1, 2);
