@@ -282,7 +282,8 @@ class GaussIRK {
 
   void guess_stages() {
     if (continues_) {
-      stage_ = Stages(stage_.lazyProduct(ahead_));
+      const Stages last = stage_;
+      for (int i = 0; i < stages; ++i) stage_.col(i) = last.lazyProduct(ahead_.col(i));
       return;
     }
     const Vector f = evaluate(t(), y());
