@@ -133,6 +133,7 @@ template <class M>
   detail::take_off_loads(tree, t, guide, v, w);
   detail::take_off_elements(tree, t, v, w);
   detail::set_joint_forces(tree, y.data(), v, w);
+  detail::add_timed_forces(tree, t, w);
   detail::add_couplings(tree, y.data(), v, w.joint_force);
   detail::ask_spin_up(tree, t, w);
   detail::add_rotor_forces(tree, w.still.data(), w.joint_force.data(), w);

@@ -78,6 +78,27 @@ BOOST_AUTO_TEST_CASE(treat_springs_as_forces) {
   BOOST_TEST(off(solved, dv(m.rates)) <= 1e-13);
 }
 
+BOOST_AUTO_TEST_CASE(contain_forces_that_change_with_time) {
+  const auto gimbal = [](const Signal<double>& force) {
+    BodyDescription ring;
+    ring.name = "ring";
+    ring.joint = {.kind = JointKind::revolute, .axis = {0, 1, 0}};
+    ring.inertia = InertiaTensor<Body>::about_centre(1, {0, 0, 0}, Matrix3<double>::Identity());
+    ring.forces = {{.in_time = force}};
+    BodyDescription wheel = ring;
+    wheel.name = "wheel";
+    wheel.parent = "ring";
+    wheel.joint.axis = {1, 0, 0};
+    wheel.forces = {};
+    wheel.rotor = Rotor{.mode = RotorMode::regulated};
+    return resting({ring, wheel});
+  };
+  const auto system = gimbal(Signal<double>(0.1, 2, {}));
+  BodyWorkspace w = system.workspace();
+  const RotorMatrices m = rotor_matrices(system, 3, system.to_vector(system.rest()), w);
+  BOOST_TEST(m.Q[0] == 6.1);
+}
+
 BOOST_AUTO_TEST_CASE(agree_with_the_reference) {
   for (const char* name :
        {"platform_regulated", "platform_free", "pivsat_regulated", "cmgsat_regulated"}) {
