@@ -22,14 +22,21 @@ double crossing(const F& function, double a, double b) {
   return a + (b - a) / 2;
 }
 
-/// The frequencies between which a function changes its sign.
+/// The frequencies in a range at which a function changes its sign. It is evaluated at the given
+/// frequencies and at a hundred of each decade.
 template <class F>
 std::vector<double> crossings(const F& function, const std::vector<double>& frequencies) {
   std::vector<double> result;
   for (std::size_t i = 1; i < frequencies.size(); ++i) {
-    const double a = frequencies[i - 1];
-    const double b = frequencies[i];
-    if ((function(a) < 0) != (function(b) < 0)) result.push_back(crossing(function, a, b));
+    const double ratio = frequencies[i] / frequencies[i - 1];
+    const bool is_range = ratio > 1 && std::isfinite(ratio);
+    const double parts = is_range ? std::ceil(100 * std::log10(ratio)) : 1;
+    double a = frequencies[i - 1];
+    for (double k = 1; k <= parts; ++k) {
+      const double b = k < parts ? frequencies[i - 1] * std::pow(ratio, k / parts) : frequencies[i];
+      if ((function(a) < 0) != (function(b) < 0)) result.push_back(crossing(function, a, b));
+      a = b;
+    }
   }
   return result;
 }

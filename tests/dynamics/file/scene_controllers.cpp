@@ -292,6 +292,12 @@ BOOST_AUTO_TEST_CASE(margins_fulfil_their_equations) {
   BOOST_TEST(std::abs(9.0 / (w * w * (1 + 0.04 * w * w) * (1 + 0.0025 * w * w)) - 1) < 1e-12);
   BOOST_TEST(std::abs(margins.phase->margin -
                       (M_PI / 2 - std::atan(0.2 * w) - std::atan(0.05 * w))) < 1e-12);
+  // A coarse grid hides no crossing.
+  const LoopMargins coarse = loop_margins(loop, {0.1, 3, 100});
+  BOOST_TEST_REQUIRE((coarse.phase.has_value() && coarse.gain.has_value()));
+  BOOST_TEST(std::abs(coarse.gain->frequency - 10) < 1e-11);
+  const auto twice = [](double w) { return Complex(-1 / w, (w - 20) * (w - 30)); };
+  BOOST_TEST(loop_margins(twice, {10, 100}).gain.has_value());
   const auto lag = [](double x) { return 1.0 / Complex(1, x / 7); };
   BOOST_TEST(std::abs(*bandwidth(lag, grid) - 7 * std::sqrt(1 + 0.02 / 49)) < 1e-3);
 }
