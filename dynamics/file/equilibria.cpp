@@ -25,14 +25,24 @@ namespace steady_motion {
 
 namespace {
 
-/// Indices of the angles in which the system has the period 2 pi.
-std::vector<int> periodic_angles(const StudySystem& system) {
+/// True if a whole turn of the angle y[q] changes no rate. Springs, elements and controllers may
+/// count turns.
+bool is_periodic(const StudySystem& system, const VectorXd& y, int q) {
+  const VectorXd here = system.rates(system.begin(), y);
+  const auto change = [&](double turn) {
+    VectorXd turned = y;
+    turned[q] += turn;
+    return (system.rates(system.begin(), turned) - here).cwiseAbs().maxCoeff();
+  };
+  return change(2 * pi) <= 1e-9 + 1e-6 * change(0.1);
+}
+
+/// Indices of the angles in which the system has the period 2 pi at a state.
+std::vector<int> periodic_angles(const StudySystem& system, const VectorXd& y) {
   std::vector<int> places;
   for (const Link& link : system.tree().links()) {
     const bool turns = link.kind == LinkKind::revolute && link.moved_by_forces();
-    if (turns && system.tree().forces()[static_cast<std::size_t>(link.v)].stiffness == 0) {
-      places.push_back(link.q);
-    }
+    if (turns && is_periodic(system, y, link.q)) places.push_back(link.q);
   }
   return places;
 }
@@ -252,10 +262,25 @@ class Search {
     return free;
   }
 
-  /// The accelerations of the coordinates that are searched.
-  [[nodiscard]] VectorXd accelerations(const VectorXd& y) const {
+  /// The directions in which a state of rest may lie beside another: coordinates, as far as they are
+  /// searched and independent, and the memory of controllers.
+  [[nodiscard]] std::vector<int> directions_of_rest(const FreeDirections& directions) const {
+    std::vector<int> result = searched(directions);
+    for (int i = 2 * directions_.rates; i < tangent_.dimension(); ++i) result.push_back(i);
+    return result;
+  }
+
+  /// The numbers that vanish at rest: accelerations and the rates of the memory, in the order of
+  /// these directions.
+  [[nodiscard]] std::vector<int> of_rest(std::vector<int> directions) const {
+    for (int& i : directions) {
+      if (i < directions_.rates) i += directions_.rates;
+    }
+    return directions;
+  }
+  [[nodiscard]] VectorXd changes(const VectorXd& y) const {
     const VectorXd rate = tangent_.inverse(y) * system_.rates(system_.begin(), y);
-    return rate.segment(directions_.rates, directions_.rates)(searched({}));
+    return rate(of_rest(directions_of_rest({})));
   }
 
   /// True if all states between two equilibria are equilibria.
@@ -263,7 +288,7 @@ class Search {
     const VectorXd way = tangent_.between(from, in_turns_of(system_, to, from));
     return std::all_of(std::begin(shares), std::end(shares), [&](double share) {
       const auto y = detail::moved_or_none(system_, tangent_, from, VectorXd(share * way));
-      return y && accelerations(*y).cwiseAbs().maxCoeff() <= 1e-9 * norm;
+      return y && changes(*y).cwiseAbs().maxCoeff() <= 1e-9 * norm;
     });
   }
 
@@ -282,8 +307,8 @@ class Search {
 
   /// Counts the directions in which the equilibrium is not isolated.
   void note_neutral(const Linearization& there, Equilibrium& equilibrium) const {
-    const std::vector<int> free = searched(there.free);
-    const MatrixXd J = there.A.middleRows(directions_.rates, directions_.rates)(free, free);
+    const std::vector<int> free = directions_of_rest(there.free);
+    const MatrixXd J = there.A(of_rest(free), free);
     if (J.size() == 0) return;
     const auto [values, U, V] = detail::singular_values(J);
     for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -294,7 +319,7 @@ class Search {
       const auto near =
           detail::moved_or_none(system_, tangent_, equilibrium.state, there.free.complete(eta));
       const bool is_family =
-          near && accelerations(*near).cwiseAbs().maxCoeff() <= 1e-8 * (1e-9 + reach * values[0]);
+          near && changes(*near).cwiseAbs().maxCoeff() <= 1e-8 * (1e-9 + reach * values[0]);
       equilibrium.neutral += is_family ? 1 : 0;
       equilibrium.degenerate = equilibrium.degenerate || !is_family;
     }
@@ -318,7 +343,7 @@ Equilibria find_equilibria(const StudySystem& system, const VectorXd& start, dou
 }
 
 VectorXd in_turns_of(const StudySystem& system, VectorXd state, const VectorXd& other) {
-  for (const int q : periodic_angles(system)) {
+  for (const int q : periodic_angles(system, state)) {
     state[q] -= 2 * pi * std::ceil((state[q] - other[q]) / (2 * pi) - 0.5);
   }
   return state;

@@ -440,6 +440,55 @@ BOOST_AUTO_TEST_CASE(one_for_each_family) {
   BOOST_TEST(answer(scene("gimbal_lock")).at("equilibria").size() == 1U);
 }
 
+// m g l sin(q) = -P q: a controller counts the turns of the angle that it reads, as a spring does.
+BOOST_AUTO_TEST_CASE(controllers_count_turns) {
+  const std::string servo = R"(
+[[sensor]]
+name = "pickoff"
+kind = "joint"
+joint = "bob"
+[[controller]]
+name = "servo"
+reads = ["pickoff.angle"]
+drives = ["bob"]
+law = { kind = "pid", proportional = 0.3 }
+)";
+  const auto found = equilibria(answer_to(point_pendulum("") + servo), {"bob"});
+  BOOST_TEST(found.size() >= 3U);
+  for (const auto& [q, stability] : found) {
+    BOOST_TEST(std::abs(9.81 * std::sin(q[0]) + 0.3 * q[0]) <= 1e-12, q[0]);
+  }
+}
+
+// The integral of a sampled law leaves one equilibrium, where the error is 0.
+BOOST_AUTO_TEST_CASE(sampled_controllers_hold_a_single_one) {
+  const std::string arm = R"([[body]]
+name = "arm"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1
+inertia = [0.1, 0.1, 0.2]
+damping = 0.3
+[[sensor]]
+name = "pickoff"
+kind = "joint"
+joint = "arm"
+[[controller]]
+name = "servo"
+reads = ["pickoff.angle"]
+drives = ["arm"]
+law = { kind = "pid", proportional = 3, integral = 0.7, derivative = 0.4, filter = 0.05 }
+period = 0.02
+delay = 0.033
+reference = 0.2
+[solve]
+t_end = 3
+)";
+  const json found = answer_to(arm).at("equilibria");
+  BOOST_TEST_REQUIRE(found.size() == 1U);
+  BOOST_TEST(found.at(0).value("neutral", 0) == 0);
+  check_near("arm", found.at(0).at("joints").at("arm").at("coordinate"), 0.2, 1e-12);
+}
+
 BOOST_AUTO_TEST_CASE(none_under_a_persistent_torque) {
   const std::string wheel = R"([[body]]
 name = "wheel"
