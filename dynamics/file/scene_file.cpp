@@ -287,7 +287,7 @@ class SceneReader {
       }
     }
     const bool number = std::holds_alternative<scene_gravity::AtSite>(guide.gravity);
-    if (number && kind != "none") {
+    if (number) {
       gravity->refuse("kind", "'" + kind +
                                   "' gives gravity a second time; guide.gravity is a "
                                   "number already");

@@ -350,6 +350,7 @@ class GuideReader {
         guide.choice("acceleration", {"specific force", "kinematic"}) == "specific force";
     const auto gravity = guide.vector("gravity", dimension::acceleration);
     start.gravity = gravity.value_or(start.gravity);
+    if (gravity) guide_.gravity = UniformGravity<Inertial>{*gravity};
     if (!felt && guide.has("gravity")) {
       guide.refuse("gravity", "is for acceleration = 'specific force'");
     }
