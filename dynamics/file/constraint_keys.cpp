@@ -140,7 +140,9 @@ class ConstraintReader {
     const Dimension moved = pairs_.coordinate((*joints)[0]);
     constraint::Gear gear;
     gear.ratio = section.required_number("ratio", moved / pairs_.coordinate((*joints)[1]));
-    gear.offset = section.number("offset", moved).value_or(0);
+    const bool turns = moved == dimension::angle;
+    gear.offset =
+        (turns ? section.angle("offset", moved) : section.number("offset", moved)).value_or(0);
     result.kind = gear;
     return result;
   }
@@ -257,7 +259,14 @@ void read_constraints(Section& root, bool assemble, bool sound, SceneFile& scene
     Assembly assembly(scene);
     if (assemble || assembly.refuse_gaps(sections)) assembly.assemble(scene);
   } catch (const Error& error) {
-    root.refuse("constraint", error.what());
+    const std::string text = error.what();
+    for (auto& [name, section] : sections) {
+      const std::string head = "constraint '" + name + "': ";
+      if (!text.starts_with(head)) continue;
+      section.refuse_all(text.substr(head.size()));
+      return;
+    }
+    root.refuse("constraint", text);
   }
 }
 

@@ -136,7 +136,8 @@ class ControllerReader {
         section.refuse("reads", in_quotes(word) +
                                     " has errors of the instrument, which "
                                     "controllers cannot read: write " +
-                                    in_quotes(sensor.name + ".true x"));
+                                    in_quotes(sensor.name + ".true " +
+                                              names[k].substr(sensor.name.size() + 1)));
         return;
       }
       if (is_whole && skips(inputs[k], kind)) continue;

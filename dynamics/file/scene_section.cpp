@@ -536,8 +536,10 @@ void Section::finish() {
   if (ignores_) return;
   for (const auto& [key, value] : *table_) {
     if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+    const std::string similar = did_you_mean(key.str(), known_);
+    const std::string allowed = known_.empty() ? "" : "; allowed: " + listed(known_);
     mistakes_->add(key.source(), path_to(key.str()),
-                   "is no key here" + did_you_mean(key.str(), known_));
+                   "is no key here" + (similar.empty() ? allowed : similar));
   }
 }
 

@@ -187,7 +187,10 @@ class SensorReader {
       seconds.push_back(constraint.second);
     }
     const auto word = section.text(key);
-    if (!word || !sound_) return sensor;
+    if (!word || !sound_) {
+      section.ignore_rest();
+      return sensor;
+    }
     sensor.element = index_of_name(section, key, *word, words, key);
     if (!is_element) sensor.element += static_cast<int>(scene_.elements.size());
     const bool is_known = static_cast<std::size_t>(sensor.element) < seconds.size();
