@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <dynamics/solve/run.hpp>
+#include <dynamics/step/shared.hpp>
 
 namespace kreisel::detail {
 
@@ -92,19 +93,21 @@ std::optional<Change> first_change(const G& g, const Slope& slope, double begin,
 
 }  // namespace
 
-std::vector<Corner> SteppedRun::corners_here() const { return scene_.corners(t(), state()); }
+std::vector<Corner> SteppedRun::corners_after(double from) const {
+  return scene_.corners(on_this_side(t(), from, jumps_), state());
+}
 
 /// Functions of corners are interpolated between both ends of the step, because its stages may lie on
 /// both sides of a corner. Their dependence on time alone is known.
-std::optional<SteppedRun::CornerTime> SteppedRun::first_corner(double from,
+std::optional<SteppedRun::CornerTime> SteppedRun::first_corner(const std::vector<Corner>& first,
+                                                               double from,
                                                                const Eigen::VectorXd& y) const {
   const double h = t() - from;
   const auto at_begin = [&](double time) {
     return scene_.corners(time, {y.data(), static_cast<std::size_t>(y.size())});
   };
-  const std::vector<Corner> first = at_begin(from);
-  const std::vector<Corner> last = corners_here();
-  const std::vector<Corner> later = at_begin(t());
+  const std::vector<Corner> last = corners_after(from);
+  const std::vector<Corner> later = at_begin(on_this_side(t(), from, jumps_));
   constexpr double most_parts = 1e5;
   const double parts =
       std::clamp(std::ceil(std::abs(h) * scene_.corner_frequency()), 1.0, most_parts);
@@ -137,48 +140,59 @@ std::optional<SteppedRun::CornerTime> SteppedRun::first_corner(double from,
   return found;
 }
 
-/// Takes the last step anew, up to the corner, which Newton's method finds by the ends of such steps.
-void SteppedRun::end_step_at(const CornerTime& corner, double output) {
-  const double limit = t();
-  double at = corner.t;
-  constexpr int most = 8;
-  for (int i = 0; i < most; ++i) {
-    if (!undo_step()) return;
-    const double h = at - t();
-    if (h * (limit - t()) <= 0) return;  // a change of method took two steps
-    step_towards(at, output);
-    if (!corner.is_sure || t() != at) return;
-    const Corner now = corners_here()[corner.function];
-    const double off = -now.value / now.rate;
-    // Nearer times cannot be told apart.
-    constexpr double least = 1e-12;
-    const double width =
-        std::max(least * std::abs(h), 8 * std::numeric_limits<double>::epsilon() * std::abs(at));
-    if (std::abs(off) <= width || i + 1 == most) {
-      crosses_ = std::copysign(std::min(std::abs(off), std::abs(h)) + 2 * width, h);
-      return;
-    }
-    const double next = at + off;
-    const bool is_inside = (next - (at - h)) * h > 0 && (limit - next) * h >= 0;
-    at = is_inside ? next : at - h / 2;
+namespace {
+
+/// The time until the first of the corners, if their functions change at their present rates. Values
+/// without a sign are at a corner if it is nearer than `width`.
+double time_to_corner(const std::vector<Corner>& here, double way, double width) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Corner& corner : here) {
+    const double ahead = std::copysign(1, way) * -corner.value / corner.rate;
+    const bool has_sign = std::abs(corner.value) > corner.rounding;
+    if (ahead > 0 && (has_sign || ahead <= width)) nearest = std::min(nearest, ahead);
   }
+  return nearest;
 }
 
+}  // namespace
+
+/// Times nearer to a corner at t cannot be told from it.
+double SteppedRun::width_of_corner(double t) const {
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  return std::max(corner_width_ * uncut_, rounding);
+}
+
+/// A step must not end at a corner: its last stages would lie on both sides. Steps end before it, each
+/// a thousand times nearer, until the last one crosses it. Error control alone would cut a step that
+/// leads across a corner again and again.
 void SteppedRun::step_to_corner(double end, double output) {
-  if (crosses_ != 0) {
-    const double beyond = t() + std::exchange(crosses_, 0);
-    step_towards(std::abs(beyond - t()) < std::abs(end - t()) ? beyond : end, output);
+  const double from = t();
+  const double way = std::copysign(1, end - from);
+  const Eigen::VectorXd y = sampled_state();
+  const std::vector<Corner> first = scene_.corners(on_this_side(from, end, jumps_),
+                                                   {y.data(), static_cast<std::size_t>(y.size())});
+  if (uncut_ == 0) uncut_ = 1e-3 * std::abs(end - from);
+  const double width = width_of_corner(from);
+  const double near = time_to_corner(first, way, width);
+  if (near <= width) {
+    const double stop = next_stop(from, end, jumps_);
+    const double beyond = from + way * (near + 2 * width);
+    cross((stop - beyond) * way > 0 ? beyond : stop, output);
     return;
   }
-  const double from = t();
-  const Eigen::VectorXd y = vector_of<Eigen::VectorXd>(state());
+  constexpr double before = 0.999;
+  const double goal = from + way * before * near;
   prepare_undo();
-  step_towards(end, output);
+  step_towards((end - goal) * way > 0 ? goal : end, output);
+  if (t() != goal) uncut_ = length();
   constexpr int most = 50;
-  for (int i = 0; i < most && crosses_ == 0 && t() != from; ++i) {
-    const std::optional<CornerTime> corner = first_corner(from, y);
-    if (!corner) return;
-    end_step_at(*corner, output);
+  for (int i = 0; i < most && t() != from; ++i) {
+    const std::optional<CornerTime> corner = first_corner(first, from, y);
+    const double limit = t();
+    if (!corner || !undo_step()) return;
+    const double at = from + (corner->is_sure ? before : 1) * (corner->t - from);
+    if (t() != from || (limit - at) * way <= 0) return;  // a change of method took two steps
+    step_towards(at, output);
   }
 }
 

@@ -52,6 +52,12 @@ inline constexpr double digits_per_root_of_steps = 0.02;
 inline constexpr double perturbed_digits = 1000;
 inline constexpr double digits_rounded = 0.5;
 
+/// The length of a step across a corner, as a part of the steps before it: the order of the steps is
+/// lost on it. The runs that show the growth of rounding cross corners in the same steps, although
+/// their corners differ by the perturbation.
+inline constexpr double corner_width = 1e-12;
+inline constexpr double corner_width_perturbed = 1e-8;
+
 /// The greatest error of these runs. Coarse steps cost little and take about the same path.
 inline constexpr double error_of_cheap_runs = 1e-2;
 inline constexpr double coarsest_cheap_accuracy = 1e-3;

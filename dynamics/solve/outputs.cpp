@@ -8,7 +8,7 @@ namespace kreisel::detail {
 void cancel(RunReport& report, const char* who, double last_output) {
   report.status = RunStatus::cancelled;
   std::ostringstream text;
-  text.precision(17);
+  text.precision(15);
   text << "stopped by " << who << "; the last output is that of t = " << last_output << " s";
   report.message = text.str();
 }

@@ -99,7 +99,7 @@ void PairedRuns::compare() {
     report.status = RunStatus::failed;
     // An exception of a load or a guide contains no time.
     std::ostringstream text;
-    text.precision(17);
+    text.precision(15);
     text << error.what() << "; the last output is that of t = " << last_output() << " s";
     report.message = text.str();
   }

@@ -12,6 +12,7 @@ RoundingGrowth::RoundingGrowth(const RunMaker& maker, const Levels& levels, doub
       calm_state_(maker.start()),
       perturbed_state_(maker.start()),
       distance_(maker.scene().blocks(), maker.options().absolute_scale) {
+  calm_->cross_corners_by(rules::corner_width_perturbed);
   double digits = rules::perturbed_digits;
   for (auto& run : perturbed_) {
     run = maker.stepped(levels, {.accuracy = accuracy, .perturbed = digits});

@@ -17,6 +17,7 @@
 
 #include <dynamics/model/closed_form.hpp>
 #include <dynamics/rigid/euler_top.hpp>
+#include <dynamics/solve/error_rules.hpp>
 #include <dynamics/solve/report.hpp>
 #include <dynamics/solve/solve_options.hpp>
 #include <dynamics/step/accuracy.hpp>
@@ -90,6 +91,9 @@ class SteppedRun : public Run {
   /// The same, whatever the corners are.
   virtual void step_towards(double end, double output) = 0;
 
+  /// Takes a very short step to `end` across a corner, whatever its error.
+  virtual void cross(double end, double output) { step_towards(end, output); }
+
   [[nodiscard]] virtual double t() const = 0;
   [[nodiscard]] virtual std::span<const double> state() const = 0;
 
@@ -122,12 +126,15 @@ class SteppedRun : public Run {
   /// Takes over the sizes of blocks before this run began; errors are relative to them.
   virtual void know_sizes(std::span<const double> sizes) = 0;
 
+  /// Sets the length of the steps across corners, as a part of the steps before them.
+  void cross_corners_by(double part) { corner_width_ = part; }
+
   /// The state with the samples at its time taken.
   [[nodiscard]] inline Eigen::VectorXd sampled_state() const;
 
   [[nodiscard]] std::span<const double> sizes() const override { return sizes_; }
 
-  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_, sampled_at_, crosses_); }
+  void pass(Checkpoint& checkpoint) override { checkpoint(sizes_, sampled_at_, uncut_); }
 
  protected:
   /// Takes the samples at the present time, once, before a step. States of fixed size have none.
@@ -149,11 +156,15 @@ class SteppedRun : public Run {
     bool is_sure;
   };
 
-  /// Takes a step that ends at the first corner on its way, or crosses the corner at its begin.
+  [[nodiscard]] double width_of_corner(double t) const;
+
+  /// Takes a step that ends before the first corner on its way, or crosses the corner at its begin.
   KREISEL_API void step_to_corner(double end, double output);
-  void end_step_at(const CornerTime& corner, double output);
-  [[nodiscard]] std::optional<CornerTime> first_corner(double from, const Eigen::VectorXd& y) const;
-  [[nodiscard]] std::vector<Corner> corners_here() const;
+  /// first, y : the corners and the state at the begin of the step
+  [[nodiscard]] std::optional<CornerTime> first_corner(const std::vector<Corner>& first,
+                                                       double from, const Eigen::VectorXd& y) const;
+  /// The corners at the end of a step from `from`, before a jump there.
+  [[nodiscard]] std::vector<Corner> corners_after(double from) const;
 
   void note_sizes() {
     const std::span<const double> y = state();
@@ -169,8 +180,10 @@ class SteppedRun : public Run {
   const SteppedScene& scene_;
   bool has_samples_;
   bool has_corners_;
-  double crosses_ = 0;  ///< length of the next step, across a corner; 0: no corner
-  double sampled_at_;   ///< time of the last samples, or the begin
+  double uncut_ = 0;  ///< length of the last step that no corner cut
+  double corner_width_ = rules::corner_width;
+  double sampled_at_;  ///< time of the last samples, or the begin
+  std::vector<double> jumps_;
   std::vector<int> blocks_;
   std::vector<double> sizes_;
   std::stop_token stop_;
@@ -259,6 +272,7 @@ inline SteppedRun::SteppedRun(const SteppedScene& scene, const SolveOptions& opt
       has_samples_(scene.has_samples()),
       has_corners_(scene.has_corners()),
       sampled_at_(options.begin),
+      jumps_(sorted(options.discontinuities)),
       blocks_(scene.blocks()),
       sizes_(blocks_.size(), options.absolute_scale),
       stop_(options.stop) {}

@@ -50,6 +50,16 @@ class RunOfSteps final : public SteppedRun {
     steps_.step_towards(end);
   }
 
+  void cross(double end, double output) override {
+    if constexpr (requires { steps_.cross_to(end); }) {
+      take_samples(steps_);
+      from_ = steps_.t();
+      steps_.cross_to(end);
+    } else {
+      step_towards(end, output);
+    }
+  }
+
   [[nodiscard]] bool try_first_step(double h, double end, double output) override {
     if constexpr (requires { steps_.try_first_step(h, end); }) {
       take_samples(steps_);

@@ -35,6 +35,7 @@ class SwitchingRun final : public SteppedRun {
                const Eigen::VectorXd& start, const Accuracy& accuracy);
 
   void step_towards(double end, double output) override;
+  void cross(double end, double output) override { run_->cross(end, output); }
   void follow(const SteppedRun& other) override;
 
   [[nodiscard]] double t() const override { return run_->t(); }

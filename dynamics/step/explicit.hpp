@@ -127,6 +127,20 @@ class ExplicitRungeKutta {
     }
   }
 
+  /// A very short step to `end`, across a corner of the field, without an error test.
+  ///
+  /// Throws : ComputationFailed if the field has no rate at a point of that step
+  void cross_to(const Scalar& end) {
+    const Scalar wanted = step_;
+    last_stage_time_ = end;
+    begin_step(end);
+    if (!attempt((end - time_.value) - time_.rest, true)) {
+      detail::stop_integration(t(), "the field ends at a corner");
+    }
+    time_ = {end, Scalar(0)};
+    step_ = wanted;
+  }
+
   /// A first step of length h, or to `end` if that is nearer. Returns false and takes no step if
   /// the step is rejected.
   [[nodiscard]] bool try_first_step(const Scalar& h, const Scalar& end) {

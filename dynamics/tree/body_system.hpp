@@ -311,7 +311,7 @@ class BodySystem {
   [[nodiscard]] std::vector<Corner> corners(double t, const Vector& y) const {
     BodyWorkspace w = workspace();
     detail::require(tree_, y, 0, w);
-    return detail::corners(tree_, t, nullptr, y, w);
+    return detail::corners(tree_, at(t), y, w);
   }
 
   /// Inverse dynamics: the joint forces, in addition to those of the description, that cause the

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <dynamics/tree/elements.hpp>
+#include <dynamics/tree/passes.hpp>
 
 namespace kreisel::detail {
 
@@ -93,26 +94,36 @@ double corner_frequency(const BodyTree& tree) {
   return greatest;
 }
 
+namespace {
+
+constexpr double rounding_of_corners = 1e-14;
+
+/// The length of the k-th element, a rope, that its winch has paid out.
+double paid_out(const OutsideForces<double>* outside, std::size_t k) {
+  double sum = 0;
+  if (outside == nullptr) return sum;
+  for (const auto& [at, length] : outside->winches) {
+    if (static_cast<std::size_t>(at) == k) sum += length;
+  }
+  return sum;
+}
+
+}  // namespace
+
 std::vector<Corner> element_corners(const BodyTree& tree, double t,
                                     const OutsideForces<double>* outside, const MotionSpace<>& w) {
   std::vector<Corner> result;
-  const std::vector<std::pair<int, double>> none;
   for (std::size_t k = 0; k < tree.elements().size(); ++k) {
     const std::array<std::size_t, 2>& slot = tree.element_places()[k].slot;
     const auto add = [&](const auto& kind, double length, double length_rate) {
       const auto m = motion_between(kind.ends, slot, t, w);
       const double squared = m.reach.squaredNorm();
       const double in_time = -2 * length * length_rate;
-      constexpr double digits = 1e-14;
       result.push_back({squared - length * length, 2 * m.reach.dot(m.velocity) + in_time, in_time,
-                        digits * (squared + length * length)});
+                        rounding_of_corners * (squared + length * length)});
     };
     if (const auto* const rope = std::get_if<RopeElement>(&tree.elements()[k])) {
-      double length = rope->length(t);
-      for (const auto& [at, paid_out] : outside == nullptr ? none : outside->winches) {
-        if (static_cast<std::size_t>(at) == k) length += paid_out;
-      }
-      add(*rope, length, rope->length.derivative(t, 1));
+      add(*rope, rope->length(t) + paid_out(outside, k), rope->length.derivative(t, 1));
     } else if (const auto* const spring = std::get_if<SpringElement>(&tree.elements()[k])) {
       for (std::size_t i = 1; i + 1 < spring->table.size(); ++i) {
         add(*spring, spring->table[i].length, 0);
@@ -120,6 +131,53 @@ std::vector<Corner> element_corners(const BodyTree& tree, double t,
     }
   }
   return result;
+}
+
+namespace {
+
+AlongOne moving(double value, double rate) { return {value, AlongOne::DerType::Constant(rate)}; }
+
+Corner end_of_pull(const RopeElement& rope, double t, double paid_out,
+                   const ElementMotion<AlongOne>& m) {
+  const double rate = rope.length.derivative(t, 1);
+  const double acceleration = rope.length.derivative(t, 2);
+  const AlongOne squared = m.reach.squaredNorm();
+  if (squared.value() == 0) return {};
+  const AlongOne distance = sqrt(squared);
+  const AlongOne length = moving(rope.length(t) + paid_out, rate);
+  const AlongOne stretch = squared - length * distance;
+  const AlongOne approach = m.reach.dot(m.velocity);
+  const AlongOne pull =
+      rope.stiffness * stretch + rope.damping * (approach - distance * moving(rate, acceleration));
+  const double L = distance.value();
+  const double size = rope.stiffness * L * (L + length.value()) +
+                      rope.damping * (std::abs(approach.value()) + L * std::abs(rate));
+  return {pull.value(), pull.derivatives()[0],
+          -L * (rope.stiffness * rate + rope.damping * acceleration), rounding_of_corners * size};
+}
+
+}  // namespace
+
+bool has_damped_ropes(const BodyTree& tree) {
+  return std::any_of(tree.elements().begin(), tree.elements().end(), [](const Element& element) {
+    const auto* const rope = std::get_if<RopeElement>(&element);
+    return rope != nullptr && rope->damping > 0;
+  });
+}
+
+void append_ends_of_pull(const BodyTree& tree, double t, const OutsideForces<double>* outside,
+                         const Eigen::VectorXd& y, const Eigen::VectorXd& dy,
+                         std::vector<Corner>& result) {
+  const Eigen::Matrix<AlongOne, Eigen::Dynamic, 1> along = y.binaryExpr(dy, &moving);
+  MotionSpace<AlongOne> w(tree);
+  set_poses(tree, along.data(), w);
+  set_places(tree, along.data() + tree.coordinates(), w);
+  for (std::size_t k = 0; k < tree.elements().size(); ++k) {
+    const auto* const rope = std::get_if<RopeElement>(&tree.elements()[k]);
+    if (rope == nullptr || !(rope->damping > 0)) continue;
+    const auto m = motion_between(rope->ends, tree.element_places()[k].slot, moving(t, 1), w);
+    result.push_back(end_of_pull(*rope, t, paid_out(outside, k), m));
+  }
 }
 
 }  // namespace kreisel::detail

@@ -154,6 +154,16 @@ void take_off_outside(const BodyTree& tree, const OutsideForces<S>& outside, con
                                                   const OutsideForces<double>* outside,
                                                   const MotionSpace<>& w);
 
+[[nodiscard]] bool has_damped_ropes(const BodyTree& tree);
+
+/// Appends for all damped ropes L times the pull, k (L - l) + c (L' - l'), also where it is below 0 and
+/// the rope does not act.
+///
+/// dy : the derivative of y = (coordinates; rates)
+void append_ends_of_pull(const BodyTree& tree, double t, const OutsideForces<double>* outside,
+                         const Eigen::VectorXd& y, const Eigen::VectorXd& dy,
+                         std::vector<Corner>& result);
+
 /// The point of an element's second body about which its torque is reported.
 [[nodiscard]] Vector3<double> second_point(const Element& element);
 

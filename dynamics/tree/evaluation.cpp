@@ -345,11 +345,17 @@ BodyBalance balance(const BodyTree& tree, const Surroundings& now, const Eigen::
   return balance(tree, now.t, now.guide, now.gravity, y.data(), v, w);
 }
 
-std::vector<Corner> corners(const BodyTree& tree, double t, const OutsideForces<double>* outside,
-                            const Eigen::VectorXd& y, BodyWorkspace& w) {
+std::vector<Corner> corners(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
+                            BodyWorkspace& w) {
   set_poses(tree, y.data(), w);
   set_places(tree, rates_of(tree, y), w);
-  return element_corners(tree, t, outside, w);
+  std::vector<Corner> result = element_corners(tree, now.t, now.outside, w);
+  if (has_damped_ropes(tree)) {
+    Eigen::VectorXd dy;
+    rates(tree, now, y, dy, w);
+    append_ends_of_pull(tree, now.t, now.outside, y, dy, result);
+  }
+  return result;
 }
 
 std::vector<std::pair<std::string, double>> conserved(const BodyTree& tree, const Surroundings& now,

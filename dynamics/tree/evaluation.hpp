@@ -107,9 +107,8 @@ KREISEL_API [[nodiscard]] Terms terms(const BodyTree& tree, bool guide_rests,
 KREISEL_API [[nodiscard]] BodyBalance balance(const BodyTree& tree, const Surroundings& now,
                                               const Eigen::VectorXd& y, BodyWorkspace& w);
 
-/// As element_corners().
-KREISEL_API [[nodiscard]] std::vector<Corner> corners(const BodyTree& tree, double t,
-                                                      const OutsideForces<double>* outside,
+/// As element_corners(), with those of damped ropes whose pull ends before they are slack.
+KREISEL_API [[nodiscard]] std::vector<Corner> corners(const BodyTree& tree, const Surroundings& now,
                                                       const Eigen::VectorXd& y, BodyWorkspace& w);
 
 KREISEL_API [[nodiscard]] std::vector<std::pair<std::string, double>> conserved(

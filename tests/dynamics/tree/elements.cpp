@@ -315,6 +315,61 @@ BOOST_AUTO_TEST_CASE(a_stop_throws_a_sled_back) {
   }
 }
 
+// A mass m falls into a rope with damping. From there it is a damped oscillation about the sag, until
+// the pull k s + c s' = -m (s'' - g) ends, while the rope is still stretched. Then the mass flies. The
+// pull ends at the first zero of s'' - g, where it falls.
+BOOST_AUTO_TEST_CASE(a_damped_rope_lets_go_before_it_is_slack) {
+  const long double g = 9.81L, m = 1, k = 1000, c = 20, length = 1, start_at = -0.5L;
+  BodyDescription mass = slider("a", double(m));
+  mass.joint.axis = {0, 0, 1};
+  const RopeElement rope{.name = "r",
+                         .ends = {{{"guide"}, {"a"}}},
+                         .stiffness = double(k),
+                         .length = double(length),
+                         .damping = double(c)};
+  const Resting system(RestingFrame<>{}, {mass}, UniformGravity<Guide>{{0, 0, -9.81}}, {rope});
+  Resting::State start = system.rest();
+  start.coordinates[0] = double(start_at);
+  const long double falls = std::sqrt(2 * (length + start_at) / g), v = g * falls;
+  const long double d = c / (2 * m), w = std::sqrt(k / m - d * d), sag = m * g / k;
+  const long double b = (v - d * sag) / w;  // s = sag + exp(-d t) (b sin w t - sag cos w t)
+  const auto stretch = [&](long double t) {
+    return sag + std::exp(-d * t) * (b * std::sin(w * t) - sag * std::cos(w * t));
+  };
+  const auto rate = [&](long double t) {
+    return std::exp(-d * t) *
+           ((b * w + d * sag) * std::cos(w * t) + (sag * w - d * b) * std::sin(w * t));
+  };
+  long double held = 0.5L / w;
+  long double free = 3.14L / w;
+  while (free - held > 1e-18L) {
+    const long double middle = (held + free) / 2;
+    (k * stretch(middle) + c * rate(middle) > 0 ? held : free) = middle;
+  }
+  BOOST_TEST(stretch(free) > 0.01L);
+  const auto place = [&](long double t) {
+    if (t <= falls) return start_at - g * t * t / 2;
+    if (t <= falls + free) return -length - stretch(t - falls);
+    const long double flies = t - falls - free;
+    return -length - stretch(free) - rate(free) * flies - g * flies * flies / 2;
+  };
+  for (const double tolerance : {1e-6, 1e-10, 1e-12}) {
+    for (const Method method : {Method::automatic, Method::verner98, Method::radau13}) {
+      const auto run =
+          solve(system, start,
+                {.output_times = {0.33, 0.36, 0.55}, .tolerance = tolerance, .method = method});
+      BOOST_TEST_CONTEXT(tolerance << ", " << name(method)) {
+        BOOST_TEST(run.report.tolerance_kept);
+        BOOST_TEST(run.report.all_evaluations <= 40000);
+        for (std::size_t i = 0; i < run.times.size(); ++i) {
+          const auto off = double(run.states[i].coordinates[0] - place(run.times[i]));
+          BOOST_TEST(std::abs(off) <= 1.1 * run.report.error_estimate + 1e-15);
+        }
+      }
+    }
+  }
+}
+
 // A damper alone never makes a rope push.
 BOOST_AUTO_TEST_CASE(a_rope_never_pushes) {
   const RopeElement rope{.name = "r", .stiffness = 10, .length = 1, .damping = 3};
