@@ -314,13 +314,28 @@ class ControlledSystem {
   }
   [[nodiscard]] bool may_be_stiff() const { return true; }
 
-  /// As BodySystem::corners(), with the winches of the controllers.
-  [[nodiscard]] bool has_corners() const { return system_.has_corners(); }
-  [[nodiscard]] double corner_frequency() const { return system_.corner_frequency(); }
+  /// As BodySystem::corners(), with the winches of the controllers, and with the limits of continuous
+  /// ones. At the time of samples the state is taken as it is.
+  [[nodiscard]] bool has_corners() const { return system_.has_corners() || has_limits(); }
+  [[nodiscard]] double corner_frequency() const {
+    double greatest = system_.corner_frequency();
+    for (const detail::ControlLoop& loop : loops_) {
+      if (!loop.has_corners()) continue;
+      for (const Signal<double>& reference : loop.controller().reference) {
+        greatest = std::max(greatest, reference.greatest_frequency());
+      }
+    }
+    return greatest;
+  }
   [[nodiscard]] std::vector<Corner> corners(double t, const Vector& y) const {
     Workspace w = workspace();
-    act(t, y, w);
-    return detail::corners(tree(), t, &w.bodies.outside, w.joints, w.bodies);
+    std::vector<Corner> result;
+    if (system_.has_corners()) {
+      act_after_samples(t, y, w);
+      result = detail::corners(tree(), system_.at(t, &w.bodies.outside), w.joints, w.bodies);
+    }
+    if (has_limits()) append_limits(t, y, result, w);
+    return result;
   }
 
   /// The motion of all bodies and the reactions, for sensors.
@@ -508,6 +523,45 @@ class ControlledSystem {
   void set_rates(const detail::ControlLoop& loop, const detail::VectorOn<N>& dx,
                  MemoryRates& memory_rates) const {
     memory_rates.segment(loop.memory_begin() - joint_count(), loop.memory_size()) = dx;
+  }
+
+  [[nodiscard]] bool has_limits() const {
+    return std::any_of(loops_.begin(), loops_.end(),
+                       [](const detail::ControlLoop& loop) { return loop.has_corners(); });
+  }
+
+  /// Appends the corners of continuous loops at their limits.
+  void append_limits(double t, const Vector& y, std::vector<Corner>& result, Workspace& w) const {
+    Vector dy;
+    rates(t, y, dy, w);
+    const Vector rest = Vector::Zero(y.size());
+    for (const detail::ControlLoop& loop : loops_) {
+      if (!loop.has_corners()) continue;
+      for (const Corner& corner : loop.corners(moving(loop, t, y, dy), moving(loop, t, y, rest))) {
+        result.push_back(corner);
+      }
+    }
+  }
+
+  /// A continuous loop at a state that changes by dy per second.
+  [[nodiscard]] detail::MovingLoop moving(const detail::ControlLoop& loop, double t,
+                                          const Vector& y, const Vector& dy) const {
+    using One = detail::AlongOne;
+    const auto number = [](double value, double rate) {
+      return One(value, One::DerType::Constant(rate));
+    };
+    const detail::VectorOn<One> state = y.binaryExpr(dy, number);
+    const One time = number(t, 1);
+    detail::MovingLoop result{time, {}, state.segment(loop.memory_begin(), loop.memory_size())};
+    if (!loop.feeds_through()) return result;
+    const detail::VectorOn<One> joints = state.head(joint_count());
+    const ControlDisturbance<One> none;
+    MotionOfBodies<One> motion;
+    if (loop.reads_bodies()) {
+      motion = observed(time, joints, static_cast<const One*>(nullptr), none);
+    }
+    result.errors = errors(loop, time, Situation<One>{joints, motion, none});
+    return result;
   }
 
   /// Sets the joints and the forces of the controllers in w, and the derivatives of the memory that

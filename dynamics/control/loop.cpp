@@ -276,6 +276,59 @@ bool ControlLoop::reads_bodies() const {
   });
 }
 
+bool ControlLoop::has_corners() const {
+  return !is_sampled() && is_linear() &&
+         std::any_of(controller_.limit.begin(), controller_.limit.end(),
+                     [](double limit) { return std::isfinite(limit); });
+}
+
+VectorOn<AlongOne> ControlLoop::corner_functions(const MovingLoop& loop) const {
+  VectorOn<AlongOne> u;
+  VectorOn<AlongOne> dx;
+  apply_law(loop.t, loop.errors, loop.memory, u, dx);
+  std::vector<AlongOne> all;
+  for (int i = 0; i < outputs(); ++i) {
+    const double limit = controller_.limit[static_cast<std::size_t>(i)];
+    if (!std::isfinite(limit)) continue;
+    all.insert(all.end(), {u[i] - limit, u[i] + limit});
+    if (integral_ == 0) continue;
+    const double faded = limit * (1 + fading);
+    all.insert(all.end(), {u[i] - faded, u[i] + faded});
+    if (loop.errors.size() > 0) all.push_back(loop.errors[i]);
+  }
+  return Eigen::Map<VectorOn<AlongOne>>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+double ControlLoop::corner_rounding(const MovingLoop& loop) const {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < loop.memory.size(); ++k) {
+    sum += law_.C.col(k).cwiseAbs().sum() * std::abs(loop.memory[k].value());
+  }
+  for (Eigen::Index k = 0; k < loop.errors.size(); ++k) {
+    // An error is the difference of the reference and a reading.
+    double size = std::abs(loop.errors[k].value());
+    if (!controller_.reference.empty()) {
+      const Signal<double>& reference = controller_.reference[static_cast<std::size_t>(k)];
+      size += 2 * std::abs(reference(loop.t.value()));
+    }
+    sum += (1 + law_.D.col(k).cwiseAbs().sum()) * size;
+  }
+  constexpr double digits = 1e-14;
+  return digits * sum;
+}
+
+std::vector<Corner> ControlLoop::corners(const MovingLoop& along, const MovingLoop& in_time) const {
+  const VectorOn<AlongOne> functions = corner_functions(along);
+  const VectorOn<AlongOne> at_rest = corner_functions(in_time);
+  const double rounding = corner_rounding(along);
+  std::vector<Corner> result;
+  for (Eigen::Index i = 0; i < functions.size(); ++i) {
+    result.push_back({functions[i].value(), functions[i].derivatives()[0],
+                      at_rest[i].derivatives()[0], rounding});
+  }
+  return result;
+}
+
 VectorXd ControlLoop::initial() const {
   const VectorXd& given = callable_ ? callable_->initial : law_.initial;
   const Eigen::Index n = given.size() > 0 ? given.size() : states();

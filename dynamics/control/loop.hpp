@@ -9,6 +9,8 @@
 
 #include <dynamics/control/actuator.hpp>
 #include <dynamics/control/controller.hpp>
+#include <dynamics/model/corner.hpp>
+#include <dynamics/tree/description.hpp>
 #include <dynamics/tree/tree.hpp>
 #include <motor/api.hpp>
 
@@ -32,6 +34,14 @@ class KREISEL_API SampleTimes {
 
   double first_;
   double period_;
+};
+
+/// Time, control errors and memory of a continuous loop, with their derivatives in one direction. The
+/// errors are empty if its outputs do not depend on them.
+struct MovingLoop {
+  AlongOne t;
+  VectorOn<AlongOne> errors;
+  VectorOn<AlongOne> memory;
 };
 
 /// A controller of a tree: its law in state space and the positions of its outputs and memory.
@@ -88,6 +98,16 @@ class KREISEL_API ControlLoop {
   void evaluate(const S& t, const VectorOn<S>& e, const VectorOn<S>& x, VectorOn<S>& u,
                 VectorOn<S>& dx) const;
 
+  /// True if a continuous loop has limits, at which its field has corners.
+  [[nodiscard]] bool has_corners() const;
+
+  /// These corners.
+  ///
+  /// along   : the loop along its motion
+  /// in_time : with derivatives in time alone, at the same state
+  [[nodiscard]] std::vector<Corner> corners(const MovingLoop& along,
+                                            const MovingLoop& in_time) const;
+
   /// The outputs that a sampled loop holds.
   template <class S>
   [[nodiscard]] VectorOn<S> held(const VectorOn<S>& memory) const {
@@ -125,13 +145,13 @@ class KREISEL_API ControlLoop {
 
   [[nodiscard]] int states() const;
 
-  /// True if output i is saturated and the integral of error e_i would drive it further.
+  /// How far output i is beyond its limit, if the integral of error e_i would drive it further; else 0.
   template <class S>
-  [[nodiscard]] bool winds_up(int i, const VectorOn<S>& u, const VectorOn<S>& e) const {
-    if (integral_ == 0 || controller_.limit.empty()) return false;
-    const double limit = controller_.limit[static_cast<std::size_t>(i)];
-    const S pushes = integral_ * e[i];
-    return (u[i] > S(limit) && pushes > S(0)) || (u[i] < S(-limit) && pushes < S(0));
+  [[nodiscard]] S winds_up(int i, const VectorOn<S>& u, const VectorOn<S>& e) const {
+    if (integral_ == 0 || controller_.limit.empty()) return S(0);
+    const S beyond = (integral_ * e[i] > S(0) ? u[i] : S(-u[i])) -
+                     controller_.limit[static_cast<std::size_t>(i)];
+    return beyond > S(0) ? beyond : S(0);
   }
   template <class S>
   void saturate(VectorOn<S>& u) const {
@@ -141,9 +161,16 @@ class KREISEL_API ControlLoop {
       if (u[i] < S(-limit)) u[i] = S(-limit);
     }
   }
+  [[nodiscard]] VectorOn<AlongOne> corner_functions(const MovingLoop& loop) const;
+  [[nodiscard]] double corner_rounding(const MovingLoop& loop) const;
+
   template <class S>
   void apply_law(const S& t, const VectorOn<S>& e, const VectorOn<S>& x, VectorOn<S>& u,
                  VectorOn<S>& dx) const;
+
+  /// Beyond the limit of an output, relative to it, the integral of a continuous law fades out over
+  /// this distance. If it stopped at once, an output that it alone drives up would chatter.
+  static constexpr double fading = 1e-6;
 
   Controller controller_;
   int memory_;
@@ -184,7 +211,10 @@ void ControlLoop::evaluate(const S& t, const VectorOn<S>& e, const VectorOn<S>& 
                            VectorOn<S>& dx) const {
   apply_law(t, e, x, u, dx);
   for (int i = 0; i < outputs() && e.size() > 0; ++i) {
-    if (winds_up(i, u, e)) dx[i] = S(0);
+    const S beyond = winds_up(i, u, e);
+    if (!(beyond > S(0))) continue;
+    const double faded = fading * controller_.limit[static_cast<std::size_t>(i)];
+    dx[i] *= beyond < S(faded) ? S(1 - beyond / faded) : S(0);
   }
   saturate(u);
 }
@@ -196,9 +226,14 @@ void ControlLoop::sample(const S& t, const VectorOn<S>& e, VectorOn<S>& memory) 
   VectorOn<S> next;
   apply_law(t, e, x, u, next);
   for (int i = 0; i < outputs(); ++i) {
-    if (!winds_up(i, u, e)) continue;
-    u[i] -= integral_ * (next[i] - x[i]);
-    next[i] = x[i];
+    // The integral grows no further than its output to the limit.
+    const S beyond = winds_up(i, u, e);
+    if (!(beyond > S(0))) continue;
+    const S grown = integral_ * (next[i] - x[i]);
+    const S size = grown > S(0) ? grown : S(-grown);
+    const S too_much = beyond < size ? S(beyond / size) : S(1);
+    u[i] -= too_much * grown;
+    next[i] -= too_much * (next[i] - x[i]);
   }
   saturate(u);
   const int m = outputs();

@@ -21,9 +21,10 @@ Real limited(const Servo& servo, Real u) {
   return servo.limit > 0 ? std::clamp(u, -Real(servo.limit), Real(servo.limit)) : u;
 }
 
-/// True if the integral of e would drive a saturated output further.
-bool winds_up(const Servo& servo, Real u, Real e) {
-  return servo.limit > 0 && std::abs(u) > Real(servo.limit) && u * Real(servo.integral) * e > 0;
+/// How far an output is beyond its limit, if the integral of e would drive it further; else 0.
+Real winds_up(const Servo& servo, Real u, Real e) {
+  const bool drives = servo.limit > 0 && u * Real(servo.integral) * e > 0;
+  return drives ? std::max<Real>(0, std::abs(u) - Real(servo.limit)) : 0;
 }
 
 struct Output {
@@ -37,7 +38,9 @@ Output continuous(const Servo& servo, Real e, const Real* memory) {
   if (servo.derivative != 0) result.df = (e - memory[1]) / Real(servo.filter);
   result.u = Real(servo.proportional) * e + Real(servo.integral) * memory[0] +
              Real(servo.derivative) * result.df;
-  result.ds = winds_up(servo, result.u, e) ? 0 : e;
+  const Real faded =
+      servo.limit > 0 ? winds_up(servo, result.u, e) / (1e-6L * Real(servo.limit)) : 0;
+  result.ds = e * std::max<Real>(0, 1 - faded);
   result.u = limited(servo, result.u);
   return result;
 }
@@ -97,7 +100,11 @@ void Tree::sample_servo(const Servo& servo, Real e, Real* memory) const {
     return Real(servo.proportional) * e + Real(servo.integral) * integral +
            Real(servo.derivative) * memory[1];
   };
-  if (!winds_up(servo, output(s), e)) memory[0] = s;
+  memory[0] = s;
+  if (const Real beyond = winds_up(servo, output(s), e); beyond > 0) {
+    const Real too_much = beyond / std::abs(Real(servo.integral));
+    memory[0] -= std::copysign(std::min(too_much, std::abs(T * e)), e);
+  }
   Real* const waiting = memory + 4;
   const int whole = servo.whole_periods();
   for (int i = whole; i > 0; --i) waiting[i] = waiting[i - 1];

@@ -213,9 +213,12 @@ BOOST_AUTO_TEST_CASE(saturated_samples_do_not_wind_up) {
   Real s = 0;
   const auto expected = angles_between(0.1L, 50, [&](int, Real q) {
     const Real e = -q;
-    const Real u = 3 * e + 0.7L * (s + 0.1L * e);
+    const Real grown = s + 0.1L * e;
+    const Real u = 3 * e + 0.7L * grown;
     const bool winds = (u > 0.25L && e > 0) || (u < -0.25L && e < 0);
-    if (!winds) s += 0.1L * e;
+    const Real to_limit = (std::copysign(0.25L, e) - 3 * e) / 0.7L;
+    const bool is_beyond = e > 0 ? to_limit < s : to_limit > s;
+    s = !winds ? grown : is_beyond ? s : to_limit;
     return std::clamp(3 * e + 0.7L * s, -0.25L, 0.25L);
   });
   const auto run = released(arm_with(controller), 1e-11);
@@ -251,6 +254,200 @@ BOOST_AUTO_TEST_CASE(saturated_spring_is_in_pieces_closed) {
     const auto run = released(arm_with(controller), tolerance);
     BOOST_TEST(run.report.tolerance_kept);
     BOOST_TEST(worst_angle(run, angle) <= run.report.error_estimate * angle_0);
+  }
+}
+
+// A wheel J v' = u - d v from rest, by u = P (1 - v) + I s. Beyond its limit L u is cut, and s rests.
+// From P (1 - v) = L on s grows only as far as u stays at L. Where s' = 1 - v no longer holds it there,
+// u leaves the limit, and the motion is a matrix exponential.
+BOOST_AUTO_TEST_CASE(outputs_may_stay_at_their_limit) {
+  const Real P = 2, I = 8, L = 1.5L, d = 0.1L, J = moment;
+  BodyDescription wheel = arm();
+  wheel.forces = {{.damping = double(d)}};
+  Controller controller = servo(PidLaw{double(P), double(I)});
+  controller.reads = {{JointSensor{0, 0, true}}};
+  controller.reference = {Signal<double>(1.0)};
+  controller.limit = {double(L)};
+  const ControlledSystem<RestingFrame<>> system(BodySystem<RestingFrame<>>({}, {wheel}),
+                                                {controller});
+  const auto start = system.start({Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)});
+  const Real leaves_at = (I - P * L / J) / (I - P * d / J);  // I (1 - v) = P v'
+  const Real leaves = -J / d * std::log1p(-leaves_at * d / L);
+  BOOST_TEST(leaves_at > 1 - L / P);
+  RealMatrix A(3, 3);  // of v, s, 1
+  A << -(d + P) / J, I / J, P / J, -1, 0, 1, 0, 0, 0;
+  RealVector there(3);
+  there << leaves_at, (L - P * (1 - leaves_at)) / I, 1;
+  const auto rate = [&](double t) -> Real {
+    if (t <= leaves) return -L / d * std::expm1(-d * Real(t) / J);
+    return (RealMatrix(A * (Real(t) - leaves)).exp() * there)[0];
+  };
+  for (const double tolerance : {1e-6, 1e-10}) {
+    const auto run = solve(system, start, {.t_end = 3, .output_step = 0.1, .tolerance = tolerance});
+    BOOST_TEST(run.report.tolerance_kept);
+    BOOST_TEST(run.report.all_evaluations <= 60000);
+    double worst = 0;
+    for (std::size_t i = 0; i < run.times.size(); ++i) {
+      worst = worst_of(worst, std::abs(run.states[i].rates[0] - double(rate(run.times[i]))));
+    }
+    // The fading of s changes the time at which u leaves by less than 1e-11.
+    BOOST_TEST(worst <= run.report.error_estimate + 1e-11);
+  }
+}
+
+namespace {
+
+/// An arm with the pid above, limited: pieces of matrix exponentials. s rests while the torque is
+/// beyond its limit and the error drives it further.
+class LimitedArm {
+ public:
+  explicit LimitedArm(Real limit) : limit_(limit) { state_ << Real(angle_0), 0, 0, 0, 1; }
+
+  /// The angle at a time after the last one asked for.
+  Real operator()(Real t) {
+    constexpr Real piece = 1e-3L;
+    while (t_ < t) {
+      const Real h = std::min(piece, t - t_);
+      const RealMatrix A = matrix();
+      const RealVector next = RealMatrix(A * h).exp() * state_;
+      if (mode(next) == mode(state_)) {
+        state_ = next;
+        t_ += h;
+        continue;
+      }
+      Real before = 0;
+      Real after = h;
+      while (after - before > 1e-19L) {
+        const Real middle = (before + after) / 2;
+        if (middle <= before || middle >= after) break;
+        const RealVector there = RealMatrix(A * middle).exp() * state_;
+        (mode(there) == mode(state_) ? before : after) = middle;
+      }
+      state_ = RealMatrix(A * after).exp() * state_;
+      t_ += after;
+    }
+    return state_[0];
+  }
+
+ private:
+  using State = Eigen::Matrix<Real, 5, 1>;  // angle, rate, integral, filter, 1
+
+  [[nodiscard]] static Real torque(const RealVector& y) {
+    const Real P = pid.proportional, I = pid.integral, D = pid.derivative, tau = pid.filter;
+    return -(P + D / tau) * y[0] + I * y[2] - D / tau * y[3];
+  }
+  /// -1, 0, 1: the torque is beyond no limit or one of them; 10 more where s rests.
+  [[nodiscard]] int mode(const RealVector& y) const {
+    const Real u = torque(y);
+    const int side = u > limit_ ? 1 : u < -limit_ ? -1 : 0;
+    return side * -y[0] > 0 ? 10 + side : side;
+  }
+  [[nodiscard]] RealMatrix matrix() const {
+    RealMatrix A = RealMatrix::Zero(5, 5);
+    A.topLeftCorner(4, 4) = loop_matrix();
+    const int now = mode(state_);
+    const int side = now > 5 ? now - 10 : now;
+    if (side != 0) {
+      A.row(1).setZero();
+      A(1, 4) = side * limit_ / Real(moment);
+    }
+    if (now > 5) A.row(2).setZero();
+    return A;
+  }
+
+  Real limit_;
+  Real t_ = 0;
+  State state_;
+};
+
+}  // namespace
+
+// The limits are met as events: an order of 9 or 13 is kept across them.
+BOOST_AUTO_TEST_CASE(a_limited_pid_is_in_pieces_closed) {
+  Controller controller = servo(pid);
+  controller.limit = {0.4};
+  const auto system = arm_with(controller);
+  const auto start =
+      system.start({Eigen::VectorXd::Constant(1, angle_0), Eigen::VectorXd::Zero(1)});
+  LimitedArm arm(0.4L);
+  std::vector<Real> angles;
+  for (int i = 0; i <= 10; ++i) angles.push_back(arm(Real(i) / 2));
+  for (const Method method : {Method::verner98, Method::radau13}) {
+    for (const double tolerance : {1e-8, 1e-12}) {
+      const auto run =
+          solve(system, start,
+                {.t_end = 5, .output_step = 0.5, .tolerance = tolerance, .method = method});
+      BOOST_TEST_CONTEXT(name(method) << ", " << tolerance) {
+        BOOST_TEST(run.report.tolerance_kept);
+        const double worst =
+            worst_angle(run, [&](double t) { return angles[std::size_t(std::lround(2 * t))]; });
+        // s fades out over a millionth of the limit, for some 1e-6 s of an error of 0.1.
+        BOOST_TEST(worst <= run.report.error_estimate * angle_0 + 1e-7);
+      }
+    }
+  }
+}
+
+// A hook on a rope that a winch pays out and takes in, by the displacement at each sample. In between
+// it swings about the sag, or falls.
+BOOST_AUTO_TEST_CASE(a_winch_may_slacken_a_rope_at_a_sample) {
+  const Real g = 9.81L, m = 10, k = 2000, w = std::sqrt(k / m), T = 0.1L;
+  const auto length = [](Real z) { return 2 - 0.3L * (-1.9L - z); };
+  Real z = -2.05L, v = 0;
+  std::vector<Real> places{z};
+  for (int sample = 0; sample < 5; ++sample) {
+    const Real l = length(z);
+    const Real rests = -l - m * g / k;
+    Real left = T;
+    while (left > 0) {
+      const Real from = z, rate = v;
+      const bool taut = -z > l || (-z == l && v < 0);
+      const auto at = [&](Real t) {
+        return taut ? rests + (from - rests) * std::cos(w * t) + rate / w * std::sin(w * t)
+                    : from + rate * t - g * t * t / 2;
+      };
+      const auto speed = [&](Real t) {
+        return taut ? rate * std::cos(w * t) - (from - rests) * w * std::sin(w * t) : rate - g * t;
+      };
+      Real until = left;
+      for (Real t = left / 64; t <= left * 1.0001L; t += left / 64) {
+        if ((-at(t) > l) == taut) continue;
+        Real before = t - left / 64;
+        until = std::min(t, left);
+        while (until - before > 1e-19L) {
+          const Real middle = (before + until) / 2;
+          if (middle <= before || middle >= until) break;
+          ((-at(middle) > l) == taut ? before : until) = middle;
+        }
+        break;
+      }
+      z = until < left ? -l : at(until);
+      v = speed(until);
+      left -= until;
+    }
+    places.push_back(z);
+  }
+  BodyDescription hook = arm();
+  hook.joint = {.kind = JointKind::prismatic, .axis = {0, 0, 1}};
+  hook.inertia = InertiaTensor<Body>::about_centre(10, {0, 0, 0}, Matrix3<double>::Identity());
+  const RopeElement rope{
+      .name = "rope", .ends = {{{"guide"}, {"arm"}}}, .stiffness = 2000, .length = 2};
+  Controller winch = servo(PidLaw{-0.3}, 0.1);
+  winch.drives = {"rope"};
+  winch.reference = {Signal<double>(-1.9)};
+  const ControlledSystem<RestingFrame<>> system(
+      BodySystem<RestingFrame<>>({}, {hook}, UniformGravity<Guide>{{0, 0, -9.81}}, {rope}),
+      {winch});
+  const auto start = system.start({Eigen::VectorXd::Constant(1, -2.05), Eigen::VectorXd::Zero(1)});
+  for (const Method method : {Method::automatic, Method::radau13}) {
+    const auto run = solve(
+        system, start, {.t_end = 0.5, .output_step = 0.1, .tolerance = 1e-10, .method = method});
+    BOOST_TEST_CONTEXT(name(method)) {
+      BOOST_TEST(run.report.tolerance_kept);
+      BOOST_TEST(worst_angle(run, [&](double t) {
+                   return places[std::size_t(std::lround(t / 0.1))];
+                 }) <= run.report.error_estimate * 2.1);
+    }
   }
 }
 
