@@ -1,130 +1,15 @@
-"""Sentences on gravity, bodies and loads."""
+"""Sentences on bodies and loads."""
 
 import math
 
 from promises.table import (
-    BALL, DISC, FIXED, FREE, HINGE, SLIDE, UNIVERSAL, WEIGHT, Near, body, cross, guide, part,
-    promise, quaternion, report, sensor, solve, turned
+    BALL, DISC, FIXED, FREE, HINGE, SLIDE, UNIVERSAL, WEIGHT, body, cross, guide, promise,
+    quaternion, report, sensor, turned
 )
 
-MU = 3.986004418e14
-EARTH, A, J2 = 7.292115e-5, 6378137.0, 0.484166774985e-3 * math.sqrt(5)
-
-
-def gravity(kind, *lines):
-    return part("[gravity]", f'kind = "{kind}"', *lines)
-
-
-FALLING = body(FREE) + sensor("point", 'against = "inertial"') + solve(1, "output_times = [0, 1]")
 TILTED = guide("rotating", "angular_velocity = [0, 0, 0]",
                f"attitude = {quaternion('y', math.pi / 2)}")
 
-promise("no gravity", gravity("none") + FALLING, {"s.acceleration": [0, 0, 0]})
-promise("on guide axes: it moves with the guide", TILTED + WEIGHT + FALLING,
-        {"s.acceleration": [-10, 0, 0]})
-promise("on inertial axes: it is constant",
-        TILTED + gravity("inertial", "vector = [0, 0, -10]") + FALLING,
-        {"s.acceleration": [0, 0, -10]})
-promise(
-    "of a point mass, at every body's centre of mass; `centre` is on inertial axes, by default the "
-    "inertial origin",
-    gravity("point", "mu = 50") + body(FREE, "initial = { position = [3, 0, 4] }")
-    + sensor("point", 'against = "inertial"'),
-    {"start": {"s.acceleration": [-50 / 25 * 0.6, 0, -50 / 25 * 0.8]}},
-)
-promise(
-    "of a point mass, at every body's centre of mass; `centre` is on inertial axes, by default the "
-    "inertial origin",
-    gravity("point", "mu = 50", "centre = [0, 0, 9]") + TILTED
-    + body(FREE, "centre = [1, 0, 0]") + sensor("point", "at = [1, 0, 0]", 'against = "inertial"'),
-    {"start": {"s.acceleration": [0, 0, 50 / 100]}},  # from 1 m below the origin
-)
-# 3/2 J2 mu R^2/r^4 ((5 u^2 - 1) e - 2 u p), u = e.p: on the pole's axis and across it.
-for at, wanted in (([0, 0, 5], [0, 0, -2 * (1 - 3 * 0.1 * 4 / 25)]),
-                   ([5, 0, 0], [-2 * (1 + 1.5 * 0.1 * 4 / 25), 0, 0])):
-    promise(
-        "with the first term of a planet's flattening; the pole is z by default",
-        gravity("j2", "mu = 50", "j2 = 0.1", "radius = 2")
-        + body(FREE, f"initial = {{ position = {at} }}") + sensor("point", 'against = "inertial"'),
-        {"start": {"s.acceleration": wanted}},
-    )
-EQUATOR = guide("earth", "latitude_deg = 0", "height = 1000", "azimuth_deg = 0")
-STILL = body(FIXED) + sensor("accelerometer")
-R = A + 1000
-promise(
-    "the point mass and J2 of WGS84",
-    EQUATOR + gravity("earth", 'field = "j2"') + STILL,
-    {"s": Near([-MU / R**2 * (1 + 1.5 * J2 * (A / R) ** 2) + EARTH**2 * R, 0, 0], 1e-9)},
-)
-for field in ((), ('field = "normal"',)):
-    promise(
-        '`"normal"` (default), as `gravity = "normal"` of the guide',
-        guide("earth", "latitude_deg = 0", "height = 0", "azimuth_deg = 0")
-        + gravity("earth", *field) + STILL, {"s": Near([-9.7803253359, 0, 0], 1e-9)},
-    )
-promise(
-    "Without `[gravity]` the field is `gravity` of an `earth` or `course` guide, or `none`.",
-    guide("earth", "latitude_deg = 0", "height = 0", "azimuth_deg = 0", "gravity = 9") + STILL,
-    {"s": [-9, 0, 0]},
-)
-promise(
-    "Without `[gravity]` the field is `gravity` of an `earth` or `course` guide, or `none`.",
-    FALLING, {"s.acceleration": [0, 0, 0]},
-)
-for lines in ('kind = "uniform"', "vector = [0, 0, 1]"), ('kind = "earth"',), (
-        'kind = "point"', "mu = 1"):
-    promise(
-        "A number there excludes any other field.",
-        guide("earth", "latitude_deg = 0", "height = 0", "azimuth_deg = 0", "gravity = 9")
-        + part("[gravity]", *lines) + STILL, "gives gravity a second time",
-    )
-# The torque 3 mu/r^3 e x (I e) on a body that is held 5 m from the centre.
-HELD = body('joint = { kind = "fixed", position = [3, 0, 4] }', "inertia = [2, 3, 4]") + report(
-    "reactions")
-TORQUE = [3 * 50 / 125 * x for x in cross([-0.6, 0, -0.8], [-1.2, 0, -3.2])]
-promise(
-    "The torque about a point mass is 3 mu/r^3 e x (I e), e the unit vector to the body.",
-    gravity("point", "mu = 50", "gradient = true") + HELD, {"a.torque": [-x for x in TORQUE]},
-)
-for lines, wanted in ((("mu = 50",), 0), (("mu = 50", "gradient = true"), TORQUE[1])):
-    promise(
-        "The default is `true` for `orbit` and `false` otherwise.",
-        gravity("point", *lines) + HELD, {"a.torque y": -wanted},
-    )
-N2 = MU / 7e6**3  # the orbit's rate squared
-for lines, wanted in (((), 3 * N2), (("gradient = false",), 0)):
-    promise(
-        "The default is `true` for `orbit` and `false` otherwise.",
-        guide("orbit", "semi_major_axis = 7e6") + gravity("orbit", *lines)
-        + body(BALL, "inertia = [2, 3, 4]",
-               f"initial = {{ attitude = {quaternion('z', math.pi / 4)} }}")
-        + sensor("gyro"),
-        # e = (1, -1)/sqrt(2) on body axes, and the rate n of the orbit about z.
-        lambda found, rows, w=wanted: [] if math.isclose(
-            rows[1]["s.z"] - rows[0]["s.z"], w * -0.5 / 4 * rows[1]["t"], rel_tol=1e-4,
-            abs_tol=1e-18) else [f"the rate changes by {rows[1]['s.z'] - rows[0]['s.z']}"],
-    )
-promise(
-    "A body whose centre of mass is at the field's centre at the start is an error.",
-    gravity("point", "mu = 50") + FALLING, "is at the centre of the field at the start",
-)
-# Radial and along the orbit: Clohessy and Wiltshire, to first order in 1 m of 7000 km.
-N = math.sqrt(N2)
-promise(
-    "A body 1 m away keeps 12 digits of its position.",
-    guide("orbit", "semi_major_axis = 7e6") + gravity("orbit")
-    + body(FREE, "inertia = [1e-9, 1e-9, 1e-9]", "initial = { position = [0, 0, 1] }")
-    + solve(1000, "output_times = [1000]"),
-    {"a.z": Near(math.cos(1000 * N), 1e-12)},
-)
-promise(
-    "Gravity `point` beside a guide of kind `orbit` is the same field, but keeps eight digits of the "
-    "tide.",
-    guide("orbit", "semi_major_axis = 7e6") + gravity("point", f"mu = {MU}")
-    + body(FREE, "inertia = [1e-9, 1e-9, 1e-9]", "initial = { position = [0, 0, 1] }")
-    + solve(1000, "output_times = [1000]", "tolerance = 1e-8"),
-    {"a.z": Near(math.cos(1000 * N), 1e-8)},
-)
 
 promise("any, except `guide`", body(FIXED, name="guide"), "reserved")
 promise("any, except `guide`", body(FIXED, name="inertial"), None)
@@ -216,10 +101,12 @@ promise("two displacements perpendicular to `axis`, angle about it",
         {"start": {"s.position": [3 + math.cos(0.5), 4 + math.sin(0.5), 0],
                    "s.velocity": [5 - 2 * math.sin(0.5), 6 + 2 * math.cos(0.5), 0]}})
 promise("| `spherical` | attitude | `attitude`, `angular_velocity` |",
-        body(BALL, f"initial = {{ attitude = {quaternion('z', 0.5)}, angular_velocity = [0, 0, 2] }}")
+        body(BALL, f"initial = {{ attitude = {quaternion('z', 0.5)}, "
+             "angular_velocity = [0, 0, 2] }")
         + AT, {"start": {"s.position": [math.cos(0.5), math.sin(0.5), 0],
                          "s.velocity": [-2 * math.sin(0.5), 2 * math.cos(0.5), 0]}})
-promise("| `fixed` | none | |", body(FIXED, "initial = { rate = 1 }"), "initial.rate: is no key here")
+promise("| `fixed` | none | |", body(FIXED, "initial = { rate = 1 }"),
+    "initial.rate: is no key here")
 promise("attitude and position",
         body(FREE, f"initial = {{ attitude = {quaternion('z', 0.5)}, angular_velocity = [0, 0, 2], "
              "position = [3, 4, 5], velocity = [6, 7, 8] }") + AT,
@@ -264,8 +151,8 @@ for axis, first, second in (([1, 0, 0], [0, 1, 0], [0, 0, 1]), ([0, 1, 0], [0, 0
     )
 promise("The first direction is the component of `second_axis` perpendicular to `axis`.",
         planar([0, 0, 1], [0, 5, 7]), {"s.position": [-3, 2, 0]})
-promise("The displacements of a `planar` joint are along two directions of the parent, independent of "
-        "the body's rotation.",
+promise("The displacements of a `planar` joint are along two directions of the parent, "
+        "independent of the body's rotation.",
         body('joint = { kind = "planar", axis = [0, 0, 1] }',
              "initial = { angle = 2, rate = 7, velocity = [3, 0] }") + sensor("point"),
         {"rows": {"s.position x": lambda t: 3 * t, "s.position y": lambda t: 0}})
@@ -312,3 +199,13 @@ promise("A magnet in a constant field on a guide at rest keeps the energy, of wh
              "initial = { angle = 0.5, rate = 2 }"),
         {"json": {"invariants.0.name": "energy",
                   "invariants.0.start": 2 - 6 * math.sin(0.5), "invariants.0.largest_drift": 0}})
+promise("An unbalanced or unsymmetric wheel is an ordinary body, with `drive` if its speed is "
+        "constant.",
+        body(DISC, "centre = [1, 0, 0]", "inertia = [1, 2, 3]", 'drive = "constant-rate"',
+             "initial = { rate = 3 }") + report("reactions"), {"a.force": [-9, 0, 0]})
+promise("With `axis` along z they are x and y of the parent.", planar([0, 0, 1]),
+        {"s.position": [2, 3, 0]})
+for kind in ("", 'kind = "force", '):
+    promise("| `force` (default) |",
+            body(FREE, f"load = {{ {kind}force = [0, 2, 0], point = [3, 0, 0] }}"),
+            {"json": {"final.joints.a.angular_velocity.2": 6}})

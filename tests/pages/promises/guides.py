@@ -209,8 +209,8 @@ promise(
     {"f": [-9.75 * math.cos(0.2), 9.75 * math.sin(0.2), 0]},
 )
 promise(
-    "A number is along the vertical, and the same on the whole way. The centrifugal part in it is that "
-    "at the origin.",
+    "A number is along the vertical, and the same on the whole way. The centrifugal part in it "
+    "is that at the origin.",
     guide("course", *PARKED, "gravity = 9.75") + STRAPPED
     + body('joint = { kind = "fixed", position = [-1e5, 0, 0] }', name="b")
     + sensor("accelerometer", name="g", on="b"),

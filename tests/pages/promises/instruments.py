@@ -95,8 +95,8 @@ promise("On the `earth`, also as the first link of a `chain`, the site's azimuth
         + pendulum([1, 0, 0], [0, -math.sin(0.5), math.cos(0.5)]) + solve(0.25),
         {"s": Near(0.5 + math.pi / 9, 1e-4)})
 promise("On the `earth`, also as the first link of a `chain`, the site's azimuth is added.",
-        guide("chain", "links = [{ kind = 'earth', latitude_deg = 50, height = 0, azimuth_deg = 20, "
-              "gravity = 10 }, { kind = 'inertial' }]")
+        guide("chain", "links = [{ kind = 'earth', latitude_deg = 50, height = 0, azimuth_deg = "
+                       "20, gravity = 10 }, { kind = 'inertial' }]")
         + pendulum([1, 0, 0], [0, -math.sin(0.5), math.cos(0.5)]) + solve(0.25),
         {"s": Near(0.5 + math.pi / 9, 1e-4)})
 HANGING = WEIGHT + body(BALL, "centre = [0, 0, -1]") + sensor("azimuth", "at = [0, 0, -1]")
@@ -118,6 +118,9 @@ promise("`name` is any that gives no column twice.", body(FREE) + sensor("point"
 
 # Errors: the truth is (0, 0, 3) rad/s or (0, 18, 0) m/s^2.
 SPUN = TURNING + HELD
+promise("(1 + \\text{scale})\\, R(-\\text{misalignment})\\, \\text{truth} + \\text{bias}",
+        SPUN + sensor("gyro", "misalignment = [0, 0.2, 0]", "scale = 0.5", "bias = 0.25"),
+        {"s": [0.25 - 4.5 * math.sin(0.2), 0.25, 0.25 + 4.5 * math.cos(0.2), 0, 0, 3]})
 promise("are the readings without errors",
         SPUN + sensor("gyro", "bias = [1, 2, 4]") + solve(1, "output_times = [1]"),
         {"s.true": [0, 0, 3], "json": {"final.sensors.s.true": [0, 0, 3],
@@ -246,3 +249,10 @@ promise("Increments need the model `exact`.",
         "needs the model 'exact'")
 promise("makes a `gyro` or an `accelerometer` with a `period` read integrals over each period",
         body(DISC) + sensor("gyro", "increments = true"), "needs 'period'")
+promise("`axes` of a `gyro` and an `accelerometer` is a quaternion: the attitude of the sensor's "
+        "axes relative to the body's, by default the same axes.",
+        TURNING + HELD + sensor("accelerometer") + sensor("accelerometer", TILT, name="u"),
+        {"s": [0, 18, 0], "u": [0, 0, -18]})
+for bias, wanted in (("2", [2, 2, 5]), ("[1, 2, 3]", [1, 2, 6])):
+    promise("| `bias` | a number or three |", SPUN + sensor("gyro", f"bias = {bias}"),
+            {"s": [*wanted, 0, 0, 3]})

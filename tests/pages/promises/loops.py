@@ -178,10 +178,12 @@ promise("s, from a sample to its output; needs `period`",
         CLOCK + controller(P, "delay = 0.1", **TO_B), "period")
 
 promise("Speeds of regulated rotors follow their `speed` alone.",
-        body(DISC, 'rotor = { mode = "regulated", speed = 3 }') + sensor("joint") + controller(P), "'a'")
+        body(DISC, 'rotor = { mode = "regulated", speed = 3 }') + sensor("joint") + controller(P),
+            "'a'")
 promise("Yaw and roll that a controller reads jump by 2 pi at +-pi.",
         CLOCK + sensor("attitude", 'as = "yaw pitch roll"', name="y")
-        + controller(P, reads='["y.yaw"]', drives='["b"]') + solve(2, "output_times = [0, 1, 1.5, 2]",
+        + controller(P, reads='["y.yaw"]', drives='["b"]') + solve(2,
+            "output_times = [0, 1, 1.5, 2]",
                                                                    "tolerance = 1e-9"),
         {"rows": {"c.b": Near([0, -12, -4 * (4.5 - 2 * math.pi), -4 * (6 - 2 * math.pi)], 1e-8)}})
 
@@ -234,7 +236,8 @@ for words, wanted in (('"s.position", "a.qw"', "t,s.position x,s.position y,s.po
                       ('"a.x", "s"', "t,a.x,s.position x,s.position y,s.position z,s.velocity x,"
                        "s.velocity y,s.velocity z,s.acceleration x,s.acceleration y,"
                        "s.acceleration z")):
-    promise("chooses the columns of `simulate --csv` after `t`, in this order. A word is a "
+    promise('`columns = ["rotor.angle", "tip.position", ..]` '
+            "chooses the columns of `simulate --csv` after `t`, in this order. A word is a "
             "column, or selects all columns whose names continue after it with a dot or a blank.",
             OUTPUT + part("[output]", f"columns = [{words}]"),
             lambda found, rows, w=wanted: [] if ",".join(rows[0]) == w else [",".join(rows[0])])
@@ -243,3 +246,13 @@ promise("The default is all columns of the joints, of the reported reactions and
         lambda found, rows: [] if [*rows[0]] == [
             "t", "a.angle", "a.rate", *(f"a.{w} {x}" for w in ("force", "torque") for x in "xyz"),
             "a.drive torque", "s.x", "s.y", "s.z"] else [f"{[*rows[0]]}"])
+promise("Its outputs are columns `NAME.OUTPUT` of the CSV file.",
+        CLOCK + controller(P, name="my law", **TO_B), {"rows": {"my law.b": lambda t: -12 * t}})
+promise("u = P e + I s + D d, one reading for each output",
+        CLOCK + controller(P, reads='["s.angle", "s.rate"]', drives='["b"]'),
+        "one reading for each")
+promise("All memory begins with 0, or with `initial`.",
+        CLOCK + controller(pid("integral = 1"), **TO_B)
+        + controller(space("A = [[0]]", "B = [[0]]", "C = [[1]]", "D = [[0]]", "initial = [7]"),
+                     reads='["s.angle"]', drives='["load.b.torque.x"]', name="x"),
+        {"start": {"memory.c": 0, "memory.x": 7, "x": 7}})

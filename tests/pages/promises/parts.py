@@ -196,15 +196,16 @@ promise("Each step ends on the conditions, for positions and velocities, as does
         + constraint("distance", TO_A, "length = 2"),
         lambda found, rows: [f"{row}" for row in rows if abs(
             math.hypot(row["a.x"], row["a.y"], row["a.z"]) - 2) > 1e-14 or abs(
-            row["a.x"] * row["a.vx"] + row["a.y"] * row["a.vy"] + row["a.z"] * row["a.vz"]) > 1e-13])
+            row["a.x"] * row["a.vx"] + row["a.y"] * row["a.vy"] + row[
+                "a.z"] * row["a.vz"]) > 1e-13])
 promise("`offset` is 0 by default", GEARED % -4 + constraint(
     "gear", 'joints = ["a", "b"]', "ratio = -2"), {"rows": {"a.angle": lambda t: -4 - 8 * t}})
-promise("With `report.constraints` the run has columns `NAME.force x` .., `NAME.torque x` .., and "
-        "`final.constraints.NAME` in JSON: force and torque on the second body about its point, on the "
-        "first body's axes.",
+promise("With `report.constraints` the run has columns `NAME.force x` .., `NAME.torque x` .., "
+        "and `final.constraints.NAME` in JSON: force and torque on the second body about its "
+        "point, on the first body's axes.",
         HELD + body(FREE) + constraint("fixed", TO_A, "at = [[1, 0, 0], [1, 0, 0]]"),
         {"json": {"final.constraints.e.force": [0, 0, 10],
-                  "final.constraints.e.torque": [0, 10, 0]}})  # the weight acts at -1 m of the point
+                  "final.constraints.e.torque": [0, 10, 0]}})  # the weight acts 1 m behind
 promise("q_a = ratio q_b + offset", GEARED % -3.5 + constraint(
     "gear", 'joints = ["a", "b"]', "ratio = -2", "offset = 0.5"),
     {"rows": {"a.angle": lambda t: -3.5 - 8 * t, "b.angle": lambda t: 2 + 4 * t}})
@@ -260,7 +261,8 @@ promise("`direction` of a `blade` is on the body's axes, and the velocity is rel
         "guide.",
         guide("rotating", "angular_velocity = [0, 0, 0]", "origin_velocity = [0, 9, 0]")
         + body(FREE, f"initial = {{ attitude = {quaternion('z', math.pi / 2)}, "
-               "velocity = [0, 3, 0] }") + constraint("blade", 'body = "a"', "direction = [0, 1, 0]"),
+               "velocity = [0, 3, 0] }") + constraint("blade",
+                   'body = "a"', "direction = [0, 1, 0]"),
         {"rows": {"a.y": lambda t: 3 * t, "a.x": lambda t: 0}})
 # Equal masses on two tracks: each moves by half of what is wrong.
 promise("With `solve.assemble = true` the nearest start that does is taken: the least change, "
@@ -296,3 +298,29 @@ promise("The model of a scene with constraints must be `exact` or `small`.",
         BALL_ABOVE + solve(1, 'model = "linear"'), "model")
 promise("The model of a scene with constraints must be `exact` or `small`.",
         WEIGHT + BALL_ABOVE + solve(1, 'model = "small"'), None)
+promise("are points (length, pull)",
+        SLED % "initial = { displacement = 0.3 }" + FORCE
+        + element("spring", TO_A, "table = [[0.1, -20], [0.2, 0], [0.3, 50]]") + SOON,
+        {"start": {"s.acceleration x": -50}})
+# Seen from the guide x of the first body is y: the readings are those on the base's axes.
+promise("All are on the mount's axes, which move with the first body.",
+        BASE + BLOCK + element("mount", ON_BASE, "stiffness = [2, 0, 0]")
+        + sensor("reaction", 'element = "e"', 'axes = "guide"', on=""),
+        {"start": {"s.force": [0, -0.2, 0]}})
+# The pin is along y of the first body, which is -x of the guide.
+promise("`axis` is on the first body's axes.",
+        BASE + body(FREE, 'parent = "base"', "initial = { angular_velocity = [0, 3, 0] }")
+        + constraint("revolute", ON_BASE, "axis = [0, 1, 0]"), {"rows": {"a.wy": lambda t: 3}})
+promise("`warnings` of `--json` is the list of both.",
+        HELD.replace("-10", "10") + BALL_ABOVE + constraint(
+            "blade", 'body = "a"', "at = [0, 0, -0.5]", "direction = [0, 1, 0]", name="more"),
+        lambda found, rows: [] if len(found["warnings"]) == 2 else [f"{found['warnings']}"])
+promise("force and torque about the point that an element or a constraint exerts on its second "
+        "body",
+        HELD + body(FREE) + constraint("point", TO_A)
+        + sensor("reaction", 'constraint = "e"', "at = [1, 0, 0]", on=""),
+        {"s.force": [0, 0, 10], "s.torque": [0, 10, 0]})
+promise("moves the start onto the [constraints](#constraint)",
+        BAR % "2.5" + solve(1, "assemble = true"), {"start": {"a.x": 2}})
+promise("moves the start onto the [constraints](#constraint)",
+        BAR % "2.5" + solve(1, "assemble = false"), "the start is off by")

@@ -3,7 +3,7 @@
 import math
 
 from promises.table import (
-    BALL, DISC, FIXED, FREE, HINGE, SLIDE, WEIGHT, Ends, body, guide, named, part, promise,
+    BALL, DISC, FIXED, FREE, HINGE, SLIDE, WEIGHT, Ends, Near, body, guide, named, part, promise,
     quaternion, report, sensor, solve
 )
 
@@ -21,7 +21,21 @@ promise("any text", 'title = "Gyro \\u00e9 \\"1\\""\n' + body(FIXED),
         {"json": {"title": 'Gyro \u00e9 "1"'}})
 promise("a body, its joint, and the forces on it; at least one", guide("inertial"), "no [[body]]")
 
+promise("latitude and azimuth of a site always do",
+        guide("earth", "latitude = 1", "height = 0", "azimuth_deg = 0") + body(FIXED),
+        "guide.latitude: is no key here")
+promise("latitude and azimuth of a site always do",
+        guide("earth", "latitude_deg = 1", "height = 0", "azimuth = 0") + body(FIXED),
+        "guide.azimuth: is no key here")
+promise("quaternions `[w, x, y, z]` of norm 1",
+        body(BALL, "initial = { attitude = [1, 0, 0, 0.1] }"), "of norm 1.0049")
+
 # Units.
+promise("A number may be a text with a unit",
+        WEIGHT + body(HINGE, 'mass = "500 g"', 'centre = ["5 mm", 0, 0]', "inertia = [0, 1, 1]",
+                      'drive = "constant-rate"', 'initial = { rate = "2400 rpm" }')
+        + report("reactions"),
+        {"start": {"a.force x": -0.5 * 0.005 * (80 * math.pi) ** 2, "a.force z": 5}})
 for text, rate in (("2400 rpm", 80 * math.pi), ("3 Hz", 6 * math.pi), ("2 1/s", 2),
                    ("90 deg/s", math.pi / 2), ("2 rev/min", math.pi / 15)):
     promise("1 Hz is one revolution per second, 2 pi rad/s." if "Hz" in text else
@@ -94,7 +108,7 @@ for name in ("elements", "constraints", "reactions", "terms"):
 
 # Methods.
 SWING = body(HINGE, "centre = [1, 0, 0]", "%s")
-CLOSED = ("taylor", "verner98", "radau13", "gauss16")
+STEPS = ("taylor", "verner98", "radau13", "gauss16")
 ON = "On any other guide it is one body in a `spherical` joint at its centre of mass."
 EXCLUDE = ("Elements, loads, joint forces, controllers and gravity that is not uniform exclude it.")
 TURNS = guide("rotating", "angular_velocity = [0, 0, 1]")
@@ -143,7 +157,7 @@ for quote, scene, is_closed in (
      body(BALL, SPIN, "inertia = [2, 3, 4, 0.1, 0, 0]"), False),
 ):
     promise(quote, scene, lambda found, rows, c=is_closed: []
-            if (found["method"] not in CLOSED) == c else [f"the method is {found['method']}"])
+            if (found["method"] not in STEPS) == c else [f"the method is {found['method']}"])
 promise("It turns as in the inertial frame. The sign of its quaternion is that nearer to the "
         "start's.",
         TURNS + body(BALL, f"initial = {{ attitude = {[-x for x in quaternion('z', 0.5)]} }}")
@@ -183,6 +197,24 @@ for quote, scene, is_series in (
             if (found["method"] == "taylor") == s else [f"the method is {found['method']}"],
             files=SAMPLES)
 
+promise("Its rings have their principal axes there, and all centres of mass lie in the point.",
+        CARDAN.replace("inertia = [1, 2, 3]", "inertia = [1, 2, 3]\ncentre = [0, 0, 0.1]", 1)
+        % 'rotor = { mode = "free", speed = 50 }',
+        lambda found, rows: [] if found["method"] in STEPS else [found["method"]])
+STEADY = body(SLIDE, "force = { steps = [[0.3, 2]] }")
+for model in ("exact", "small"):
+    promise("any, with constraints and continuous controllers; forces may jump",
+            STEADY + solve(1, f'model = "{model}"', "tolerance = 1e-9"),
+            {"rows": {"a.displacement": Near(lambda t: max(0, t - 0.3) ** 2, 1e-9)}})
+# A guide that swings through 2 rad, and a relaxed spring on it: Euler's force is large.
+promise("exact in the motion of the guide",
+        guide("motion", "angles = { pitch = { terms = [{ amplitude = 2, frequency = 3 }] } }")
+        + body(HINGE, "spring = { stiffness = 400 }") + solve(1,
+            'model = "small"', "tolerance = 1e-9"),
+        # q'' + 400 q = 18 sin 3 t, with q = q' = 0.
+        {"rows": {"a.angle": Near(lambda t: 18 / 391 * (math.sin(3 * t) - 0.15 * math.sin(20 * t)),
+                                  1e-9)}})
+
 # Approximations.
 SMALL = WEIGHT + body(HINGE, "centre = [0, 0, -1]", "initial = { angle = 0.01 }")
 
@@ -198,6 +230,10 @@ for model in ("linear", "small"):
     promise("The exact motion is computed only with `compare = true`",
             SMALL + solve(1, f'model = "{model}"', "tolerance = 1e-2"),
             lambda found, rows: [f"{found['error']}"] if "distance" in found["error"] else [])
+for keys, has in (("compare = false", False), ("", False), ("compare = true", True)):
+    promise("computes the exact motion beside an approximation",
+            SMALL + solve(1, 'model = "linear"', keys, "tolerance = 1e-2"),
+            lambda found, rows, h=has: [] if ("distance" in found["error"]) == h else ["distance"])
 promise("`error.model` of `--json` is its greatest value at the outputs.",
         SMALL + solve(1, 'model = "linear"', "tolerance = 1e-2"),
         lambda found, rows: [] if 1e-8 < found["error"]["model"] < 1e-3 else [f"{found['error']}"])
@@ -226,6 +262,15 @@ for model, scene, reason in (
 ):
     promise("Other scenes are refused, with the reason.",
             scene + solve(0.1, f'model = "{model}"', "tolerance = 1e-2"), reason)
+promise("angles of rotors grow uniformly", FAST + solve(0.1,
+    'model = "precession"', "tolerance = 1e-2"),
+        {"rows": {"c.angle": lambda t: 900 * t}})
+# 0.1 g beside the axis.
+UNBALANCED = (AT_REST % "").replace(HINGE, HINGE + '\ndrive = "constant-rate"').replace(
+    'name = "c"', 'name = "c"\ncentre = [1e-4, 0, 0]\ninitial = { rate = 900 }')
+for model, reason in (("fuchs-weigand", None), ("foeppl", "foeppl")):
+    promise("if its speed is regulated it may be unbalanced",
+            UNBALANCED + solve(0.01, f'model = "{model}"', "tolerance = 1e-2"), reason)
 for model in ("foeppl", "fuchs-weigand"):
     for guided, reason in (("", None), (TURNS, "guide")):
         promise('A rotor with `mode = "free"` needs a guide at rest.',
