@@ -142,11 +142,13 @@ ELSEWHERE = [
      "tests/dynamics/sensor/sensors.cpp: azimuth_about_the_plumb_line"),
     ("Allan deviation N/sqrt(tau)",
      "tests/dynamics/sensor/errors.cpp: white_noise_by_its_allan_deviation"),
-    ("Samples are taken at the output times, or with `period = 0.01` at multiples of the period.",
-     FILE + "scene_sensors.cpp: samples_are_rows"),
-    ("Samples and steps of the reference are met exactly.", LOOPS + "reference_steps_are_met"),
-    ("The bends of a limit are not: steps become short there, and the error estimate covers them.",
-     LOOPS + "saturated_spring_is_in_pieces_closed"),
+    ("Samples are taken at the output times, or with `period = 0.01` at `t_begin` and at multiples "
+     "of the period after it.", FILE + "scene_sensors.cpp: samples_are_rows"),
+    ("Samples, steps of the reference", LOOPS + "reference_steps_are_met"),
+    ("the limits of continuous laws are met exactly: steps end there",
+     LOOPS + "a_limited_pid_is_in_pieces_closed"),
+    ("In a continuous law its growth fades out within a millionth of the limit beyond, so that an "
+     "output may stay there.", LOOPS + "outputs_may_stay_at_their_limit"),
     ("`analyze` closes the loops.", PROGRAMS + "analyze.cpp: servo_has_roots_response_and_margins"),
     ("Roots of sampled loops follow from the exact transition over the common period of all "
      "controllers.", LOOPS + "sampled_transition_is_exact"),

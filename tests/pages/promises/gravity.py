@@ -3,8 +3,8 @@
 import math
 
 from promises.table import (
-    BALL, FIXED, FREE, WEIGHT, Near, body, cross, guide, part, promise, quaternion, report, sensor,
-    solve
+    BALL, FIXED, FREE, WEIGHT, Near, body, cross, guide, log, part, promise, quaternion, report,
+    sensor, solve
 )
 
 MU = 3.986004418e14
@@ -63,18 +63,28 @@ for field in ((), ('field = "normal"',)):
         + gravity("earth", *field) + STILL, {"s": Near([-9.7803253359, 0, 0], 1e-9)},
     )
 promise(
-    "Without `[gravity]` the field is `gravity` of an `earth` or `course` guide, or `none`.",
+    "Without `[gravity]` the field is `gravity` of an `earth`, `course` or `rates` guide, or "
+    "`none`.",
     guide("earth", "latitude_deg = 0", "height = 0", "azimuth_deg = 0", "gravity = 9") + STILL,
     {"s": [-9, 0, 0]},
 )
 promise(
-    "Without `[gravity]` the field is `gravity` of an `earth` or `course` guide, or `none`.",
+    "Without `[gravity]` the field is `gravity` of an `earth`, `course` or `rates` guide, or "
+    "`none`.",
     FALLING, {"s.acceleration": [0, 0, 0]},
 )
-for lines in ('kind = "uniform"', "vector = [0, 0, 1]"), ('kind = "earth"',), (
+LOG = log("t,wx,wy,wz,ax,ay,az", [(k / 4, 0, 0, 0, 0, 0, 9.75) for k in range(9)])
+STRAPPED = guide("rates", 'file = "log.csv"', "gravity = [0, 0, -9.75]", "sigma = 0")
+for field, wanted in (("", -9.75), (gravity("none"), 0)):
+    promise(
+        "Without `[gravity]` the field is `gravity` of an `earth`, `course` or `rates` guide, or "
+        "`none`.",
+        STRAPPED + field + FALLING, {"s.acceleration": [0, 0, wanted]}, files={"log.csv": LOG},
+    )
+for lines in ('kind = "uniform"', "vector = [0, 0, 1]"), ('kind = "earth"',), ('kind = "none"',), (
         'kind = "point"', "mu = 1"):
     promise(
-        "A number there excludes any other field.",
+        "A number there excludes any `[gravity]`.",
         guide("earth", "latitude_deg = 0", "height = 0", "azimuth_deg = 0", "gravity = 9")
         + part("[gravity]", *lines) + STILL, "gives gravity a second time",
     )

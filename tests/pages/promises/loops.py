@@ -153,15 +153,17 @@ def stays_near_its_limit(found, rows):
             yield f"the output goes from {last['c.b']} to {row['c.b']} at t = {row['t']}"
 
 
-promise("While an output of a pid is at its limit, s does not grow further in that direction.",
+promise("The integral part s I of a pid does not drive an output beyond its limit: s grows in that "
+        "direction until the output is at the limit.",
         CLOCK + controller(pid("integral = 0.4"), "reference = 5", "limit = 1", f"period = {STEP}",
                            **TO_B) + solve(2.5, f"output_step = {STEP}"), stays_near_its_limit)
-promise("While an output of a pid is at its limit, s does not grow further in that direction.",
+promise("The integral part s I of a pid does not drive an output beyond its limit: s grows in that "
+        "direction until the output is at the limit.",
         CLOCK + controller(pid("integral = 2"), "reference = 5", "limit = 1", **TO_B)
         + solve(2, "output_step = 0.125", "tolerance = 1e-10"),
-        # Continuous: 2 s = 1 at 0.1 s, and e changes its sign at 5/3 s.
+        # Continuous: 2 s = 1 at 0.1 s, and e changes its sign at 5/3 s. s fades out a millionth later.
         {"rows": {"c.b": Near(lambda t: min(1, 2 * (5 * t - 1.5 * t * t)) if t < 0.2 else
-                              1 - 3 * max(0, t - 5 / 3) ** 2, 1e-8)}})
+                              1 - 3 * max(0, t - 5 / 3) ** 2, 1.1e-6)}})
 promise("the greatest size of the outputs, a number or one for each",
         CLOCK + controller(P, "reference = 5", "limit = 2", **TO_B),
         {"rows": {"c.b": lambda t: max(-2, min(2, 4 * (5 - 3 * t)))}})

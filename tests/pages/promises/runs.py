@@ -84,7 +84,8 @@ promise("(t_end - t_begin)/500", SCENE % "" + solve(6, "t_begin = 1"),
 promise("s, after `t_begin`", SCENE % "" + solve(1, "t_begin = 1"), "must be after t_begin")
 for tolerance, reason in (("1e-15", Ends(4, "")), ("1e-2", None), ("9e-16", "lies outside"),
                           ("1.1e-2", "lies outside")):
-    promise("attitudes in rad, the rest relative to its greatest size; 1e-15 to 1e-2",
+    promise("attitudes in rad, the rest relative to its greatest size or, if that is smaller, to "
+            "1e-3 in SI units; 1e-15 to 1e-2",
             WEIGHT + body(HINGE, "centre = [1, 0, 0]", "damping = 1") + solve(
                 100, f"tolerance = {tolerance}"), reason)
 for name, method in (("auto", "closed form"), ("automatic", "closed form"), ("taylor", "taylor"),
