@@ -349,6 +349,11 @@ BOOST_AUTO_TEST_CASE(mistakes_are_told) {
                       "law = { kind = \"pid\", integral = 1 }\n") +
            run_part,
        "true x");
+  told(arm + imu + "bias = 1\n" +
+           controller("reads = [\"imu.z\"]\ndrives = [\"arm\"]\n"
+                      "law = { kind = \"pid\", integral = 1 }\n") +
+           run_part,
+       "'imu.true z'");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -586,6 +586,8 @@ BOOST_AUTO_TEST_CASE(have_line_column_key_and_reason) {
        "s.toml:1:1: the table [solve] with its key 't_end' is missing\n"
        "s.toml:1:1: no [[body]] is given"},
       {"titel = \"x\"\n" + body + run, "s.toml:1:1: titel: is no key here (did you mean 'title'?)"},
+      {"[gravity]\nkind = \"none\"\nstrength = 1\n" + body + run,
+       "s.toml:3:1: gravity.strength: is no key here; allowed: 'kind'"},
       {"title = 3\n" + body + run, "s.toml:1:9: title: must be a text, not a whole number"},
       {"a = 1\na = 2\n", "is no TOML"},
       {"[guide]\nkind = \"rotatin\"\n" + body + run,

@@ -161,7 +161,7 @@ promise("The integral part s I of a pid does not drive an output beyond its limi
         "direction until the output is at the limit.",
         CLOCK + controller(pid("integral = 2"), "reference = 5", "limit = 1", **TO_B)
         + solve(2, "output_step = 0.125", "tolerance = 1e-10"),
-        # Continuous: 2 s = 1 at 0.1 s, and e changes its sign at 5/3 s. s fades out a millionth later.
+        # Continuous: 2 s = 1 at 0.1 s, and e changes its sign at 5/3 s; s fades out at 1 + 1e-6.
         {"rows": {"c.b": Near(lambda t: min(1, 2 * (5 * t - 1.5 * t * t)) if t < 0.2 else
                               1 - 3 * max(0, t - 5 / 3) ** 2, 1.1e-6)}})
 promise("the greatest size of the outputs, a number or one for each",

@@ -209,6 +209,9 @@ promise("With `report.constraints` the run has columns `NAME.force x` .., `NAME.
 promise("q_a = ratio q_b + offset", GEARED % -3.5 + constraint(
     "gear", 'joints = ["a", "b"]', "ratio = -2", "offset = 0.5"),
     {"rows": {"a.angle": lambda t: -3.5 - 8 * t, "b.angle": lambda t: 2 + 4 * t}})
+promise("q_a = ratio q_b + offset", GEARED % (math.pi - 4) + constraint(
+    "gear", 'joints = ["a", "b"]', "ratio = -2", "offset_deg = 180"),
+    {"rows": {"a.angle": lambda t: math.pi - 4 - 8 * t}})
 promise("The start must fulfil the constraints to 1e-9 of the lengths in them.",
         GEARED % -3.4 + constraint("gear", 'joints = ["a", "b"]', "ratio = -2", "offset = 0.5"),
         "the start is off by")
