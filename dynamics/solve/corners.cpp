@@ -91,6 +91,20 @@ std::optional<Change> first_change(const G& g, const Slope& slope, double begin,
   return std::nullopt;
 }
 
+/// The time until the first of the corners, if their functions change at their present rates. Values
+/// without a sign are at a corner if it is nearer than `width`.
+///
+/// way : 1 forwards, -1 backwards
+double time_to_corner(const std::vector<Corner>& here, double way, double width) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Corner& corner : here) {
+    const double ahead = way * -corner.value / corner.rate;
+    const bool has_sign = std::abs(corner.value) > corner.rounding;
+    if (ahead > 0 && (has_sign || ahead <= width)) nearest = std::min(nearest, ahead);
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<Corner> SteppedRun::corners_after(double from) const {
@@ -132,7 +146,7 @@ std::optional<SteppedRun::CornerTime> SteppedRun::first_corner(const std::vector
       if (!change) continue;
       if (change->s < earliest) {
         earliest = change->s;
-        found = {from + change->s * h, k, change->is_sure};
+        found = {from + change->s * h, change->is_sure};
       }
       break;
     }
@@ -140,23 +154,6 @@ std::optional<SteppedRun::CornerTime> SteppedRun::first_corner(const std::vector
   return found;
 }
 
-namespace {
-
-/// The time until the first of the corners, if their functions change at their present rates. Values
-/// without a sign are at a corner if it is nearer than `width`.
-double time_to_corner(const std::vector<Corner>& here, double way, double width) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Corner& corner : here) {
-    const double ahead = std::copysign(1, way) * -corner.value / corner.rate;
-    const bool has_sign = std::abs(corner.value) > corner.rounding;
-    if (ahead > 0 && (has_sign || ahead <= width)) nearest = std::min(nearest, ahead);
-  }
-  return nearest;
-}
-
-}  // namespace
-
-/// Times nearer to a corner at t cannot be told from it.
 double SteppedRun::width_of_corner(double t) const {
   const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(t);
   return std::max(corner_width_ * uncut_, rounding);

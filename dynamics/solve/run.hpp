@@ -148,14 +148,14 @@ class SteppedRun : public Run {
   }
 
  private:
-  /// A corner within the last step, by the function that changes its sign there. An unsure one is a
-  /// time at which the function comes too near to 0 for the length of the step.
+  /// A corner within the last step. An unsure one is a time at which a function comes too near to 0
+  /// for the length of the step.
   struct CornerTime {
     double t;
-    std::size_t function;
     bool is_sure;
   };
 
+  /// Times nearer to a corner at t cannot be told from it.
   [[nodiscard]] double width_of_corner(double t) const;
 
   /// Takes a step that ends before the first corner on its way, or crosses the corner at its begin.
