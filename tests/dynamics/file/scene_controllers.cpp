@@ -296,7 +296,7 @@ BOOST_AUTO_TEST_CASE(margins_fulfil_their_equations) {
   const LoopMargins coarse = loop_margins(loop, {0.1, 3, 100});
   BOOST_TEST_REQUIRE((coarse.phase.has_value() && coarse.gain.has_value()));
   BOOST_TEST(std::abs(coarse.gain->frequency - 10) < 1e-11);
-  const auto twice = [](double w) { return Complex(-1 / w, (w - 20) * (w - 30)); };
+  const auto twice = [](double at) { return Complex(-1 / at, (at - 20) * (at - 30)); };
   BOOST_TEST(loop_margins(twice, {10, 100}).gain.has_value());
   const auto lag = [](double x) { return 1.0 / Complex(1, x / 7); };
   BOOST_TEST(std::abs(*bandwidth(lag, grid) - 7 * std::sqrt(1 + 0.02 / 49)) < 1e-3);
