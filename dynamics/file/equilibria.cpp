@@ -262,8 +262,8 @@ class Search {
     return free;
   }
 
-  /// The directions in which a state of rest may lie beside another: coordinates, as far as they are
-  /// searched and independent, and the memory of controllers.
+  /// The directions in which a state of rest may lie beside another. They are the independent
+  /// coordinates that are searched, and the memory of controllers.
   [[nodiscard]] std::vector<int> directions_of_rest(const FreeDirections& directions) const {
     std::vector<int> result = searched(directions);
     for (int i = 2 * directions_.rates; i < tangent_.dimension(); ++i) result.push_back(i);

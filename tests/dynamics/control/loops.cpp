@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(saturated_spring_is_in_pieces_closed) {
 }
 
 // A wheel J v' = u - d v from rest, by u = P (1 - v) + I s. Beyond its limit L u is cut, and s rests.
-// From P (1 - v) = L on s grows only as far as u stays at L. Where s' = 1 - v no longer holds it there,
+// From P (1 - v) = L on it grows only as u stays at L. Where s' = 1 - v no longer holds it there,
 // u leaves the limit, and the motion is a matrix exponential.
 BOOST_AUTO_TEST_CASE(outputs_may_stay_at_their_limit) {
   const Real P = 2, I = 8, L = 1.5L, d = 0.1L, J = moment;

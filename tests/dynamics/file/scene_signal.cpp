@@ -348,7 +348,8 @@ BOOST_AUTO_TEST_CASE(mistakes_are_reported) {
        "s.toml:6:29: body 'a'.drive.rate: is given beside 'angle'; one of them is the motion"},
       {body("drive = { displacement = 1 }"),
        "s.toml:6:9: body 'a'.drive: is the motion of the joint: give 'angle' or 'rate'\n"
-       "s.toml:6:11: body 'a'.drive.displacement: is no key here"},
+       "s.toml:6:11: body 'a'.drive.displacement: is no key here; allowed: 'angle', 'angle_deg', "
+       "'rate' or 'rate_deg'"},
       {body("drive = { angle = { points = [[1, 0], [2, 1]] } }"),
        "s.toml:6:19: body 'a'.drive.angle: jumps, or its rate does, at t = 1 s, which takes an "
        "infinite force; give 'constant', 'rate' and 'terms'"},

@@ -153,12 +153,12 @@ def stays_near_its_limit(found, rows):
             yield f"the output goes from {last['c.b']} to {row['c.b']} at t = {row['t']}"
 
 
-promise("The integral part s I of a pid does not drive an output beyond its limit: s grows in that "
-        "direction until the output is at the limit.",
+promise("The integral part s I of a pid does not drive an output beyond its limit. In that "
+        "direction s grows until the output is at the limit.",
         CLOCK + controller(pid("integral = 0.4"), "reference = 5", "limit = 1", f"period = {STEP}",
                            **TO_B) + solve(2.5, f"output_step = {STEP}"), stays_near_its_limit)
-promise("The integral part s I of a pid does not drive an output beyond its limit: s grows in that "
-        "direction until the output is at the limit.",
+promise("The integral part s I of a pid does not drive an output beyond its limit. In that "
+        "direction s grows until the output is at the limit.",
         CLOCK + controller(pid("integral = 2"), "reference = 5", "limit = 1", **TO_B)
         + solve(2, "output_step = 0.125", "tolerance = 1e-10"),
         # Continuous: 2 s = 1 at 0.1 s, and e changes its sign at 5/3 s; s fades out at 1 + 1e-6.
