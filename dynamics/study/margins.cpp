@@ -30,10 +30,11 @@ std::vector<double> crossings(const F& function, const std::vector<double>& freq
   for (std::size_t i = 1; i < frequencies.size(); ++i) {
     const double ratio = frequencies[i] / frequencies[i - 1];
     const bool is_range = ratio > 1 && std::isfinite(ratio);
-    const double parts = is_range ? std::ceil(100 * std::log10(ratio)) : 1;
+    const int parts = is_range ? static_cast<int>(std::ceil(100 * std::log10(ratio))) : 1;
     double a = frequencies[i - 1];
-    for (double k = 1; k <= parts; ++k) {
-      const double b = k < parts ? frequencies[i - 1] * std::pow(ratio, k / parts) : frequencies[i];
+    for (int k = 1; k <= parts; ++k) {
+      const double share = static_cast<double>(k) / parts;
+      const double b = k < parts ? frequencies[i - 1] * std::pow(ratio, share) : frequencies[i];
       if ((function(a) < 0) != (function(b) < 0)) result.push_back(crossing(function, a, b));
       a = b;
     }
