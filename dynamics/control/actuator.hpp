@@ -38,6 +38,17 @@ struct Actuator {
 
 namespace detail {
 
+/// Makes a rope longer by `length`, and by what other winches pay out.
+template <class N>
+void pay_out(int rope, const N& length, OutsideForces<N>& forces) {
+  for (auto& [of, paid_out] : forces.winches) {
+    if (of != rope) continue;
+    paid_out += length;
+    return;
+  }
+  forces.winches.emplace_back(rope, length);
+}
+
 /// Adds an action of the size u. There is a joint force for each rate.
 template <class N>
 void add(const Actuator& actuator, const N& u, OutsideForces<N>& forces) {
@@ -46,7 +57,7 @@ void add(const Actuator& actuator, const N& u, OutsideForces<N>& forces) {
     return;
   }
   if (const auto* const winch = std::get_if<Actuator::Winch>(&actuator.kind)) {
-    forces.winches.emplace_back(winch->element, u);
+    pay_out(winch->element, u, forces);
     return;
   }
   const auto& load = std::get<Actuator::BodyForce>(actuator.kind);

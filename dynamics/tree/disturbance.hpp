@@ -18,7 +18,7 @@ template <class S>
 struct OutsideForces {
   Eigen::Matrix<S, Eigen::Dynamic, 1> joint_force = {};  ///< for each rate; empty: none
   std::vector<std::pair<int, Motor<S>>> on_bodies = {};  ///< of bodies that are no rotors
-  /// Elements that are ropes, and the lengths by which winches make them longer.
+  /// Elements that are ropes, each once, and the lengths by which winches make them longer.
   std::vector<std::pair<int, S>> winches = {};
 };
 

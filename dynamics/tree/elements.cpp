@@ -100,12 +100,11 @@ constexpr double rounding_of_corners = 1e-14;
 
 /// The length of the k-th element, a rope, that its winch has paid out.
 double paid_out(const OutsideForces<double>* outside, std::size_t k) {
-  double sum = 0;
-  if (outside == nullptr) return sum;
-  for (const auto& [at, length] : outside->winches) {
-    if (static_cast<std::size_t>(at) == k) sum += length;
+  if (outside == nullptr) return 0;
+  for (const auto& [rope, length] : outside->winches) {
+    if (static_cast<std::size_t>(rope) == k) return length;
   }
-  return sum;
+  return 0;
 }
 
 }  // namespace

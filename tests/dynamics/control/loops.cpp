@@ -389,7 +389,7 @@ BOOST_AUTO_TEST_CASE(a_limited_pid_is_in_pieces_closed) {
 }
 
 // A hook on a rope that a winch pays out and takes in, by the displacement at each sample. In between
-// it swings about the sag, or falls.
+// it swings about the sag, or falls. Two controllers that drive the rope add up.
 BOOST_AUTO_TEST_CASE(a_winch_may_slacken_a_rope_at_a_sample) {
   const Real g = 9.81L, m = 10, k = 2000, w = std::sqrt(k / m), T = 0.1L;
   const auto length = [](Real z) { return 2 - 0.3L * (-1.9L - z); };
@@ -432,21 +432,30 @@ BOOST_AUTO_TEST_CASE(a_winch_may_slacken_a_rope_at_a_sample) {
   hook.inertia = InertiaTensor<Body>::about_centre(10, {0, 0, 0}, Matrix3<double>::Identity());
   const RopeElement rope{
       .name = "rope", .ends = {{{"guide"}, {"arm"}}}, .stiffness = 2000, .length = 2};
-  Controller winch = servo(PidLaw{-0.3}, 0.1);
-  winch.drives = {"rope"};
-  winch.reference = {Signal<double>(-1.9)};
-  const ControlledSystem<RestingFrame<>> system(
-      BodySystem<RestingFrame<>>({}, {hook}, UniformGravity<Guide>{{0, 0, -9.81}}, {rope}),
-      {winch});
-  const auto start = system.start({Eigen::VectorXd::Constant(1, -2.05), Eigen::VectorXd::Zero(1)});
-  for (const Method method : {Method::automatic, Method::radau13}) {
-    const auto run = solve(
-        system, start, {.t_end = 0.5, .output_step = 0.1, .tolerance = 1e-10, .method = method});
-    BOOST_TEST_CONTEXT(name(method)) {
-      BOOST_TEST(run.report.tolerance_kept);
-      BOOST_TEST(worst_angle(run, [&](double t) {
-                   return places[std::size_t(std::lround(t / 0.1))];
-                 }) <= run.report.error_estimate * 2.1);
+  const auto winch = [](const std::string& name, double gain) {
+    Controller result = servo(PidLaw{gain}, 0.1);
+    result.name = name;
+    result.drives = {"rope"};
+    result.reference = {Signal<double>(-1.9)};
+    return result;
+  };
+  const std::vector<std::vector<Controller>> ways{{winch("one", -0.3)},
+                                                  {winch("one", -0.5), winch("two", 0.2)}};
+  for (const auto& winches : ways) {
+    const ControlledSystem<RestingFrame<>> system(
+        BodySystem<RestingFrame<>>({}, {hook}, UniformGravity<Guide>{{0, 0, -9.81}}, {rope}),
+        winches);
+    const auto start =
+        system.start({Eigen::VectorXd::Constant(1, -2.05), Eigen::VectorXd::Zero(1)});
+    for (const Method method : {Method::automatic, Method::radau13}) {
+      const auto run = solve(
+          system, start, {.t_end = 0.5, .output_step = 0.1, .tolerance = 1e-10, .method = method});
+      BOOST_TEST_CONTEXT(winches.size() << " controllers, " << name(method)) {
+        BOOST_TEST(run.report.tolerance_kept);
+        BOOST_TEST(worst_angle(run, [&](double t) {
+                     return places[std::size_t(std::lround(t / 0.1))];
+                   }) <= run.report.error_estimate * 2.1);
+      }
     }
   }
 }
