@@ -547,11 +547,8 @@ class ControlledSystem {
   [[nodiscard]] detail::MovingLoop moving(const detail::ControlLoop& loop, double t,
                                           const Vector& y, const Vector& dy) const {
     using One = detail::AlongOne;
-    const auto number = [](double value, double rate) {
-      return One(value, One::DerType::Constant(rate));
-    };
-    const detail::VectorOn<One> state = y.binaryExpr(dy, number);
-    const One time = number(t, 1);
+    const detail::VectorOn<One> state = y.binaryExpr(dy, &detail::with_rate);
+    const One time = detail::with_rate(t, 1);
     detail::MovingLoop result{time, {}, state.segment(loop.memory_begin(), loop.memory_size())};
     if (!loop.feeds_through()) return result;
     const detail::VectorOn<One> joints = state.head(joint_count());

@@ -77,6 +77,10 @@ namespace detail {
 /// A number and its derivative along one direction.
 using AlongOne = Eigen::AutoDiffScalar<Eigen::Matrix<double, 1, 1>>;
 
+[[nodiscard]] inline AlongOne with_rate(double value, double rate) {
+  return {value, AlongOne::DerType::Constant(rate)};
+}
+
 /// A situation in dual numbers, reduced to the k-th derivative.
 ///
 /// One : AlongOne; a template parameter, so it is compiled only if called

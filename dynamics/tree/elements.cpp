@@ -134,8 +134,6 @@ std::vector<Corner> element_corners(const BodyTree& tree, double t,
 
 namespace {
 
-AlongOne moving(double value, double rate) { return {value, AlongOne::DerType::Constant(rate)}; }
-
 Corner end_of_pull(const RopeElement& rope, double t, double paid_out,
                    const ElementMotion<AlongOne>& m) {
   const double rate = rope.length.derivative(t, 1);
@@ -143,11 +141,11 @@ Corner end_of_pull(const RopeElement& rope, double t, double paid_out,
   const AlongOne squared = m.reach.squaredNorm();
   if (squared.value() == 0) return {};
   const AlongOne distance = sqrt(squared);
-  const AlongOne length = moving(rope.length(t) + paid_out, rate);
+  const AlongOne length = with_rate(rope.length(t) + paid_out, rate);
   const AlongOne stretch = squared - length * distance;
   const AlongOne approach = m.reach.dot(m.velocity);
-  const AlongOne pull =
-      rope.stiffness * stretch + rope.damping * (approach - distance * moving(rate, acceleration));
+  const AlongOne pull = rope.stiffness * stretch +
+                        rope.damping * (approach - distance * with_rate(rate, acceleration));
   const double L = distance.value();
   const double size = rope.stiffness * L * (L + length.value()) +
                       rope.damping * (std::abs(approach.value()) + L * std::abs(rate));
@@ -167,14 +165,14 @@ bool has_damped_ropes(const BodyTree& tree) {
 void append_ends_of_pull(const BodyTree& tree, double t, const OutsideForces<double>* outside,
                          const Eigen::VectorXd& y, const Eigen::VectorXd& dy,
                          std::vector<Corner>& result) {
-  const Eigen::Matrix<AlongOne, Eigen::Dynamic, 1> along = y.binaryExpr(dy, &moving);
+  const Eigen::Matrix<AlongOne, Eigen::Dynamic, 1> along = y.binaryExpr(dy, &with_rate);
   MotionSpace<AlongOne> w(tree);
   set_poses(tree, along.data(), w);
   set_places(tree, along.data() + tree.coordinates(), w);
   for (std::size_t k = 0; k < tree.elements().size(); ++k) {
     const auto* const rope = std::get_if<RopeElement>(&tree.elements()[k]);
     if (rope == nullptr || !(rope->damping > 0)) continue;
-    const auto m = motion_between(rope->ends, tree.element_places()[k].slot, moving(t, 1), w);
+    const auto m = motion_between(rope->ends, tree.element_places()[k].slot, with_rate(t, 1), w);
     result.push_back(end_of_pull(*rope, t, paid_out(outside, k), m));
   }
 }
