@@ -16,9 +16,11 @@ namespace kreisel {
 ///   s_k = s_k-1 + T e_k,   d_k = a d_k-1 + (1 - a) (e_k - e_k-1)/T,   a = exp(-T/tau)
 ///
 /// All memory begins with 0. The integral does not drive an output beyond its limit: s grows in that
-/// direction until the output is at the limit. In a continuous law its growth fades out within a
-/// millionth of the limit beyond. The field is continuous there, so that an output may stay at its
-/// limit without chatter.
+/// direction until the output is at the limit. In a continuous law its growth fades out,
+///
+///   s' = e max(0, 1 - 1e6 (|u|/limit - 1))   where |u| > limit and e drives the output further.
+///
+/// The field is continuous there, so that an output may stay at its limit without chatter.
 ///
 /// Units : u per e; u per e and second; u s per e; s
 struct PidLaw {

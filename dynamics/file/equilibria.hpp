@@ -12,7 +12,7 @@ namespace steady_motion {
 
 /// A state in which all bodies except rotors and drives are at rest.
 struct Equilibrium {
-  Eigen::VectorXd state;  ///< angles without a spring in (-pi, pi]
+  Eigen::VectorXd state;  ///< angles whose turns change no rate in (-pi, pi]
   double residual = 0;    ///< greatest rate that should be 0
 
   /// Number of directions in which it continues as a family of equilibria.
@@ -37,8 +37,8 @@ struct Equilibria {
 [[nodiscard]] Equilibria find_equilibria(const StudySystem& system, const Eigen::VectorXd& start,
                                          double t_end);
 
-/// The state whose angles without a spring are shifted by full rotations to be nearest to another
-/// state.
+/// The state whose angles are shifted by full rotations, if these change no rate, to be nearest to
+/// another state.
 [[nodiscard]] Eigen::VectorXd in_turns_of(const StudySystem& system, Eigen::VectorXd state,
                                           const Eigen::VectorXd& other);
 

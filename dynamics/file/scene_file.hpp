@@ -102,8 +102,8 @@ struct None {};
 /// Gravitation of the WGS84 ellipsoid at every body's centre of mass.
 struct Ellipsoid {};
 
-/// The effective gravity at the site of the earth frame or of a level vehicle, along its x axis, the
-/// same for all bodies.
+/// The effective gravity at the site of the earth frame or of a level vehicle, along its x axis. It
+/// includes the centrifugal part at the origin; the gravitation is the same for all bodies.
 struct AtSite {
   double magnitude = 0;  ///< m/s^2
 };

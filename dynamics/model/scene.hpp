@@ -103,7 +103,8 @@ concept HasSamples = requires(const S& scene, double t, typename S::Vector& y) {
 /// The field has corners where parts of the scene begin or end to act, as ropes do:
 ///
 ///   has_corners()      : true if there may be any
-///   corners(t, y)      : the functions whose changes of sign are corners
+///   corners(t, y)      : the functions whose changes of sign are corners. At the time of a jump y is
+///                        the state after it, or before it at the end of a step
 ///   corner_frequency() : rad/s, the fastest oscillation of these functions at given states
 template <class S>
 concept HasCorners = requires(const S& scene, double t, const typename S::Vector& y) {

@@ -182,8 +182,8 @@ class SteppedRun : public Run {
   bool has_corners_;
   double uncut_ = 0;  ///< length of the last step that no corner cut
   double corner_width_ = rules::corner_width;
-  double sampled_at_;  ///< time of the last samples, or the begin
-  std::vector<double> jumps_;
+  double sampled_at_;          ///< time of the last samples, or the begin
+  std::vector<double> jumps_;  ///< of a scene with corners
   std::vector<int> blocks_;
   std::vector<double> sizes_;
   std::stop_token stop_;
@@ -272,7 +272,7 @@ inline SteppedRun::SteppedRun(const SteppedScene& scene, const SolveOptions& opt
       has_samples_(scene.has_samples()),
       has_corners_(scene.has_corners()),
       sampled_at_(options.begin),
-      jumps_(sorted(options.discontinuities)),
+      jumps_(has_corners_ ? sorted(options.discontinuities) : std::vector<double>()),
       blocks_(scene.blocks()),
       sizes_(blocks_.size(), options.absolute_scale),
       stop_(options.stop) {}
