@@ -85,6 +85,7 @@ void add_fast_gyro(Random& r, Scene& scene) {
   scene.bodies.back().rotor->speed = {sign(r) * r.pick({1000.0, 2000.0}), false};
   const auto axis = scene.bodies.back().axis;
   scene.bodies[1].centre = 0.05 * axis;
+  if (r.chance(0.4)) scene.bodies[1].force_in_time.rate = small(r, 0.01) * Vector::UnitX();
   scene.gravity = GravityKind::uniform;
   scene.gravity_vector = 9.81 * scene.bodies[0].axis;
   scene.model = "precession";

@@ -27,6 +27,17 @@ std::vector<int> bodies_with_mass(const Scene& scene) {
   return result;
 }
 
+/// The ropes that a servo may pay out: a damped one needs the rate of its length.
+std::vector<int> winches(const Scene& scene, bool is_sampled) {
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(scene.elements.size()); ++i) {
+    const Element& element = scene.elements[static_cast<std::size_t>(i)];
+    const bool has_rate = is_sampled || element.damping == 0;
+    if (element.kind == ElementKind::rope && has_rate) result.push_back(i);
+  }
+  return result;
+}
+
 Servo servo(Random& r, double duration) {
   Servo result;
   result.reads_rate = r.chance(0.3);
@@ -47,11 +58,13 @@ Servo servo(Random& r, double duration) {
 
 void add_servos(Random& r, Scene& scene) {
   const double duration = scene.t_end - scene.t_begin;
+  const bool has_rope = !winches(scene, true).empty();
   // Samples jump within the periods of increments, which the check of increments does not expect.
   const bool integrates = std::any_of(scene.sensors.begin(), scene.sensors.end(),
                                       [](const Sensor& s) { return !s.increments.empty(); });
   const std::vector<int> driven = joints_of_one(scene, true);
-  if (r.chance(0.85) || driven.empty() || integrates || duration > 20) return;
+  const double seldom = has_rope ? 0.5 : 0.85;
+  if (r.chance(seldom) || driven.empty() || integrates || duration > 20) return;
   do {
     Servo result = servo(r, duration);
     result.drives = driven[static_cast<std::size_t>(r.below(static_cast<int>(driven.size())))];
@@ -64,6 +77,13 @@ void add_servos(Random& r, Scene& scene) {
     result.reads = r.chance(0.7) && result.load < 0
                        ? result.drives
                        : read[static_cast<std::size_t>(r.below(static_cast<int>(read.size())))];
+    const std::vector<int> ropes = winches(scene, result.period > 0);
+    if (!ropes.empty() && r.chance(0.7)) {
+      result.load = -1;
+      result.rope = ropes[static_cast<std::size_t>(r.below(static_cast<int>(ropes.size())))];
+      const double length = scene.elements[static_cast<std::size_t>(result.rope)].length;
+      result.limit = r.pick({0.1, 0.4}) * length;  // lengths stay above 0
+    }
     scene.servos.push_back(result);
   } while (r.chance(0.3));
 }

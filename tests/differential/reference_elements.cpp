@@ -64,7 +64,8 @@ Vec Tree::spring_force(const Element& e) const {
   if (length == 0) return Vec::Zero();
   const Vec v = b.v + b.w.cross(arm_b) - a.v - a.w.cross(arm_a);
   const Course winch = course_of(e.length_in_time, now_, within_);
-  const Real unloaded = e.length_in_time.empty() ? Real(e.length) : winch.value.x();
+  const Real given = e.length_in_time.empty() ? Real(e.length) : winch.value.x();
+  const Real unloaded = given + paid_out(e);
   const Real rate = reach.dot(v) / length - winch.rate.x();
   const Real tension = pull(e, length, unloaded) + Real(e.damping) * rate;
   const bool is_slack = e.kind == ElementKind::rope && (length <= unloaded || tension <= 0);

@@ -124,7 +124,7 @@ void Tree::add_forces(Real t, const State& y, const Motion& guide) {
   }
   add_elements();
   add_gears(y);
-  add_servos(y, true);
+  add_servos(true);
 }
 
 }  // namespace differential::reference

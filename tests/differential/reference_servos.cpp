@@ -52,16 +52,32 @@ Real Tree::servo_error(const Servo& servo, const State& y) const {
   return Real(servo.reference) - (servo.reads_rate ? v : q);
 }
 
-void Tree::add_servos(const State& y, bool at_joints) {
+void Tree::set_servo_outputs(const State& y) {
+  outputs_.resize(memories_.size());
   for (std::size_t k = 0; k < memories_.size(); ++k) {
     const Servo& servo = scene_.servos[k];
     const Real* const memory = y.data() + memories_[k].at;
-    const Real u =
-        servo.period > 0 ? memory[3] : continuous(servo, servo_error(servo, y), memory).u;
+    outputs_[k] = servo.period > 0 ? memory[3] : continuous(servo, servo_error(servo, y), memory).u;
+  }
+}
+
+Real Tree::paid_out(const Element& element) const {
+  const auto index = static_cast<int>(&element - scene_.elements.data());
+  Real sum = 0;
+  for (std::size_t k = 0; k < memories_.size(); ++k) {
+    if (scene_.servos[k].rope == index) sum += outputs_[k];
+  }
+  return sum;
+}
+
+void Tree::add_servos(bool at_joints) {
+  for (std::size_t k = 0; k < memories_.size(); ++k) {
+    const Servo& servo = scene_.servos[k];
+    if (servo.rope >= 0) continue;
     if (servo.load >= 0) {
-      add_servo_load(servo, u);
+      add_servo_load(servo, outputs_[k]);
     } else if (at_joints) {
-      add_along_joint(servo.drives, u);
+      add_along_joint(servo.drives, outputs_[k]);
     }
   }
 }

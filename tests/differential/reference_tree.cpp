@@ -204,6 +204,7 @@ void Tree::read(const State& y, const Motion& guide) {
     poses_[i] = pose(y, static_cast<int>(i));
     if (angle_count(scene_.bodies[i].kind) > 0) first_angles_[i] = y[parts_[i].angles];
   }
+  set_servo_outputs(y);
 }
 
 const Tree::Pose& Tree::parent(int body) const {

@@ -189,8 +189,12 @@ class Tree {
   };
   [[nodiscard]] Real servo_error(const Servo& servo, const State& y) const;
   void sample_servo(const Servo& servo, Real e, Real* memory) const;
+  /// Sets the outputs of the servos. Needs poses.
+  void set_servo_outputs(const State& y);
+  /// The length of a rope that its servos pay out.
+  [[nodiscard]] Real paid_out(const Element& element) const;
   /// at_joints : those at joints, too; else loads alone
-  void add_servos(const State& y, bool at_joints);
+  void add_servos(bool at_joints);
   void add_servo_load(const Servo& servo, Real u);
   void set_servo_rates(const State& y, State& result) const;
   /// The joint force Q_a of a gear.
@@ -224,6 +228,7 @@ class Tree {
   Pose guide_pose_;
   std::vector<Pose> poses_;
   std::vector<Real> first_angles_;
+  std::vector<Real> outputs_;  ///< of the servos
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;
   State right_;
   std::vector<Eigen::Index> pivots_;  ///< columns

@@ -60,7 +60,7 @@ std::vector<double> Tree::reactions(Real t, const State& y) {
     }
   }
   add_elements();
-  add_servos(y, false);
+  add_servos(false);
   add_constraint_forces(multipliers);
   std::vector<double> result(static_cast<std::size_t>(6 * n));
   for (Eigen::Index i = n; i-- > 0;) {

@@ -283,6 +283,7 @@ struct Servo {
   bool reads_rate = false;
   int drives = 0;  ///< a body
   int load = -1;   ///< component of the force and torque on it; -1: its joint
+  int rope = -1;   ///< the element whose length it pays out instead; -1: none
   double proportional = 0;
   double integral = 0;
   double derivative = 0;

@@ -86,13 +86,15 @@ double rounded(double x, int digits) {
   return unit < 1 ? std::round(x / unit) / std::round(1 / unit) : std::round(x / unit) * unit;
 }
 
-/// Removes an element and the sensors that read it.
+/// Removes an element, the sensors that read it and the servos that drive it.
 void drop_element(Scene& scene, std::size_t index) {
   const int dropped = static_cast<int>(index);
   scene.elements.erase(scene.elements.begin() + dropped);
   std::erase_if(scene.sensors,
                 [dropped](const Sensor& sensor) { return sensor.element == dropped; });
   for (Sensor& sensor : scene.sensors) sensor.element -= sensor.element > dropped ? 1 : 0;
+  std::erase_if(scene.servos, [dropped](const Servo& servo) { return servo.rope == dropped; });
+  for (Servo& servo : scene.servos) servo.rope -= servo.rope > dropped ? 1 : 0;
 }
 
 /// Removes a constraint and the sensors that read it.

@@ -133,6 +133,7 @@ std::string sensor(const Sensor& sensor, std::size_t index) {
 }
 
 std::string driven(const Servo& servo) {
+  if (servo.rope >= 0) return fmt::format("e{}", servo.rope);
   const std::string body = body_name(servo.drives);
   if (servo.load < 0) return body;
   return fmt::format("load.{}.{}.{}", body, servo.load < 3 ? "force" : "torque",
