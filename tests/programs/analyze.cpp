@@ -312,6 +312,14 @@ std::string point_pendulum(const std::string& rest) {
          rest + "\n[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[solve]\nt_end = 5\n";
 }
 
+/// A pid that reads the angle of a body and drives its joint, and further keys of the controller.
+std::string servo_of(const std::string& body, const std::string& gains,
+                     const std::string& keys = "") {
+  return "[[sensor]]\nname = \"pickoff\"\nkind = \"joint\"\njoint = \"" + body +
+         "\"\n[[controller]]\nname = \"servo\"\nreads = [\"pickoff.angle\"]\ndrives = [\"" + body +
+         "\"]\nlaw = { kind = \"pid\", " + gains + " }\n" + keys;
+}
+
 /// Coordinates and stability of all equilibria, in the order of the program.
 std::vector<std::pair<std::vector<double>, std::string>> equilibria(
     const json& result, const std::vector<std::string>& bodies) {
@@ -442,18 +450,8 @@ BOOST_AUTO_TEST_CASE(one_for_each_family) {
 
 // m g l sin(q) = -P q: a controller counts the turns of the angle that it reads, as a spring does.
 BOOST_AUTO_TEST_CASE(controllers_count_turns) {
-  const std::string servo = R"(
-[[sensor]]
-name = "pickoff"
-kind = "joint"
-joint = "bob"
-[[controller]]
-name = "servo"
-reads = ["pickoff.angle"]
-drives = ["bob"]
-law = { kind = "pid", proportional = 0.3 }
-)";
-  const auto found = equilibria(answer_to(point_pendulum("") + servo), {"bob"});
+  const auto found =
+      equilibria(answer_to(point_pendulum("") + servo_of("bob", "proportional = 0.3")), {"bob"});
   BOOST_TEST(found.size() >= 3U);
   for (const auto& [q, stability] : found) {
     BOOST_TEST(std::abs(9.81 * std::sin(q[0]) + 0.3 * q[0]) <= 1e-12, q[0]);
@@ -468,22 +466,11 @@ joint = { kind = "revolute", axis = [0, 0, 1] }
 mass = 1
 inertia = [0.1, 0.1, 0.2]
 damping = 0.3
-[[sensor]]
-name = "pickoff"
-kind = "joint"
-joint = "arm"
-[[controller]]
-name = "servo"
-reads = ["pickoff.angle"]
-drives = ["arm"]
-law = { kind = "pid", proportional = 3, integral = 0.7, derivative = 0.4, filter = 0.05 }
-period = 0.02
-delay = 0.033
-reference = 0.2
-[solve]
-t_end = 3
 )";
-  const json found = answer_to(arm).at("equilibria");
+  const std::string servo =
+      servo_of("arm", "proportional = 3, integral = 0.7, derivative = 0.4, filter = 0.05",
+               "period = 0.02\ndelay = 0.033\nreference = 0.2\n");
+  const json found = answer_to(arm + servo + "[solve]\nt_end = 3\n").at("equilibria");
   BOOST_TEST_REQUIRE(found.size() == 1U);
   BOOST_TEST(found.at(0).value("neutral", 0) == 0);
   check_near("arm", found.at(0).at("joints").at("arm").at("coordinate"), 0.2, 1e-12);
@@ -720,7 +707,7 @@ BOOST_AUTO_TEST_SUITE(closed_loops)
 // 0.5 kg m^2 under a torque -(2 + 0.3 s/(1 + 0.01 s)) angle.
 BOOST_AUTO_TEST_CASE(servo_has_roots_response_and_margins) {
   const Scratch folder;
-  const auto file = folder.write("servo.toml", R"(
+  const auto file = folder.write("servo.toml", std::string(R"(
 [solve]
 t_end = 1
 [[body]]
@@ -728,16 +715,7 @@ name = "arm"
 joint = { kind = "revolute", axis = [0, 0, 1] }
 mass = 2
 inertia = [0.3, 0.3, 0.5]
-[[sensor]]
-name = "pickoff"
-kind = "joint"
-joint = "arm"
-[[controller]]
-name = "servo"
-reads = ["pickoff.angle"]
-drives = ["arm"]
-law = { kind = "pid", proportional = 2, derivative = 0.3, filter = 0.01 }
-)");
+)") + servo_of("arm", "proportional = 2, derivative = 0.3, filter = 0.01"));
   const auto plant = folder.path() / "plant.json";
   const auto table = folder.path() / "table.csv";
   const json result =

@@ -360,7 +360,7 @@ BOOST_AUTO_TEST_CASE(a_damped_rope_lets_go_before_it_is_slack) {
                 {.output_times = {0.33, 0.36, 0.55}, .tolerance = tolerance, .method = method});
       BOOST_TEST_CONTEXT(tolerance << ", " << name(method)) {
         BOOST_TEST(run.report.tolerance_kept);
-        BOOST_TEST(run.report.all_evaluations <= 40000);
+        BOOST_TEST(run.report.all_evaluations <= 20000);
         for (std::size_t i = 0; i < run.times.size(); ++i) {
           const auto off = double(run.states[i].coordinates[0] - place(run.times[i]));
           BOOST_TEST(std::abs(off) <= 1.1 * run.report.error_estimate + 1e-15);
