@@ -159,6 +159,7 @@ void run(const Scene& scene, const std::vector<double>& times, double max_evalua
       t = last ? goal : t + length;
       steps.accept(t);
       const Sizes sizes = tree.sizes(t, steps.state());
+      if (!tree.mounts_hold()) return;
       motion.sizes.energy = std::max(motion.sizes.energy, sizes.energy);
       motion.sizes.momentum = std::max(motion.sizes.momentum, sizes.momentum);
       h = std::max(last ? h : length, length) * std::min(factor, Real(3));

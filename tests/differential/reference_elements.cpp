@@ -106,12 +106,18 @@ void Tree::add_on_body(int body, const Vec& point, const Vec& force, const Vec& 
 void Tree::add_elements() {
   for (const Element& e : scene_.elements) {
     if (e.kind == ElementKind::gear) continue;
+    if (e.kind == ElementKind::mount && rotation_of(e) > 3) mounts_hold_ = false;
     const auto [force, torque] = element_force(e);
     const Pose b = pose_of(e.bodies[1]);
     const Vec point = b.x + b.R * (wide(e.at[1]) - centre_of(e.bodies[1]));
     add_on_body(e.bodies[1], point, force, torque);
     add_on_body(e.bodies[0], point, -force, -torque);
   }
+}
+
+Real Tree::rotation_of(const Element& mount) const {
+  const Mat R = pose_of(mount.bodies[0]).R.transpose() * pose_of(mount.bodies[1]).R;
+  return rotation_vector(R).norm();
 }
 
 bool Tree::element_works(const Element& e) {
@@ -121,7 +127,7 @@ bool Tree::element_works(const Element& e) {
   read(y, guide_.at(Real(scene_.t_begin), y, none));
   const Pose a = pose_of(e.bodies[0]);
   const Pose b = pose_of(e.bodies[1]);
-  if (e.kind == ElementKind::mount) return rotation_vector(a.R.transpose() * b.R).norm() < 2;
+  if (e.kind == ElementKind::mount) return rotation_of(e) < 2;
   const Vec reach = b.x + b.R * (wide(e.at[1]) - centre_of(e.bodies[1])) - a.x -
                     a.R * (wide(e.at[0]) - centre_of(e.bodies[0]));
   return reach.norm() > 0.01L;

@@ -44,6 +44,8 @@ class Tree {
   /// True if an element has a force at the start, with room to move. A spring's ends are apart, and
   /// a mount is rotated by less than 2 rad.
   [[nodiscard]] bool element_works(const Element& element);
+  /// False once a mount was rotated by 3 rad, where the library ends a run.
+  [[nodiscard]] bool mounts_hold() const { return mounts_hold_; }
   /// Poses of all bodies in the guide at the start: attitude, and position of the origin.
   [[nodiscard]] std::vector<std::pair<Mat, Vec>> start_poses();
   /// The singular values of all conditions at the start, each condition with the length 1;
@@ -191,6 +193,8 @@ class Tree {
   void sample_servo(const Servo& servo, Real e, Real* memory) const;
   /// Sets the outputs of the servos. Needs poses.
   void set_servo_outputs(const State& y);
+  /// The angle by which the ends of a mount are rotated. Needs poses.
+  [[nodiscard]] Real rotation_of(const Element& mount) const;
   /// The length of a rope that its servos pay out.
   [[nodiscard]] Real paid_out(const Element& element) const;
   /// at_joints : those at joints, too; else loads alone
@@ -229,6 +233,7 @@ class Tree {
   std::vector<Pose> poses_;
   std::vector<Real> first_angles_;
   std::vector<Real> outputs_;  ///< of the servos
+  bool mounts_hold_ = true;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;
   State right_;
   std::vector<Eigen::Index> pivots_;  ///< columns
