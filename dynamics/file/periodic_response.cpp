@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include <dynamics/file/periodic_response.hpp>
 #include <dynamics/file/steady_motions.hpp>
+#include <dynamics/study/free_directions.hpp>
 #include <dynamics/study/harmonic_response.hpp>
+#include <motor/error.hpp>
 
 namespace kreisel {
 
@@ -55,6 +58,52 @@ double difference(const Values& a, const Values& b) {
   return worst;
 }
 
+/// The dependent components of a constrained system that the others determine best, all along a motion.
+///
+/// Throws : InvalidInput if each choice has a dead centre
+class SteadyChoice {
+ public:
+  SteadyChoice(const StudySystem& system, const std::vector<Eigen::VectorXd>& states)
+      : system_(system), tangent_(steady_motion::tangent_of(system, states.front())) {
+    if (!detail::is_constrained(system)) return;
+    constexpr double least = 1e-6;
+    double best = least;
+    for (const Eigen::VectorXd& y : states) {
+      const FreeDirections free = detail::free_directions(system, y, tangent_.basis(y));
+      const double worst = worst_determination(states, free.dependent);
+      if (worst <= best) continue;
+      best = worst;
+      dependent_ = free.dependent;
+    }
+    if (best > least) return;
+    throw InvalidInput(
+        "periodic plant: constraints leave no coordinate free all along the motion, each has a "
+        "dead centre; choose joints so that fewer constraints are needed");
+  }
+
+  [[nodiscard]] FreeDirections at(const Eigen::VectorXd& y) const {
+    if (!detail::is_constrained(system_)) return {};
+    return detail::free_directions(slopes(y), dependent_);
+  }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::VectorXd& y) const {
+    return system_.constraint_slopes(y, tangent_.basis(y));
+  }
+  [[nodiscard]] double worst_determination(const std::vector<Eigen::VectorXd>& states,
+                                           const std::vector<int>& dependent) const {
+    double worst = 1;
+    for (const Eigen::VectorXd& y : states) {
+      worst = std::min(worst, detail::determination(slopes(y), dependent));
+    }
+    return worst;
+  }
+
+  const StudySystem& system_;
+  Tangent tangent_;
+  std::vector<int> dependent_ = {};
+};
+
 }  // namespace
 
 HarmonicResponse harmonic_response(const StudySystem& system, const FloquetMotion& motion,
@@ -68,10 +117,13 @@ HarmonicResponse harmonic_response(const StudySystem& system, const FloquetMotio
   response.period = motion.period;
   for (int parts = 16; parts <= 128; parts *= 2) {
     std::vector<LinearPlant> samples;
-    for (const Eigen::VectorXd& y : states_of(system, motion, parts)) {
+    const std::vector<Eigen::VectorXd> states = states_of(system, motion, parts);
+    const SteadyChoice choice(system, states);
+    for (const Eigen::VectorXd& y : states) {
       const double share = static_cast<double>(samples.size()) / parts;
       samples.push_back(without(
-          system.plant(system.begin() + share * motion.period, y, {input}, {output}), given));
+          system.plant(system.begin() + share * motion.period, y, {input}, {output}, choice.at(y)),
+          given));
     }
     Values values = values_of(PeriodicPlant(motion.period, samples), frequencies);
     if (parts > 16) response.error = difference(response.values, values);

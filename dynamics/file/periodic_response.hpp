@@ -22,7 +22,8 @@ struct HarmonicResponse {
 ///
 /// frequencies : w, rad/s
 /// Error       : reported; the samples are doubled from 16 to at most 128 until it is below 1e-9
-/// Throws      : InvalidInput, as PeriodicPlant; ComputationFailed at an undamped resonance
+/// Throws      : InvalidInput, as PeriodicPlant, or if constraints leave no coordinate free all along
+///               the motion; ComputationFailed at an undamped resonance
 [[nodiscard]] HarmonicResponse harmonic_response(const StudySystem& system,
                                                  const FloquetMotion& motion,
                                                  const PlantInput& input, const PlantOutput& output,

@@ -81,6 +81,12 @@ LinearPlant StudySystem::plant(double t, const Vector& y, std::vector<PlantInput
   return linear_plant<SceneGuide>(*bodies_, t, y, std::move(inputs), std::move(outputs));
 }
 
+LinearPlant StudySystem::plant(double t, const Vector& y, std::vector<PlantInput> inputs,
+                               std::vector<PlantOutput> outputs, FreeDirections free) const {
+  return linear_plant<SceneGuide>(*bodies_, t, y, std::move(inputs), std::move(outputs),
+                                  std::move(free));
+}
+
 StudySystem::Vector StudySystem::rates(double t, const Vector& y) const {
   check_stop();
   return bodies_->steady_rates(t, y);

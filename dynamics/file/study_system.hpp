@@ -93,6 +93,8 @@ class StudySystem {
   /// The linear plant about a state at the time t.
   [[nodiscard]] LinearPlant plant(double t, const Vector& y, std::vector<PlantInput> inputs,
                                   std::vector<PlantOutput> outputs) const;
+  [[nodiscard]] LinearPlant plant(double t, const Vector& y, std::vector<PlantInput> inputs,
+                                  std::vector<PlantOutput> outputs, FreeDirections free) const;
 
   [[nodiscard]] Vector rates(double t, const Vector& y) const;
 

@@ -1,6 +1,8 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <dynamics/study/free_directions.hpp>
 
@@ -15,15 +17,13 @@ namespace {
 /// Conditions that are below this part of the greatest follow from the others.
 constexpr double least = 1e-10;
 
-/// The rows with length 1, without those that are 0.
+/// The rows with length 1. Much shorter rows than the longest, of conditions that nearly move nothing
+/// at a position, stay short: their rounding would count as a direction.
 MatrixXd normalized_rows(const MatrixXd& rows) {
-  MatrixXd result(rows.rows(), rows.cols());
-  Index count = 0;
-  for (Index i = 0; i < rows.rows(); ++i) {
-    const double norm = rows.row(i).norm();
-    if (norm > 0) result.row(count++) = rows.row(i) / norm;
-  }
-  return result.topRows(count);
+  constexpr double shortest = 1e-4;
+  const VectorXd norms = rows.rowwise().norm();
+  if (rows.size() == 0 || norms.maxCoeff() == 0) return rows;
+  return norms.cwiseMax(shortest * norms.maxCoeff()).cwiseInverse().asDiagonal() * rows;
 }
 
 /// The candidates among the columns of G that the other columns determine, by pivoting.
@@ -59,7 +59,6 @@ MatrixXd FreeDirections::unit_moves(int dimension) const {
 namespace detail {
 
 FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& given, int rates) {
-  const auto dimension = static_cast<int>(slopes.cols());
   const Index conditions = slopes.rows() / 2;
   const auto open = [&given](int begin, int end) {
     std::vector<int> components;
@@ -68,11 +67,17 @@ FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& g
     }
     return components;
   };
-  FreeDirections free;
-  free.dependent = pivots(slopes.topRows(conditions), open(0, rates));
+  std::vector<int> dependent = pivots(slopes.topRows(conditions), open(0, rates));
   const std::vector<int> of_rates = pivots(slopes.bottomRows(conditions), open(rates, 2 * rates));
-  free.dependent.insert(free.dependent.end(), of_rates.begin(), of_rates.end());
-  std::sort(free.dependent.begin(), free.dependent.end());
+  dependent.insert(dependent.end(), of_rates.begin(), of_rates.end());
+  std::sort(dependent.begin(), dependent.end());
+  return free_directions(slopes, std::move(dependent));
+}
+
+FreeDirections free_directions(const MatrixXd& slopes, std::vector<int> dependent) {
+  const auto dimension = static_cast<int>(slopes.cols());
+  FreeDirections free;
+  free.dependent = std::move(dependent);
   for (int i = 0; i < dimension; ++i) {
     if (!free.is_dependent(i)) free.independent.push_back(i);
   }
@@ -86,6 +91,13 @@ FreeDirections free_directions(const MatrixXd& slopes, const std::vector<int>& g
   free.N(free.dependent, Eigen::all) =
       -of_dependent.solve(MatrixXd(G(Eigen::all, free.independent)));
   return free;
+}
+
+double determination(const MatrixXd& slopes, const std::vector<int>& dependent) {
+  if (dependent.empty()) return 1;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(normalized_rows(slopes)(Eigen::all, dependent));
+  const auto last = static_cast<Index>(dependent.size()) - 1;
+  return std::abs(qr.matrixR()(last, last) / qr.matrixR()(0, 0));
 }
 
 MatrixXd with_columns(const MatrixXd& given, const std::vector<int>& positions, int count) {

@@ -45,6 +45,15 @@ namespace detail {
 [[nodiscard]] KREISEL_API FreeDirections free_directions(const Eigen::MatrixXd& slopes,
                                                          const std::vector<int>& given, int rates);
 
+/// The same with a choice of dependent components that was made at another state.
+[[nodiscard]] KREISEL_API FreeDirections free_directions(const Eigen::MatrixXd& slopes,
+                                                         std::vector<int> dependent);
+
+/// How well the conditions determine these components from the others: the least pivot of their
+/// columns, relative to the greatest, or 0 if they leave one of them free.
+[[nodiscard]] KREISEL_API double determination(const Eigen::MatrixXd& slopes,
+                                               const std::vector<int>& dependent);
+
 /// A matrix of `count` columns with the given ones at these positions; the others are 0.
 [[nodiscard]] KREISEL_API Eigen::MatrixXd with_columns(const Eigen::MatrixXd& given,
                                                        const std::vector<int>& positions,

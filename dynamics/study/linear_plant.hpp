@@ -229,18 +229,20 @@ template <class M, class N>
 /// The linear plant of a system about a state in which steady_rates() are 0, but for cyclic
 /// coordinates: exact, by dual numbers.
 ///
+/// free   : the components of the plant's state, as of detail::free_directions()
 /// Throws : as linearize() and sampled_transition()
 template <class M>
 [[nodiscard]] LinearPlant linear_plant(const ControlledSystem<M>& system, double t,
                                        const Eigen::VectorXd& y, std::vector<PlantInput> inputs,
-                                       std::vector<PlantOutput> outputs) {
+                                       std::vector<PlantOutput> outputs, FreeDirections free) {
   using detail::VectorOn;
   LinearPlant plant;
   plant.inputs = std::move(inputs);
   plant.outputs = std::move(outputs);
   plant.columns = detail::columns_of(plant.inputs);
   const Tangent tangent = detail::tangent_of(system, y.size(), {});
-  const detail::Reduced r = detail::reduced(system, t, y, tangent, detail::InTime::no);
+  const detail::Reduced r =
+      detail::reduced(system, t, y, tangent, detail::InTime::no, std::move(free));
   std::vector<int> kept = r.free.independent;
   Eigen::MatrixXd E = tangent.basis(y);
   if (r.free.bound()) {
@@ -286,6 +288,15 @@ template <class M>
     }
   }
   return plant;
+}
+
+template <class M>
+[[nodiscard]] LinearPlant linear_plant(const ControlledSystem<M>& system, double t,
+                                       const Eigen::VectorXd& y, std::vector<PlantInput> inputs,
+                                       std::vector<PlantOutput> outputs) {
+  const Tangent tangent = detail::tangent_of(system, y.size(), {});
+  return linear_plant(system, t, y, std::move(inputs), std::move(outputs),
+                      detail::free_directions(system, y, tangent.basis(y)));
 }
 
 }  // namespace kreisel

@@ -206,10 +206,10 @@ struct Reduced {
 
 template <class Scene>
 [[nodiscard]] Reduced reduced(const Scene& scene, double t, const typename Scene::Vector& y,
-                              const Tangent& tangent, InTime in_time = InTime::yes) {
+                              const Tangent& tangent, InTime in_time, FreeDirections free) {
   Reduced r;
+  r.free = std::move(free);
   Eigen::MatrixXd E = tangent.basis(y);
-  r.free = free_directions(scene, y, E);
   if (r.free.bound()) E *= r.free.N;
   const Derivatives d = derivatives(scene, t, y, E, in_time);
   const Eigen::MatrixXd P = tangent.inverse(y);
@@ -221,6 +221,12 @@ template <class Scene>
   if (r.free.bound()) r.A = with_columns(r.A, r.free.independent, tangent.dimension());
   r.dv = P * d.along_time + r.A * r.v;
   return r;
+}
+
+template <class Scene>
+[[nodiscard]] Reduced reduced(const Scene& scene, double t, const typename Scene::Vector& y,
+                              const Tangent& tangent, InTime in_time = InTime::yes) {
+  return reduced(scene, t, y, tangent, in_time, free_directions(scene, y, tangent.basis(y)));
 }
 
 }  // namespace detail

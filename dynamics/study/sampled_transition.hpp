@@ -17,7 +17,8 @@ namespace kreisel {
 /// The linear equations of a system with sampled controllers, from just after a sample to the same
 /// moment a period later:  eta(t + period) = matrix eta(t).
 ///
-/// Roots s of the loop follow from its eigenvalues z = exp(s period).
+/// Roots s of the loop follow from its eigenvalues z = exp(s period). With constraints the rows and
+/// columns of the independent components count (FreeDirections).
 struct SampledTransition {
   double period = 0;
   Eigen::MatrixXd matrix = {};
@@ -65,13 +66,16 @@ template <class System>
   return {first, common_period(periods)};
 }
 
-/// The derivatives along eta of the move that the samples at t make.
+/// The derivatives along eta of the move that the samples at t make. With constraints eta is
+/// N eta_I, and the columns of dependent components are 0.
 template <class System>
 [[nodiscard]] Eigen::MatrixXd sample_matrix(const System& system, double t,
-                                            const Eigen::VectorXd& y, const Tangent& tangent) {
+                                            const Eigen::VectorXd& y, const Tangent& tangent,
+                                            const FreeDirections& free) {
   constexpr int at_once = directions<System>;
   using Number = Duals<at_once>;
-  const Eigen::MatrixXd E = tangent.basis(y);
+  Eigen::MatrixXd E = tangent.basis(y);
+  if (free.bound()) E *= free.N;
   Eigen::MatrixXd along(y.size(), E.cols());
   for (Eigen::Index begin = 0; begin < E.cols(); begin += at_once) {
     const Eigen::Index count = std::min<Eigen::Index>(at_once, E.cols() - begin);
@@ -85,7 +89,8 @@ template <class System>
       for (Eigen::Index k = 0; k < count; ++k) along(i, begin + k) = state[i].derivatives()[k];
     }
   }
-  return tangent.inverse(y) * along;
+  const Eigen::MatrixXd moves = tangent.inverse(y) * along;
+  return free.bound() ? with_columns(moves, free.independent, tangent.dimension()) : moves;
 }
 
 }  // namespace detail
@@ -102,12 +107,13 @@ template <class System>
   const auto [first, period] = detail::sample_period(system, t);
   SampledTransition result;
   result.period = period;
-  const Eigen::MatrixXd A = detail::reduced(system, t, y, tangent, detail::InTime::no).A;
+  const detail::Reduced linear = detail::reduced(system, t, y, tangent, detail::InTime::no);
+  const Eigen::MatrixXd& A = linear.A;
   result.matrix = Eigen::MatrixXd::Identity(A.rows(), A.cols());
   double now = first;
   for (const double next : system.sample_times(first, first + result.period)) {
     result.matrix = detail::exponential(A * (next - now)) * result.matrix;
-    result.matrix = detail::sample_matrix(system, next, y, tangent) * result.matrix;
+    result.matrix = detail::sample_matrix(system, next, y, tangent, linear.free) * result.matrix;
     now = next;
   }
   const double left = first + result.period - now;

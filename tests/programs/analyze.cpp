@@ -704,6 +704,105 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(closed_loops)
 
+// Two arms on equal cranks, or on gears of ratio 1: neither angle is free at one time and not at
+// another.
+BOOST_AUTO_TEST_CASE(a_linkage_responds_on_a_ship_that_rolls) {
+  const auto arm = [](const std::string& name, const std::string& rest) {
+    return "[[body]]\nname = \"" + name + "\"\ncentre = [0, 0, -0.3]\n" +
+           "inertia = [0.02, 0.02, 0.02]\njoint = { kind = \"revolute\", axis = [1, 0, 0]" + rest;
+  };
+  const std::string arms =
+      "[guide]\nkind = \"motion\"\n"
+      "angles = { roll = { terms = [{ amplitude = 0.1, frequency = 0.8 }] } }\n"
+      "[gravity]\nkind = \"inertial\"\nvector = [0, 0, -9.81]\n" +
+      arm("a", " }\nmass = 1\ndamping = 0.1\n") +
+      arm("b", ", position = [0, 0.5, 0] }\nmass = 1.5\n") + "[[constraint]]\nname = \"rod\"\n";
+  const Scratch folder;
+  std::vector<json> rows;
+  for (const char* const rod : {"kind = \"distance\"\nbetween = [\"a\", \"b\"]\n"
+                                "at = [[0, 0, -0.6], [0, 0, -0.6]]\nlength = 0.5\n",
+                                "kind = \"gear\"\njoints = [\"a\", \"b\"]\nratio = 1\n"}) {
+    const auto file = folder.write("arms.toml", arms + rod + "[solve]\nt_end = 3\n");
+    rows.push_back(answer(file.string() + " --response joint.a --to b.angle --frequencies 1:10:4")
+                       .at("response")
+                       .at("rows"));
+  }
+  BOOST_TEST_REQUIRE(rows[0].size() == 4U);
+  for (std::size_t i = 0; i < rows[0].size(); ++i) {
+    for (const char* const key : {"amplitude", "phase"}) {
+      check_near(key, rows[0].at(i).at(key), rows[1].at(i).at(key), 1e-9);
+    }
+  }
+}
+
+// A motor on a load by a gear, and the same inertia, damping and gains on one shaft.
+BOOST_AUTO_TEST_CASE(a_sampled_loop_reads_what_a_gear_moves) {
+  const auto shaft = [](const std::string& name, const std::string& rest) {
+    return "[[body]]\nname = \"" + name +
+           "\"\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 1\n" + rest;
+  };
+  const auto servo = [](const std::string& read, const std::string& driven,
+                        const std::string& gains) {
+    return "[[sensor]]\nname = \"s\"\nkind = \"joint\"\njoint = \"" + read +
+           "\"\n[[controller]]\nname = \"c\"\nreads = [\"s.angle\"]\ndrives = [\"" + driven +
+           "\"]\nlaw = { kind = \"pid\", " + gains + ", filter = 0.05 }\nperiod = 0.05\n" +
+           "delay = 0.03\n[solve]\nt_end = 3\n";
+  };
+  const std::string load = "spring = { stiffness = 2 }\n";
+  const json geared =
+      answer_to(shaft("motor", "inertia = [0.02, 0.02, 0.02]\ndamping = 0.01\n") +
+                shaft("load", "inertia = [3, 3, 3]\n" + load) +
+                "[[constraint]]\nname = \"gear\"\nkind = \"gear\"\njoints = [\"motor\", \"load\"]\n"
+                "ratio = -10\n" +
+                servo("load", "motor", "proportional = -3, integral = -0.7, derivative = -1.4"));
+  const json direct =
+      answer_to(shaft("load", "inertia = [5, 5, 5]\ndamping = 1\n" + load) +
+                servo("load", "load", "proportional = 30, integral = 7, derivative = 14"));
+  const std::vector<Complex> wanted = roots(direct);
+  BOOST_TEST(roots(geared).size() == wanted.size());
+  for (const Complex& s : wanted) BOOST_TEST(distance(roots(geared), s) <= 1e-9 * std::abs(s));
+  BOOST_TEST(distance(wanted, {-0.243515, 0}) < 1e-6);
+}
+
+// A Bennett linkage that lies flat moves as elsewhere: M q'' + 5 q = 0 with the inertia of all bars at
+// the unit rate of the first.
+BOOST_AUTO_TEST_CASE(a_flat_bennett_linkage_keeps_its_freedom) {
+  const json result = answer_to(R"([[body]]
+name = "one"
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1
+centre = [0.25, 0, 0]
+inertia = [0.01, 0.03, 0.03]
+spring = { stiffness = 5 }
+[[body]]
+name = "two"
+parent = "one"
+joint = { kind = "revolute", axis = [0, -0.5646424733950354, 0.8253356149096783], position = [0.5, 0, 0], orientation = [0.955336489125606, 0.29552020666133955, 0, 0] }
+mass = 2
+centre = [0.4, 0, 0]
+inertia = [0.02, 0.06, 0.06]
+initial = { angle = 3.141592653589793 }
+[[body]]
+name = "three"
+parent = "two"
+joint = { kind = "revolute", axis = [0, -0.963558185417193, 0.26749882862458735], position = [0.8532462848779249, 0, 0], orientation = [0.7960837985490559, 0.6051864057360395, 0, 0] }
+mass = 1.5
+centre = [0.2, 0, 0]
+inertia = [0.02, 0.04, 0.04]
+[[constraint]]
+name = "loop"
+kind = "revolute"
+between = ["guide", "three"]
+at = [[-0.8532462848779249, 0, 0], [0.5, 0, 0]]
+axis = [[0, 0.963558185417193, 0.26749882862458735], [0, -0.5646424733950354, 0.8253356149096783]]
+[solve]
+t_end = 2.5
+)");
+  const std::vector<double> found = frequencies(result);
+  BOOST_TEST_REQUIRE(found.size() == 1U);
+  check_near("frequency", found[0], std::sqrt(5 / 0.28504429), 1e-7);
+}
+
 // 0.5 kg m^2 under a torque -(2 + 0.3 s/(1 + 0.01 s)) angle.
 BOOST_AUTO_TEST_CASE(servo_has_roots_response_and_margins) {
   const Scratch folder;
