@@ -91,6 +91,15 @@ std::optional<Change> first_change(const G& g, const Slope& slope, double begin,
   return std::nullopt;
 }
 
+/// A time difference that times near t tell from 0.
+double rounding_of(double t) { return 4 * std::numeric_limits<double>::epsilon() * std::abs(t); }
+
+/// The part of the way to a corner after which a step from t ends before it.
+double short_of(double way, double t) {
+  constexpr double before = 0.999;
+  return std::min(before * way, way - rounding_of(t));
+}
+
 /// The time until the first of the corners, if their functions change at their present rates. Values
 /// without a sign are at a corner if it is nearer than `width`.
 ///
@@ -155,8 +164,15 @@ std::optional<SteppedRun::CornerTime> SteppedRun::first_corner(const std::vector
 }
 
 double SteppedRun::width_of_corner(double t) const {
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * std::abs(t);
-  return std::max(corner_width_ * uncut_, rounding);
+  return std::max(corner_width_ * uncut_, 2 * rounding_of(t));
+}
+
+void SteppedRun::cross_corner(double ahead, double end, double output) {
+  const double from = t();
+  const double way = std::copysign(1, end - from);
+  const double stop = next_stop(from, end, jumps_);
+  const double beyond = from + way * (ahead + 2 * width_of_corner(from));
+  cross((stop - beyond) * way > 0 ? beyond : stop, output);
 }
 
 /// A step must not end at a corner: its last stages would lie on both sides. Steps end before it, each
@@ -171,14 +187,8 @@ void SteppedRun::step_to_corner(double end, double output) {
   if (uncut_ == 0) uncut_ = 1e-3 * std::abs(end - from);
   const double width = width_of_corner(from);
   const double near = time_to_corner(first, way, width);
-  if (near <= width) {
-    const double stop = next_stop(from, end, jumps_);
-    const double beyond = from + way * (near + 2 * width);
-    cross((stop - beyond) * way > 0 ? beyond : stop, output);
-    return;
-  }
-  constexpr double before = 0.999;
-  const double goal = from + way * before * near;
+  if (near <= width) return cross_corner(near, end, output);
+  const double goal = from + way * short_of(near, from);
   prepare_undo();
   step_towards((end - goal) * way > 0 ? goal : end, output);
   if (t() != goal) uncut_ = length();
@@ -187,8 +197,11 @@ void SteppedRun::step_to_corner(double end, double output) {
     const std::optional<CornerTime> corner = first_corner(first, from, y);
     const double limit = t();
     if (!corner || !undo_step()) return;
-    const double at = from + (corner->is_sure ? before : 1) * (corner->t - from);
-    if (t() != from || (limit - at) * way <= 0) return;  // a change of method took two steps
+    if (t() != from) return;  // a change of method took two steps
+    const double ahead = std::abs(corner->t - from);
+    if (ahead <= width) return cross_corner(ahead, end, output);
+    const double at = from + way * (corner->is_sure ? short_of(ahead, from) : ahead);
+    if ((limit - at) * way <= 0) return;
     step_towards(at, output);
   }
 }

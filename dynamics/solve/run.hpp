@@ -158,6 +158,8 @@ class SteppedRun : public Run {
   /// Times nearer to a corner at t cannot be told from it.
   [[nodiscard]] double width_of_corner(double t) const;
 
+  /// Crosses a corner that is nearer than its width, but not a jump or `end`.
+  void cross_corner(double ahead, double end, double output);
   /// Takes a step that ends before the first corner on its way, or crosses the corner at its begin.
   KREISEL_API void step_to_corner(double end, double output);
   /// first, y : the corners and the state at the begin of the step

@@ -388,6 +388,34 @@ BOOST_AUTO_TEST_CASE(a_limited_pid_is_in_pieces_closed) {
   }
 }
 
+// A corner that is nearer than a step can end before it is crossed: no run may stand still there.
+BOOST_AUTO_TEST_CASE(a_regulator_leaves_its_limit) {
+  BodyDescription sprung = arm();
+  sprung.forces = {{.stiffness = 2}};
+  for (const double limit : {0.02, 0.03, 0.05, 0.1, 0.2}) {
+    Controller regulator = servo(PidLaw{0.2, 0.3});
+    regulator.reads = {{JointSensor{0, 0, true}}};
+    regulator.limit = {limit};
+    const ControlledSystem<RestingFrame<>> system(BodySystem<RestingFrame<>>({}, {sprung}),
+                                                  {regulator});
+    const auto start = system.start({Eigen::VectorXd::Constant(1, 1), Eigen::VectorXd::Zero(1)});
+    const auto by = [&](Method method) {
+      return solve(system, start,
+                   {.t_end = 30, .output_step = 1, .tolerance = 1e-8, .method = method});
+    };
+    const auto run = by(Method::verner98);
+    const auto other = by(Method::radau13);
+    BOOST_TEST_CONTEXT("limit " << limit) {
+      BOOST_TEST(run.report.tolerance_kept);
+      BOOST_TEST_REQUIRE(run.states.size() == other.states.size());
+      std::size_t i = 0;
+      const double apart =
+          worst_angle(other, [&](double) { return run.states[i++].coordinates[0]; });
+      BOOST_TEST(apart <= run.report.error_estimate + other.report.error_estimate);
+    }
+  }
+}
+
 // A hook on a rope that a winch pays out and takes in, by the displacement at each sample. In between
 // it swings about the sag, or falls. Two controllers that drive the rope add up.
 BOOST_AUTO_TEST_CASE(a_winch_may_slacken_a_rope_at_a_sample) {
