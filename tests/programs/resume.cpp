@@ -176,6 +176,59 @@ BOOST_AUTO_TEST_CASE(continues_increments_exactly) {
   c.check(c.run("--resume"));
 }
 
+// Sensors with a period read the state of a row, whose quaternions have the length 1.
+BOOST_AUTO_TEST_CASE(continues_readings_between_rows_exactly) {
+  const Scratch folder;
+  const std::string scene = folder
+                                .write("top.toml", R"(
+[gravity]
+kind = "uniform"
+vector = [0, 0, -9.81]
+[[body]]
+name = "a"
+joint = { kind = "spherical" }
+mass = 1
+centre = [0.02, 0.1, -0.3]
+inertia = [0.02, 0.03, 0.04]
+initial = { angular_velocity = [3, 2, 5] }
+[[sensor]]
+name = "gyro"
+kind = "gyro"
+body = "a"
+period = 0.013
+[[sensor]]
+name = "increments"
+kind = "accelerometer"
+body = "a"
+increments = true
+period = 0.05
+[solve]
+t_end = 20
+tolerance = 1e-10
+output_step = 0.01
+)")
+                                .string();
+  const auto run = [&](const std::string& csv, const std::string& options) {
+    return test::run(options + " " + simulate + " " + scene + " --csv " +
+                     (folder.path() / csv).string() + (csv == "part.csv" ? " --resume" : ""));
+  };
+  BOOST_REQUIRE(run("whole.csv", "").status == 0);
+  const std::string whole = folder.read("whole.csv");
+  int continued = 0;
+  for (double seconds = 0.05; continued < 5 && seconds < 60; seconds *= 1.3) {
+    folder.write("part.csv", line(whole, 0) + line(whole, 1));
+    std::filesystem::remove(folder.path() / "part.csv.resume");
+    if (run("part.csv", "timeout --foreground -s KILL " + std::to_string(seconds)).status != 137) {
+      break;
+    }
+    if (!std::filesystem::exists(folder.path() / "part.csv.resume")) continue;
+    const Outcome outcome = run("part.csv", "");
+    BOOST_REQUIRE_MESSAGE(outcome.status == 0, outcome.err);
+    BOOST_TEST((folder.read("part.csv") == whole));
+    ++continued;
+  }
+}
+
 /// A sampled servo with memory and outputs that wait.
 const std::string servo =
     "[[sensor]]\nname = \"pickoff\"\nkind = \"joint\"\njoint = \"upper\"\n"
