@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include <dynamics/file/unit.hpp>
 #include <motor/error.hpp>
 
 namespace kreisel {
@@ -31,6 +32,8 @@ struct LogColumnGroup {
   std::vector<std::string> names;
   /// Other usual headers, each with as many names.
   std::vector<std::vector<std::string>> other_headers = {};
+  /// Of LogQuantity::number: the dimension that units in a header must have; nothing: any.
+  std::optional<detail::Dimension> dimension = {};
 };
 
 /// Columns besides the time `t` that a reader needs or can use: one of several groups.

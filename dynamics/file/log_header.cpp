@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <dynamics/file/log_header.hpp>
@@ -14,6 +15,18 @@ std::string lower_case(std::string_view text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return result;
+}
+
+/// The unit of a name without brackets, "yaw_deg" or "Yaw/deg"; nothing if there is none. Short units
+/// such as m and s also stand for other words.
+std::string unit_at_end(std::string_view name) {
+  for (const char* const unit :
+       {"deg", "deg/s", "dps", "rpm", "mrad", "mm", "cm", "km", "ft", "ms", "us", "ns"}) {
+    for (const char between : {'_', '/'}) {
+      if (name.ends_with(between + std::string(unit))) return unit;
+    }
+  }
+  return {};
 }
 
 /// The positions of the columns that best match a name. Exact matches come before names that differ
@@ -71,6 +84,18 @@ void check_whole(const LogColumnGroup& group, const std::string& path, const Log
   }
 }
 
+void check_once(const std::string& path, const LogOptions& options) {
+  const auto& all = options.columns;
+  for (auto one = all.begin(); one != all.end(); ++one) {
+    const auto same = std::find_if(std::next(one), all.end(), [&one](const auto& other) {
+      return other.second == one->second;
+    });
+    if (same == all.end()) continue;
+    refuse(path, "columns: '" + one->first + "' and '" + same->first +
+                     "' are the same column; give each its own");
+  }
+}
+
 const char* name(LogTimeUnit unit) {
   switch (unit) {
     case LogTimeUnit::s: return "s";
@@ -99,8 +124,10 @@ struct UnitNames {
 
 const std::vector<UnitNames>& known_units() {
   static const std::vector<UnitNames> units{
-      {LogQuantity::length, {"m"}, {"mm", "cm", "km", "ft", "in", "nm", "um"}},
-      {LogQuantity::angle, {"rad"}, {"deg", "degree", "degrees", "\xC2\xB0", "\xB0", "grad"}},
+      {LogQuantity::length, {"m"}, {"mm", "cm", "dm", "km", "ft", "in", "nm", "um"}},
+      {LogQuantity::angle,
+       {"rad"},
+       {"deg", "degree", "degrees", "\xC2\xB0", "\xB0", "grad", "gon"}},
       {LogQuantity::angular_rate,
        {"rad/s", "rad s^-1", "rad*s^-1"},
        {"deg/s", "dps", "degree/s", "degrees/s", "\xC2\xB0/s", "\xB0/s", "deg s^-1", "deg/sec",
@@ -125,24 +152,65 @@ const UnitNames* units_of(LogQuantity quantity) {
                         [quantity](const UnitNames& units) { return units.quantity == quantity; });
 }
 
+/// The dimension of a column's numbers, if it is known.
+std::optional<Dimension> own_dimension(const PlacedColumn& column) {
+  if (column.is_time) return dimension::time;
+  switch (column.quantity) {
+    case LogQuantity::length: return dimension::length;
+    case LogQuantity::angle: return dimension::angle;
+    case LogQuantity::angular_rate: return dimension::angular_rate;
+    case LogQuantity::acceleration: return dimension::acceleration;
+    case LogQuantity::quaternion: return std::nullopt;
+    case LogQuantity::number: return column.dimension;
+  }
+  return std::nullopt;
+}
+
+/// True if a header has a unit of scene files that is not the SI unit of the column's numbers.
+bool has_other_unit(const PlacedColumn& column, const HeaderName& header) {
+  const std::optional<Dimension> wanted = own_dimension(column);
+  if (!wanted || header.unit.empty()) return false;
+  for (const std::string& unit : {header.unit_as_written, header.unit}) {
+    try {
+      return !(dimension_of(unit) == *wanted && value_with_unit("1 " + unit, wanted) == 1);
+    } catch (const InvalidInput&) {  // no unit that scene files know, perhaps in lower case
+    }
+  }
+  return false;
+}
+
 /// The reason why the unit in a header does not match the options, or nothing.
 std::string wrong_unit(const PlacedColumn& column, const HeaderName& header,
                        const LogOptions& options) {
   const std::string found = "column " + in_quotes(header.as_written) + " for '" + column.name +
                             "' is in " +
-                            (is_utf8(header.unit) ? header.unit : in_quotes(header.unit));
+                            (is_utf8(header.unit_as_written) ? header.unit_as_written
+                                                             : in_quotes(header.unit_as_written));
   if (column.is_time) {
     const auto unit = time_unit(header.unit);
-    if (!unit || options.time_unit) return {};
+    if (options.time_unit) return {};
+    if (!unit) {
+      return has_other_unit(column, header)
+                 ? found +
+                       ", and is read in s: convert the file, or name the right column in  columns"
+                 : "";
+    }
     return found + ": give  time_unit = \"" + name(*unit) + "\"  (or the unit that is right)";
   }
   const UnitNames* const own = units_of(column.quantity);
-  if (own == nullptr || holds(own->read, header.unit)) return {};
+  if (own == nullptr) {
+    return has_other_unit(column, header)
+               ? found +
+                     ", and is read in SI units: name the right column in  columns, or convert "
+                     "the file"
+               : "";
+  }
+  if (holds(own->read, header.unit)) return {};
   const auto& known = known_units();
   const bool is_known = std::any_of(known.begin(), known.end(), [&header](const UnitNames& units) {
     return holds(units.read, header.unit) || holds(units.other, header.unit);
   });
-  if (!is_known) return {};
+  if (!is_known && !has_other_unit(column, header)) return {};
   const bool in_degrees = holds(own->other, header.unit) &&
                           (header.unit.starts_with("d") || header.unit.ends_with("\xB0") ||
                            header.unit.ends_with("\xB0/s"));
@@ -172,7 +240,7 @@ class Matcher {
 
  private:
   void place(const LogColumnGroup& group, const std::string& name, std::size_t position) {
-    PlacedColumn column{name, name == "t", group.quantity, position, false};
+    PlacedColumn column{name, name == "t", group.quantity, position, false, group.dimension};
     if (position < header_->size()) {
       const HeaderName& header = (*header_)[position];
       const std::string wrong = wrong_unit(column, header, *options_);
@@ -313,9 +381,13 @@ HeaderName::HeaderName(std::string_view text) {
   any_case = lower_case(text);
   const std::size_t open = text.find_first_of("[(");
   plain = trimmed(std::string_view(any_case).substr(0, open));
-  if (open == std::string_view::npos) return;
+  if (open == std::string_view::npos) {
+    unit_as_written = unit = unit_at_end(plain);
+    return;
+  }
   const std::size_t close = text.find_first_of("])", open);
-  unit = trimmed(std::string_view(any_case).substr(open + 1, close - open - 1));
+  unit_as_written = trimmed(text.substr(open + 1, close - open - 1));
+  unit = lower_case(unit_as_written);
 }
 
 std::string listed(const std::vector<std::string>& words) {
@@ -328,6 +400,7 @@ std::vector<WantedGroup> wanted_groups(const std::string& path,
                                        const std::vector<LogRequest>& requests,
                                        const LogOptions& options) {
   std::vector<WantedGroup> wanted{{"time", {&time_group()}, options.columns.contains("t"), true}};
+  check_once(path, options);
   bool names_a_group = false;
   for (const LogRequest& request : requests) {
     WantedGroup group{request.title, {}, false, request.required};

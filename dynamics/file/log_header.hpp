@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +21,9 @@ struct HeaderName {
   std::string as_written;
   std::string any_case;  ///< in lower case
   std::string plain;     ///< in lower case, without the unit in brackets
-  std::string unit;      ///< in lower case, without brackets
+  std::string
+      unit;  ///< in lower case, without brackets: "speed [mm/s]", also of "x_mm" and "yaw/deg"
+  std::string unit_as_written;
 };
 
 using HeaderNames = std::vector<HeaderName>;
@@ -31,7 +34,8 @@ struct PlacedColumn {
   bool is_time = false;
   LogQuantity quantity = LogQuantity::number;
   std::size_t position = 0;
-  bool has_unit = false;  ///< the header gives the unit that is read
+  bool has_unit = false;                    ///< the header gives the unit that is read
+  std::optional<Dimension> dimension = {};  ///< of LogQuantity::number, if it is known
 };
 
 /// Columns that are wanted together: those that the options name, or those with the usual names.

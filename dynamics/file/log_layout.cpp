@@ -37,6 +37,16 @@ std::vector<HeadLine> head_lines(const LogLines& lines, std::size_t skip) {
   return result;
 }
 
+/// The separator in the name of a single column, in words; nothing if there is none.
+std::optional<std::string> other_separator(const HeaderNames& names) {
+  if (names.size() != 1) return std::nullopt;
+  const std::string& name = names.front().as_written;
+  if (name.find(',') != std::string::npos) return "commas";
+  if (name.find(';') != std::string::npos) return "semicolons";
+  if (name.find('\t') != std::string::npos) return "tabs";
+  return std::nullopt;
+}
+
 /// The first lines read with one separator: the layout, or a complaint.
 struct Attempt {
   std::optional<LogLayout> layout;
@@ -136,7 +146,10 @@ class LayoutSearch {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       std::string_view unit = fields_[i];
       if (unit.starts_with('[') || unit.starts_with('(')) unit = unit.substr(1, unit.size() - 2);
-      if (names_[i].unit.empty()) names_[i].unit = HeaderName(unit).any_case;
+      if (!names_[i].unit.empty()) continue;
+      const HeaderName own(unit);
+      names_[i].unit = own.any_case;
+      names_[i].unit_as_written = own.as_written;
     }
   }
 
@@ -187,6 +200,12 @@ class LayoutSearch {
       found.push_back(in_quotes(nearest_names_[i].as_written));
     }
     if (found.size() < nearest_names_.size()) found.emplace_back("..");
+    if (const auto other = other_separator(nearest_names_)) {
+      attempt.complaint = "the line holds " + *other +
+                          ", but is not split there: leave out "
+                          "separator and decimal, or give those of the file";
+      return attempt;
+    }
     attempt.complaint = "no column for " + listed(nearest_.missing) + " among " + listed(found) +
                         ": name the columns, or give their numbers from 1, for example  " +
                         columns_key(nearest_, nearest_names_, *wanted_);

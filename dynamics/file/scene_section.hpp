@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/did_you_mean.hpp>
 #include <dynamics/file/unit.hpp>
 #include <motor/motor.hpp>
 
@@ -41,11 +42,6 @@ class Mistakes {
   std::string file_;
   std::vector<Mistake> list_;
 };
-
-/// Suggests the most similar of the words, in the form " (did you mean 'x'?)"; empty if none is
-/// similar.
-[[nodiscard]] std::string did_you_mean(std::string_view word,
-                                       const std::vector<std::string>& words);
 
 class SignalLogs;
 

@@ -113,7 +113,7 @@ template <class Value>
                                              : std::vector<std::string>{"x", "y", "z"};
   const std::size_t before = table.mistakes();
   const std::string name = table.required_text("file");
-  const std::vector<LogRequest> requests{{"value", {{quantity(of), names}}, true}};
+  const std::vector<LogRequest> requests{{"value", {{quantity(of), names, {}, of}}, true}};
   const LogOptions options = read_log_options(table, requests, logs.run());
   if (name.empty() && table.find("file")->is_string()) table.refuse("file", "is empty");
   if (table.mistakes() > before) return {};

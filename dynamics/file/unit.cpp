@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <dynamics/file/did_you_mean.hpp>
 #include <dynamics/file/quoted.hpp>
-#include <dynamics/file/scene_section.hpp>
 #include <dynamics/file/unit.hpp>
 
 namespace kreisel::detail {

@@ -231,6 +231,58 @@ BOOST_AUTO_TEST_CASE(units_in_the_header_are_not_ignored) {
                  .find("is in m/s, and is read in m:") != std::string::npos);
 }
 
+// Units of scene files are known in headers, too, also at the end of a name.
+BOOST_AUTO_TEST_CASE(all_units_in_the_header_are_known) {
+  const std::vector<LogRequest> rates{{"rate", {{LogQuantity::angular_rate, {"wx"}, {}}}}};
+  const std::vector<LogRequest> forces{
+      {"force", {{LogQuantity::number, {"F"}, {}, detail::dimension::force}}}};
+  const std::string angles = ",pitch,roll\n0,0,0,0\n";
+  for (const auto& [text, requests] : std::vector<std::pair<std::string, std::vector<LogRequest>>>{
+           {"t [min],wx\n0,1\n", rates},
+           {"t [h],wx\n0,1\n", rates},
+           {"t_ms,wx\n0,1\n", rates},
+           {"t,wx [rpm]\n0,1\n", rates},
+           {"t,wx [RPM]\n0,1\n", rates},
+           {"t,wx [rev/s]\n0,1\n", rates},
+           {"t,F [mN]\n0,1\n", forces},
+           {"t,F [kN]\n0,1\n", forces},
+           {"t,F [N m]\n0,1\n", forces},
+           {"t,yaw [mrad]" + angles, motion},
+           {"t,yaw [arcmin]" + angles, motion},
+           {"t,yaw [gon]" + angles, motion},
+           {"t,yaw_deg" + angles, motion},
+           {"t,Yaw/deg" + angles, motion}}) {
+    LogOptions options;
+    const std::string header = text.substr(0, text.find('\n'));
+    if (header.find("aw_") + 1 != 0 || header.find("aw/") + 1 != 0) {
+      options.columns = {{"t", "t"},
+                         {"yaw", header.substr(2, header.find(',', 2) - 2)},
+                         {"pitch", "pitch"},
+                         {"roll", "roll"}};
+    }
+    if (header.starts_with("t_ms")) options.columns = {{"t", "t_ms"}, {"wx", "wx"}};
+    BOOST_TEST(complaint(text, options, requests).find(" is in ") != std::string::npos, header);
+  }
+  for (const char* const header : {"t [s],F [N]", "t,F [x]", "t,F [1]", "t,F"}) {
+    const std::string found = complaint(header + std::string("\n0,1\n"), {}, forces);
+    BOOST_TEST((found.empty() || header == std::string("t,F [1]")), header << found);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_column_is_taken_once) {
+  LogOptions options;
+  options.columns = {{"t", std::size_t(1)}, {"value", std::size_t(1)}};
+  BOOST_TEST(complaint("t,value\n0,1\n", options).find("'t' and 'value' are the same column") !=
+             std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_wrong_separator_is_named) {
+  LogOptions options;
+  options.separator = ';';
+  BOOST_TEST(complaint("t,value\n0,1\n", options).find("the line holds commas, but is not split") !=
+             std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(undeclared_degrees_are_detected) {
   const std::string text = "# Time, surge, sway, heave, roll, pitch, yaw\n0,14,0,0,0.49,4.95,0.3\n";
   BOOST_TEST(complaint(text, {}, motion) ==

@@ -270,6 +270,8 @@ BOOST_AUTO_TEST_CASE(mistakes_in_logs_are_reported) {
       {body("force = { file = \"log.csv\", time_zero = 1 }"),
        "a'.force.file: 'log.csv' goes from t = -1.2 s to 3.2 s and does not cover the run, 0 to 4 "
        "s: give  t_end = 3.2  in [solve]"},
+      {body("force = { file = \"log.csv\", columns = { t = \"t\", value = \"turn [deg]\" } }"),
+       "is in deg, and is read in SI units"},
       {body("load = { torque = { file = \"log.csv\" } }"), "a'.load.torque.file: "},
       {body("drive = { angle = { file = \"log.csv\", columns = { t = \"t\", value = \"turn [deg]\" "
             "} "

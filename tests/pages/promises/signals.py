@@ -214,6 +214,11 @@ logged("A unit in the header that differs from the key (`t [ms]`, `yaw [deg]`, `
            "angles")
 logged("A unit in the header that differs from the key (`t [ms]`, `yaw [deg]`, `x [mm]`) is an "
        "error that names the key.", fields(",", header=[*HEADER[:6], "z [mm]"]), (), "'z [mm]'")
+for at, name, columns in ((1, "yaw_deg", 'yaw = "yaw_deg", pitch = 3, roll = 4'),
+                          (4, "x_mm", "x = 5, y = 6, z = 7")):
+    logged("Names that end in a unit count as well, such as `yaw_deg` and `x_mm`.",
+           fields(",", header=[*HEADER[:at], name, *HEADER[at + 1:]]),
+           [f"columns = {{ {columns} }}"], f"'{name}'")
 for number in ("+.5", "5e-001", "0.5"):
     logged("Numbers are written as `1.5`, `+.5` or `-1.5e-005`.",
            fields(",").replace("1.0,0.5,", f"1.0,{number},"))
