@@ -32,7 +32,7 @@ struct LogColumnGroup {
   std::vector<std::string> names;
   /// Other usual headers, each with as many names.
   std::vector<std::vector<std::string>> other_headers = {};
-  /// Of LogQuantity::number: the dimension that units in a header must have; nothing: any.
+  /// The dimension of LogQuantity::number, which units in a header must have; nothing: any.
   std::optional<detail::Dimension> dimension = {};
 };
 

@@ -49,8 +49,8 @@ namespace detail {
 [[nodiscard]] KREISEL_API FreeDirections free_directions(const Eigen::MatrixXd& slopes,
                                                          std::vector<int> dependent);
 
-/// How well the conditions determine these components from the others: the least pivot of their
-/// columns, relative to the greatest, or 0 if they leave one of them free.
+/// How well the conditions determine these components from the others. It is the least pivot of their
+/// columns, relative to the greatest: 0 if one of them is free.
 [[nodiscard]] KREISEL_API double determination(const Eigen::MatrixXd& slopes,
                                                const std::vector<int>& dependent);
 
