@@ -17,8 +17,8 @@ namespace {
 /// Conditions that are below this part of the greatest follow from the others.
 constexpr double least = 1e-10;
 
-/// The rows with length 1. Rows that are much shorter than the longest stay short: their conditions
-/// move next to nothing at a position, and rounding would count as a direction.
+/// The rows with length 1. Rows much shorter than the longest stay short. Their conditions move
+/// next to nothing at this position, and their rounding would count as a direction.
 MatrixXd normalized_rows(const MatrixXd& rows) {
   constexpr double shortest = 1e-4;
   const VectorXd norms = rows.rowwise().norm();
