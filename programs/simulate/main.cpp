@@ -87,11 +87,12 @@ struct Record {
   std::vector<std::vector<double>> earlier = {};    ///< rows before this run that sensors depend on
   std::chrono::steady_clock::time_point next = {};  ///< when the next checkpoint is due
 
-  /// The numbers of a row, in the order of the columns. Sensors read the state that the row holds, so
-  /// that a continued run gives the same readings.
+  /// The numbers of a row, in the order of the columns. Sensors that depend on earlier rows read the
+  /// states that these hold, so that a continued run gives the same readings.
   [[nodiscard]] std::vector<double> numbers_at(double t, const kreisel::JointState& state) {
     std::vector<double> numbers = row(model, t, state, forces);
-    const std::vector<double> own = sensors.row(model, t, state_of(model, numbers));
+    const std::vector<double> own =
+        sensors.row(model, t, sensors.need_all_rows() ? state_of(model, numbers) : state);
     numbers.insert(numbers.end(), own.begin(), own.end());
     return of_chosen(std::move(numbers));
   }
