@@ -186,38 +186,32 @@ std::string wrong_unit(const PlacedColumn& column, const HeaderName& header,
                             "' is in " +
                             (is_utf8(header.unit_as_written) ? header.unit_as_written
                                                              : in_quotes(header.unit_as_written));
+  const auto read_in = [&found](const std::string& unit) {
+    return found + ", and is read in " + unit +
+           ": name the right column in  columns, or convert the file";
+  };
+  const bool is_other = has_other_unit(column, header);
   if (column.is_time) {
-    const auto unit = time_unit(header.unit);
     if (options.time_unit) return {};
-    if (!unit) {
-      return has_other_unit(column, header)
-                 ? found +
-                       ", and is read in s: convert the file, or name the right column in  columns"
-                 : "";
+    if (const auto unit = time_unit(header.unit)) {
+      return found + ": give  time_unit = \"" + name(*unit) + "\"  (or the unit that is right)";
     }
-    return found + ": give  time_unit = \"" + name(*unit) + "\"  (or the unit that is right)";
+    return is_other ? read_in("s") : "";
   }
   const UnitNames* const own = units_of(column.quantity);
-  if (own == nullptr) {
-    return has_other_unit(column, header)
-               ? found +
-                     ", and is read in SI units: name the right column in  columns, or convert "
-                     "the file"
-               : "";
-  }
+  if (own == nullptr) return is_other ? read_in("SI units") : "";
   if (holds(own->read, header.unit)) return {};
   const auto& known = known_units();
   const bool is_known = std::any_of(known.begin(), known.end(), [&header](const UnitNames& units) {
     return holds(units.read, header.unit) || holds(units.other, header.unit);
   });
-  if (!is_known && !has_other_unit(column, header)) return {};
+  if (!is_known && !is_other) return {};
   const bool in_degrees = holds(own->other, header.unit) &&
                           (header.unit.starts_with("d") || header.unit.ends_with("\xB0") ||
                            header.unit.ends_with("\xB0/s"));
   if (in_degrees && options.degrees) return {};
   if (in_degrees) return found + ": give  angles = \"deg\"  (or \"rad\" if the header is wrong)";
-  return found + ", and is read in " + own->read.front() +
-         ": name the right column in  columns, or convert the file";
+  return read_in(own->read.front());
 }
 
 class Matcher {
