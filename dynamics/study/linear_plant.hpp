@@ -290,6 +290,7 @@ template <class M>
   return plant;
 }
 
+/// The same with components that are free at y.
 template <class M>
 [[nodiscard]] LinearPlant linear_plant(const ControlledSystem<M>& system, double t,
                                        const Eigen::VectorXd& y, std::vector<PlantInput> inputs,

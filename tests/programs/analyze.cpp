@@ -312,12 +312,13 @@ std::string point_pendulum(const std::string& rest) {
          rest + "\n[gravity]\nkind = \"uniform\"\nvector = [0, 0, -9.81]\n[solve]\nt_end = 5\n";
 }
 
-/// A pid that reads the angle of a body and drives its joint, and further keys of the controller.
+/// A pid that reads the angle of a body and drives its joint or that of another, and further keys of
+/// the controller.
 std::string servo_of(const std::string& body, const std::string& gains,
-                     const std::string& keys = "") {
+                     const std::string& keys = "", const std::string& other = "") {
   return "[[sensor]]\nname = \"pickoff\"\nkind = \"joint\"\njoint = \"" + body +
-         "\"\n[[controller]]\nname = \"servo\"\nreads = [\"pickoff.angle\"]\ndrives = [\"" + body +
-         "\"]\nlaw = { kind = \"pid\", " + gains + " }\n" + keys;
+         "\"\n[[controller]]\nname = \"servo\"\nreads = [\"pickoff.angle\"]\ndrives = [\"" +
+         (other.empty() ? body : other) + "\"]\nlaw = { kind = \"pid\", " + gains + " }\n" + keys;
 }
 
 /// Coordinates and stability of all equilibria, in the order of the program.
@@ -741,23 +742,18 @@ BOOST_AUTO_TEST_CASE(a_sampled_loop_reads_what_a_gear_moves) {
     return "[[body]]\nname = \"" + name +
            "\"\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 1\n" + rest;
   };
-  const auto servo = [](const std::string& read, const std::string& driven,
-                        const std::string& gains) {
-    return "[[sensor]]\nname = \"s\"\nkind = \"joint\"\njoint = \"" + read +
-           "\"\n[[controller]]\nname = \"c\"\nreads = [\"s.angle\"]\ndrives = [\"" + driven +
-           "\"]\nlaw = { kind = \"pid\", " + gains + ", filter = 0.05 }\nperiod = 0.05\n" +
-           "delay = 0.03\n[solve]\nt_end = 3\n";
-  };
+  const std::string sampled = "period = 0.05\ndelay = 0.03\n[solve]\nt_end = 3\n";
   const std::string load = "spring = { stiffness = 2 }\n";
-  const json geared =
-      answer_to(shaft("motor", "inertia = [0.02, 0.02, 0.02]\ndamping = 0.01\n") +
-                shaft("load", "inertia = [3, 3, 3]\n" + load) +
-                "[[constraint]]\nname = \"gear\"\nkind = \"gear\"\njoints = [\"motor\", \"load\"]\n"
-                "ratio = -10\n" +
-                servo("load", "motor", "proportional = -3, integral = -0.7, derivative = -1.4"));
-  const json direct =
-      answer_to(shaft("load", "inertia = [5, 5, 5]\ndamping = 1\n" + load) +
-                servo("load", "load", "proportional = 30, integral = 7, derivative = 14"));
+  const json geared = answer_to(
+      shaft("motor", "inertia = [0.02, 0.02, 0.02]\ndamping = 0.01\n") +
+      shaft("load", "inertia = [3, 3, 3]\n" + load) +
+      "[[constraint]]\nname = \"gear\"\nkind = \"gear\"\njoints = [\"motor\", \"load\"]\n"
+      "ratio = -10\n" +
+      servo_of("load", "proportional = -3, integral = -0.7, derivative = -1.4, filter = 0.05",
+               sampled, "motor"));
+  const json direct = answer_to(
+      shaft("load", "inertia = [5, 5, 5]\ndamping = 1\n" + load) +
+      servo_of("load", "proportional = 30, integral = 7, derivative = 14, filter = 0.05", sampled));
   const std::vector<Complex> wanted = roots(direct);
   BOOST_TEST(roots(geared).size() == wanted.size());
   for (const Complex& s : wanted) BOOST_TEST(distance(roots(geared), s) <= 1e-9 * std::abs(s));

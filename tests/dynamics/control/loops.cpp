@@ -388,7 +388,8 @@ BOOST_AUTO_TEST_CASE(a_limited_pid_is_in_pieces_closed) {
   }
 }
 
-// A corner that is nearer than a step can end before it is crossed: no run may stand still there.
+// No step can end before a corner that is nearer than the spacing of times. It is crossed, and the run
+// goes on.
 BOOST_AUTO_TEST_CASE(a_regulator_leaves_its_limit) {
   BodyDescription sprung = arm();
   sprung.forces = {{.stiffness = 2}};
