@@ -228,7 +228,7 @@ class GslSteps {
   [[nodiscard]] int guarded(const Call& call) {
     try {
       if (effort_.evaluations > accuracy_.max_evaluations) {
-        detail::stop_integration(t_, accuracy_.max_evaluations, " evaluations are spent");
+        detail::stop_without_evaluations(t_, accuracy_.max_evaluations);
       }
       return call() ? GSL_SUCCESS : GSL_ERANGE;  // GSL answers ERANGE with a shorter step
     } catch (...) {

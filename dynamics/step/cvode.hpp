@@ -232,7 +232,7 @@ class CvodeSteps {
     if (thrown_) return give_up;
     try {
       if (effort_.evaluations > accuracy_.max_evaluations) {
-        detail::stop_integration(t_, accuracy_.max_evaluations, " evaluations are spent");
+        detail::stop_without_evaluations(t_, accuracy_.max_evaluations);
       }
       return call() ? 0 : try_shorter;
     } catch (...) {

@@ -440,11 +440,11 @@ class ExplicitRungeKutta {
     using std::max;
     using std::pow;
     if (abs(h) <= Scalar(4) * std::numeric_limits<Scalar>::epsilon() * abs(t()) || h == Scalar(0)) {
-      failure_.rethrow(t());
+      failure_.stop(t());
       detail::stop_integration(t(), "the step has become too short to move time on");
     }
     if (effort_.evaluations > accuracy_.max_evaluations) {
-      detail::stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
+      detail::stop_without_evaluations(t(), accuracy_.max_evaluations);
     }
     const auto fill = [&] { fill_stages(h, std::make_index_sequence<Tableau::stages - 1>()); };
     if (!failure_.succeeds(t(), fill)) {

@@ -184,7 +184,7 @@ class GaussIRK {
     while (done < steps.count) {
       detail::stop_if_requested(stop_);
       if (effort_.evaluations > max_evaluations_) {
-        detail::stop_integration(t(), max_evaluations_, " evaluations are spent");
+        detail::stop_without_evaluations(t(), max_evaluations_);
       }
       if (steps_taken_ % 16 == 0) note_rounding();
       solve_stages();

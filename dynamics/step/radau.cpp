@@ -559,11 +559,11 @@ void RadauIntegrator::reject(double h, double worst, double most, double fastest
 
 bool RadauIntegrator::attempt(StiffField& field, double h, double output, bool again) {
   if (std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t()) || h == 0) {
-    failure_.rethrow(t());
+    failure_.stop(t());
     stop_integration(t(), "the step has become too short to move time on");
   }
   if (effort_.evaluations > accuracy_.max_evaluations) {
-    stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
+    stop_without_evaluations(t(), accuracy_.max_evaluations);
   }
   kept_ = stages_.value;
   stages_.factorise(tangent_, h);

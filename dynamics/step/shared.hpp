@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <iterator>
 #include <limits>
 #include <span>
 #include <sstream>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -39,8 +39,14 @@ template <class Failure = ComputationFailed, class S, class... Words>
   throw Failure(text.str());
 }
 
-/// Keeps the exception that a field throws at a trial point. A shorter step may avoid that point.
-/// If no step does, the exception is the reason to stop.
+template <class S>
+[[noreturn]] void stop_without_evaluations(const S& t, double allowed) {
+  stop_integration(t, allowed, " evaluations are spent; a larger tolerance or another method may ",
+                   "need fewer");
+}
+
+/// Keeps the reason why a field fails at a trial point. A shorter step may avoid that point. If no
+/// step does, it is the reason to stop.
 template <class S>
 class TrialFailure {
  public:
@@ -50,20 +56,20 @@ class TrialFailure {
     try {
       trial();
       return true;
-    } catch (const ComputationFailed&) {
-      last_ = std::current_exception();
+    } catch (const ComputationFailed& error) {
+      reason_ = error.what();
       t_ = t;
       return false;
     }
   }
 
-  /// Rethrows the exception if it was thrown at t or later.
-  void rethrow(const S& t) const {
-    if (last_ && t == t_) std::rethrow_exception(last_);
+  /// Stops for the reason if the field failed at t or later.
+  void stop(const S& t) const {
+    if (!reason_.empty() && t == t_) stop_integration(t, reason_);
   }
 
  private:
-  std::exception_ptr last_;
+  std::string reason_;
   S t_ = S(0);
 };
 

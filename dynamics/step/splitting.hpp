@@ -152,7 +152,7 @@ class SplittingSteps {
       if (spent || stop_.stop_requested()) {
         if (done > 0) flow_.drift(state_, outer);
         if (!spent) throw StopRequested{};
-        detail::stop_integration(t(), max_evaluations_, " evaluations are spent");
+        detail::stop_without_evaluations(t(), max_evaluations_);
       }
       const auto before = state_;
       const bool first = done == 0;

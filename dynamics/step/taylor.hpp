@@ -51,7 +51,7 @@ class TaylorSteps {
               std::span<const int> blocks = {})
       : series_(std::move(series)),
         accuracy_(accuracy),
-        time_{t, 0},
+        time_(t),
         state_{y, Vector::Zero(y.size())},
         sizes_(blocks, accuracy.absolute_scale, y),
         before_{time_, state_} {
@@ -69,7 +69,7 @@ class TaylorSteps {
     }
   }
 
-  [[nodiscard]] const double& t() const { return time_.value; }
+  [[nodiscard]] const double& t() const { return time_; }
   [[nodiscard]] const Vector& y() const { return state_.value; }
   [[nodiscard]] const IntegrationStatistics& effort() const { return effort_; }
 
@@ -96,7 +96,7 @@ class TaylorSteps {
     if (!std::isfinite(end)) detail::refuse_steps("the end time is not finite");
     if (end == t()) return;
     const double goal = detail::next_stop(t(), end, jumps_);
-    const double left = (goal - time_.value) - time_.rest;
+    const double left = goal - time_;
     here_ = detail::on_this_side(t(), goal, jumps_);
     expand(std::abs(left));
     before_ = {time_, state_};
@@ -110,7 +110,7 @@ class TaylorSteps {
 
   /// As ExplicitRungeKutta::follow().
   void follow(const TaylorSteps& leader) {
-    const double h = leader.time_.value - leader.before_.time.value;
+    const double h = leader.time_ - leader.before_.time;
     scale_ = leader.scale_;
     coefficient_.col(0) = y();
     here_ = detail::on_this_side(t(), leader.t(), jumps_);
@@ -123,7 +123,7 @@ class TaylorSteps {
 
   /// True if a time lies within the last step.
   [[nodiscard]] bool covers(double time) const {
-    const double from = before_.time.value;
+    const double from = before_.time;
     return time >= std::min(from, t()) && time <= std::max(from, t());
   }
 
@@ -131,26 +131,26 @@ class TaylorSteps {
   ///
   /// Throws : InvalidInput for a time outside the last step
   [[nodiscard]] Vector at(double time) const {
-    const double from = before_.time.value;
+    const double from = before_.time;
     if (!covers(time)) {
       detail::refuse_steps("t = ", time, " s lies outside the last step, [", from, ", ", t(),
                            "] s");
     }
     if (time == t()) return y();
     if (time == from) return before_.state.value;
-    const double part = ((time - from) - before_.time.rest) / scale_;
+    const double part = (time - from) / scale_;
     return before_.state.value + (change(part) + before_.state.rest);
   }
 
   /// Goes back to a time within the last step and continues from there.
   void back_to(double time) {
     state_ = {at(time), Vector::Zero(y().size())};
-    time_ = {time, 0};
+    time_ = time;
     before_ = {time_, state_};
   }
 
   /// The length of the last step.
-  [[nodiscard]] double length() const { return std::abs(t() - before_.time.value); }
+  [[nodiscard]] double length() const { return std::abs(t() - before_.time); }
 
   /// True if a small, growing part of the series has shortened the last step. That part is a
   /// motion, or rounding, far below the accuracy. Half the series would be enough for the rest.
@@ -179,7 +179,7 @@ class TaylorSteps {
 
   /// Start of a step.
   struct Begin {
-    detail::Compensated<double> time;
+    double time;
     detail::Compensated<Vector> state;
   };
 
@@ -202,7 +202,7 @@ class TaylorSteps {
   /// decay if that differs by far.
   void expand(double left) {
     if (effort_.evaluations > accuracy_.max_evaluations) {
-      detail::stop_integration(t(), accuracy_.max_evaluations, " evaluations are spent");
+      detail::stop_without_evaluations(t(), accuracy_.max_evaluations);
     }
     coefficient_.col(0) = y();
     constexpr double farthest = 1e4;  // to the power of 24 and squared it is still finite
@@ -246,21 +246,21 @@ class TaylorSteps {
   /// accepted.
   [[nodiscard]] bool attempt(double reach, double left, double goal) {
     const bool last = detail::is_last(reach, left);
-    const double h = last ? left : std::copysign(reach, left);
+    const double end = last ? goal : t() + std::copysign(reach, left);
+    const double h = end - time_;
     if (!last && std::abs(h) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t())) {
-      failure_.rethrow(t());
+      failure_.stop(t());
       require_finite_field();
       detail::stop_integration<SeriesFailed>(t(), "the step has become too short to move time on");
     }
     Vector increment = change(h / scale_);
-    const double end_of_step = last ? detail::on_this_side(goal, t(), jumps_) : t() + h;
+    const double end_of_step = last ? detail::on_this_side(goal, t(), jumps_) : end;
     if (!solves_equation(h, end_of_step, increment)) {
       effort_.rejected += 1;
       return false;
     }
     take(h, std::move(increment));
-    time_.add(h);
-    if (last) time_ = {goal, 0};
+    time_ = end;
     return true;
   }
 
@@ -364,7 +364,7 @@ class TaylorSteps {
   int order_;
   std::array<double, 3>
       falls_{};  ///< log of the reach by the terms from order - 4 on of a series like exp(t)
-  detail::Compensated<double> time_;
+  double time_;  ///< each step ends at a number: the series has the phase of what drives it
   detail::Compensated<Vector> state_;
   detail::BlockSizes<Vector> sizes_;
   std::vector<double> jumps_;

@@ -110,7 +110,9 @@ BOOST_DATA_TEST_CASE(on_the_earth_reaches_the_reference,
   BOOST_TEST_MESSAGE("1000 periods on the earth, " << run.report.method << ": off by " << worst
                                                    << ", told " << run.report.error_estimate);
   BOOST_REQUIRE(run.report.invariants.size() == 1U);
-  BOOST_TEST(run.report.invariants[0].largest <= 16 * u * run.report.invariants[0].start);
+  // The series takes some 4700 steps. Each moves the amplitude by 1 u or 2, up or down.
+  const double drift = (by_series ? 256 : 16) * u;
+  BOOST_TEST(run.report.invariants[0].largest <= drift * run.report.invariants[0].start);
 }
 
 BOOST_AUTO_TEST_CASE(errs_at_the_start_by_rounding_only) {

@@ -255,7 +255,7 @@ BOOST_AUTO_TEST_CASE(retry_a_step_that_leaves_the_field) {
 }
 
 // The same with a field that throws there. If it throws at every step, however short, its message
-// is passed on.
+// is the reason.
 BOOST_AUTO_TEST_CASE(retry_a_step_at_which_the_field_throws) {
   const auto field = [](double, const State<1>& y) {
     if (y[0] < 0) throw ComputationFailed("no root below 0");
@@ -271,7 +271,8 @@ BOOST_AUTO_TEST_CASE(retry_a_step_at_which_the_field_throws) {
   };
   ExplicitRungeKutta last(ends, 0.0, State<1>(1.0));
   BOOST_CHECK_EXCEPTION(last.advance_to(2), ComputationFailed, [](const ComputationFailed& e) {
-    return std::string(e.what()) == "the road ends";
+    const std::string text = e.what();
+    return text.starts_with("integration stopped at t = ") && text.ends_with(" s: the road ends");
   });
   BOOST_TEST(std::abs(last.t() - 1) < 1e-12);
 }
