@@ -88,6 +88,13 @@ void constrain(const BodyTree& tree, const double* q, const double* v, double* d
     return -c.rows[static_cast<std::size_t>(k)].acceleration;
   });
   solve_multipliers(c.right, c.multipliers, c);
+  if (c.pivot < near_singular) {
+    // Once more for what is left: the square of the distance has amplified rounding.
+    const VectorXd first = c.multipliers;
+    c.right -= c.directions.transpose() * (c.responses * first);
+    solve_multipliers(c.right, c.multipliers, c);
+    c.multipliers += first;
+  }
   Eigen::Map<VectorXd>(dv, tree.rates()) += c.responses * c.multipliers;
 }
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,12 +60,16 @@ void take_off_constraints(const BodyTree& tree, BodyWorkspace& w);
 /// Throws : ComputationFailed, naming the constraint, if the state is too far from them
 KREISEL_API void project_on_constraints(const BodyTree& tree, Eigen::VectorXd& y, BodyWorkspace& w);
 
-/// Near a singular position: the state on the conditions next to y, in w; null elsewhere, and if y is
-/// far from them. The accelerations at y err there by its distance from the conditions, over its
-/// distance from the singular position. Needs w as constrain() leaves it.
-[[nodiscard]] const Eigen::VectorXd* projected_near_singular(const BodyTree& tree,
-                                                             const Eigen::VectorXd& y,
-                                                             BodyWorkspace& w);
+/// True near a singular position: the rates at a state err by its distance from the conditions, over
+/// its distance from the singular position. Needs w as constrain() leaves it.
+[[nodiscard]] bool is_near_singular(BodyWorkspace& w);
+
+/// The rates near a singular position, from those of states on the conditions: of the state next to
+/// y, or interpolated from states before and after y. Nothing if y is far from the conditions. Needs w
+/// as constrain() leaves it.
+[[nodiscard]] std::optional<Eigen::VectorXd> rates_near_singular(
+    const BodyTree& tree, const Eigen::VectorXd& y, BodyWorkspace& w,
+    const std::function<const Eigen::VectorXd&(const Eigen::VectorXd&)>& rates);
 
 /// The nearest state to y that fulfils the conditions, by Newton's method.
 ///

@@ -162,13 +162,14 @@ void accelerate(const BodyTree& tree, const Surroundings& now, const Eigen::Vect
 void rates(const BodyTree& tree, const Surroundings& now, const Eigen::VectorXd& y,
            Eigen::VectorXd& result, BodyWorkspace& w) {
   result.resize(y.size());
-  const auto evaluate = [&](const Eigen::VectorXd& state) {
+  const auto evaluate = [&](const Eigen::VectorXd& state) -> const Eigen::VectorXd& {
     set_coordinate_rates(tree, state.data(), rates_of(tree, state), result.data());
     accelerate(tree, now, state, result.data() + tree.coordinates(), w);
+    return result;
   };
   evaluate(y);
-  if (tree.constraints().empty()) return;
-  if (const Eigen::VectorXd* const near = projected_near_singular(tree, y, w)) evaluate(*near);
+  if (tree.constraints().empty() || !is_near_singular(w)) return;
+  if (const auto near = rates_near_singular(tree, y, w, evaluate)) result = *near;
 }
 
 void respond(const BodyTree& tree, const double* joint_force, double* result, BodyWorkspace& w) {

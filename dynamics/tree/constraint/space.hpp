@@ -21,7 +21,6 @@ struct ConstraintSpace : Conditions<> {
   Eigen::VectorXd multipliers;
   Eigen::VectorXd change;  ///< of the motion, and that of the coordinates
   Eigen::VectorXd moved;
-  Eigen::VectorXd projected;  ///< a state on the conditions
   std::vector<double> spin_up;
   double pivot = 1;  ///< the least of the scaled mass, as a part of the greatest
 };
@@ -32,6 +31,9 @@ void set_directions(const BodyTree& tree, BodyWorkspace& w);
 /// Conditions whose direction is below 1e-6 of the others' follow from these: in J M^-1 J^t it stands
 /// squared.
 inline constexpr double redundant_below = 1e-12;
+
+/// Below this squared distance from a singular position the directions of conditions are rounded.
+inline constexpr double near_singular = 1e-2;
 
 /// Solves  (J M^-1 J^t) x = b  for rows scaled by their mobility, for the least x if some conditions
 /// follow from others.

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include <dynamics/tree/accelerations.hpp>
-#include <dynamics/tree/constraint/space.hpp>
+#include <dynamics/tree/constraint/singular.hpp>
+#include <dynamics/tree/constraint/state.hpp>
 #include <dynamics/tree/constraints.hpp>
 #include <dynamics/tree/loads.hpp>
 #include <dynamics/tree/passes.hpp>
@@ -23,7 +24,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Sets poses and motions relative to the guide, and the rows, for a state.
+/// The gap of a row relative to its size.
+double relative_gap(const ConstraintRow<>& row) {
+  return row.gap == 0 ? 0 : std::abs(row.gap) / row.size;
+}
+
+}  // namespace
+
 void set_state(const BodyTree& tree, const VectorXd& y, BodyWorkspace& w) {
   const double* v = y.data() + tree.coordinates();
   set_poses(tree, y.data(), w);
@@ -32,12 +39,6 @@ void set_state(const BodyTree& tree, const VectorXd& y, BodyWorkspace& w) {
   list_conditions(tree, y.data(), v, static_cast<const double*>(w.still.data()), w, *w.constraints);
 }
 
-/// The gap of a row relative to its size.
-double relative_gap(const ConstraintRow<>& row) {
-  return row.gap == 0 ? 0 : std::abs(row.gap) / row.size;
-}
-
-/// The greatest gap relative to its size, and its constraint.
 std::pair<double, std::size_t> worst_gap(const ConstraintSpace& c) {
   std::pair<double, std::size_t> worst{0, 0};
   for (std::size_t k = 0; k < c.rows.size(); ++k) {
@@ -48,23 +49,32 @@ std::pair<double, std::size_t> worst_gap(const ConstraintSpace& c) {
   return worst;
 }
 
-/// Moves the coordinates by the least change that closes the gaps to first order.
-void close_gaps(const BodyTree& tree, VectorXd& y, ConstraintSpace& c) {
+void list_gaps(ConstraintSpace& c) {
   c.right = VectorXd::NullaryExpr(static_cast<Index>(c.rows.size()), [&c](Index k) {
     return c.rows[static_cast<std::size_t>(k)].gap;
   });
-  solve_multipliers(c.right, c.multipliers, c);
-  c.change = -c.responses * c.multipliers;
+}
+
+void move_coordinates(const BodyTree& tree, VectorXd& y, ConstraintSpace& c) {
   c.moved.resize(tree.coordinates());
   set_coordinate_rates(tree, y.data(), c.change.data(), c.moved.data());
   y.head(tree.coordinates()) += c.moved;
 }
 
-/// Changes the rates least so that they fulfil the conditions.
 void close_rates(const BodyTree& tree, VectorXd& y, ConstraintSpace& c) {
   c.right = Eigen::Map<const VectorXd>(c.rates.data(), static_cast<Index>(c.rates.size()));
   solve_multipliers(c.right, c.multipliers, c);
   y.tail(tree.rates()) -= c.responses * c.multipliers;
+}
+
+namespace {
+
+/// Moves the coordinates by the least change that closes the gaps to first order.
+void close_gaps(const BodyTree& tree, VectorXd& y, ConstraintSpace& c) {
+  list_gaps(c);
+  solve_multipliers(c.right, c.multipliers, c);
+  c.change = -c.responses * c.multipliers;
+  move_coordinates(tree, y, c);
 }
 
 /// Refuses a state in which a constraint stays open by this part of its size.
@@ -98,7 +108,7 @@ std::vector<ConstraintGap> constraint_gaps(const BodyTree& tree, const VectorXd&
   return result;
 }
 
-void project_on_constraints(const BodyTree& tree, VectorXd& y, BodyWorkspace& w) {
+void project_on_directions(const BodyTree& tree, VectorXd& y, BodyWorkspace& w) {
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
   constexpr double far = 1e-2;
   ConstraintSpace& c = *w.constraints;
@@ -119,18 +129,10 @@ void project_on_constraints(const BodyTree& tree, VectorXd& y, BodyWorkspace& w)
   close_rates(tree, y, c);
 }
 
-const VectorXd* projected_near_singular(const BodyTree& tree, const VectorXd& y, BodyWorkspace& w) {
-  // The square of a tenth of a radian.
-  constexpr double near = 1e-2;
-  ConstraintSpace& c = *w.constraints;
-  if (independence(c) > near) return nullptr;
-  c.projected = y;
-  try {
-    project_on_constraints(tree, c.projected, w);
-  } catch (const ComputationFailed&) {
-    return nullptr;  // a trial point far from the conditions: its step is rejected
-  }
-  return &c.projected;
+void project_on_constraints(const BodyTree& tree, VectorXd& y, BodyWorkspace& w) {
+  project_on_directions(tree, y, w);
+  const auto itself = [](const VectorXd& state) -> const VectorXd& { return state; };
+  if (const auto found = interpolated_near_singular(tree, y, w, itself)) y = *found;
 }
 
 VectorXd assembled(const BodyTree& tree, VectorXd y, BodyWorkspace& w) {
