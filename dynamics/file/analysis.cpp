@@ -209,11 +209,10 @@ void add_multipliers(const StudySystem& system, const SceneFile& scene,
     if (changes && !found.reason.empty()) refuse(found.reason + "; give the period");
     return;
   }
-  const bool is_quick = found.is_only && scene.frequencies.empty();
-  if (!request.period && !request.response && !is_quick) {
+  if (!request.period && !request.response && !found.is_only) {
     return refuse(
-        fmt::format("{}the period is {:.9g} s; give the period {:.17g} to compute them",
-                    found.is_only ? "" : "the equations change with several frequencies; ",
+        fmt::format("the equations change with several frequencies; the period is {:.9g} s; give "
+                    "the period {:.17g} to compute them",
                     found.period, found.period));
   }
   if (system.has_samples()) return refuse("controllers are sampled");
