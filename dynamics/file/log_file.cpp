@@ -8,6 +8,7 @@
 
 #include <dynamics/file/log_file.hpp>
 #include <dynamics/file/log_layout.hpp>
+#include <dynamics/file/log_stamps.hpp>
 #include <dynamics/file/log_text.hpp>
 
 namespace kreisel {
@@ -105,6 +106,7 @@ class LogReader {
     refuse_if_empty();
     check_gaps();
     set_resolutions();
+    correct_times();
     return std::move(log_);
   }
 
@@ -228,6 +230,9 @@ class LogReader {
     if (t < times().back()) {
       refuse("t = " + shown(t) + " s is earlier than in " + line_of(last));
     }
+    for (std::size_t i = 1; i < values_.size(); ++i) {
+      differs_ = differs_ || values_[i] != log_.columns[i].values[last];
+    }
     switch (options_.duplicates) {
       case LogDuplicates::error:
         refuse("t = " + shown(t) + " s is the same as in " + line_of(last) +
@@ -340,6 +345,20 @@ class LogReader {
     }
   }
 
+  /// Finds how far the time stamps may be wrong. Stamps that several rows shared are so coarse that
+  /// all may be off by their unit. Rounded stamps of a regular rate are replaced by its times.
+  void correct_times() {
+    const double unit = log_.columns[0].resolution;
+    if (differs_) {
+      log_.late = unit;
+    } else if (options_.time_stamps == LogTimeStamps::automatic) {
+      auto regular = detail::regular_times(log_.columns, unit);
+      if (!regular) return;
+      times() = std::move(*regular);
+      log_.late = unit / 2;
+    }
+  }
+
   const LogOptions& options_;
   detail::LogLines lines_;
   detail::LogLayout layout_;
@@ -349,6 +368,7 @@ class LogReader {
   std::vector<double> values_;  ///< of the current row
   Log log_;
   bool has_rows_ = false;
+  bool differs_ = false;        ///< rows of the same time had different values
   std::size_t rows_after_ = 0;  ///< within the run
   std::size_t merged_ = 1;      ///< rows of the file in the last row of the log
 };

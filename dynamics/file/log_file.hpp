@@ -46,6 +46,10 @@ struct LogRequest {
 enum class LogTimeUnit { s, ms, us, ns };
 enum class LogDuplicates { error, first, last, mean };
 
+/// Time stamps that are rounded from those of a regular rate: replaced by that rate's, or used as
+/// they are.
+enum class LogTimeStamps { automatic, exact };
+
 /// The layout of a log's text: the keys of "Logs" in docs/scene_files.md.
 struct LogOptions {
   /// The header's name of a column, or its number from 1.
@@ -65,6 +69,7 @@ struct LogOptions {
   std::optional<std::array<double, 2>> run = {};
   std::optional<double> longest_gap = {};  ///< s; infinity: any; nothing: 10 times the median step
   LogDuplicates duplicates = LogDuplicates::error;
+  LogTimeStamps time_stamps = LogTimeStamps::automatic;
 };
 
 /// One column of a log.
@@ -86,6 +91,7 @@ struct Log {
   std::vector<std::size_t> lines;  ///< the line of each row, from 1
   double first_time = 0;           ///< of all rows in the file, including rows that were skipped
   double last_time = 0;
+  double late = 0;  ///< s, as MotionLog::late
 
   [[nodiscard]] std::size_t size() const { return lines.size(); }
   [[nodiscard]] bool has(std::string_view column) const;

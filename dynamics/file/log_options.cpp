@@ -132,6 +132,9 @@ void read_time(Section& section, LogOptions& options) {
                        : duplicates == "last" ? LogDuplicates::last
                        : duplicates == "mean" ? LogDuplicates::mean
                                               : LogDuplicates::error;
+  if (section.choice("time_stamps", {"auto", "exact"}) == "exact") {
+    options.time_stamps = LogTimeStamps::exact;
+  }
 }
 
 void read_writing(Section& section, LogOptions& options) {
@@ -152,13 +155,14 @@ void read_writing(Section& section, LogOptions& options) {
   }
 }
 
-/// Suggests keys with which a log covers a run from t_begin on, as the end of a message.
-std::string time_hint(const LogOptions& options, const std::vector<double>& times, double t_begin) {
+/// Suggests keys with which a log that begins late covers a run from t_begin on, as the end of a
+/// message.
+std::string begin_hint(const LogOptions& options, const std::vector<double>& times,
+                       double t_begin) {
   const double begin = times.front();
-  if (begin <= t_begin) return ": give  t_end = " + shown_time(times.back()) + "  in [solve]";
   if (options.window) {
-    return ": the run begins at t = " + shown_time(t_begin) + "; increase  time_zero  by " +
-           shown_time(begin - t_begin) + " s and move  window  back by as much";
+    return ": increase  time_zero  by " + shown_time(begin - t_begin) +
+           " s and move  window  back by as much";
   }
   constexpr double since_1970 = 1e8;  // s; a log that is newer than 1973 and counts from 1970
   const double step = (times.back() - begin) / static_cast<double>(times.size() - 1);
@@ -187,11 +191,16 @@ LogOptions read_log_options(Section& section, const std::vector<LogRequest>& req
 
 void check_covers_run(Section& section, const std::string& name, const LogOptions& options,
                       const std::vector<double>& times, const std::array<double, 2>& run) {
-  if (times.front() <= run[0] && times.back() >= run[1]) return;
-  section.refuse("file", "'" + name + "' goes from t = " + shown_time(times.front()) + " s to " +
-                             shown_time(times.back()) + " s and does not cover the run, " +
-                             shown_time(run[0]) + " to " + shown_time(run[1]) + " s" +
-                             time_hint(options, times, run[0]));
+  const std::string what = std::string(options.window ? "the window of '" : "'") + name + "' ";
+  if (times.front() > run[0]) {
+    section.refuse("file", what + "begins at t = " + shown_time(times.front()) +
+                               " s, the run at t = " + shown_time(run[0]) + " s" +
+                               begin_hint(options, times, run[0]));
+  } else if (times.back() < run[1]) {
+    section.refuse("file", what + "ends at t = " + shown_time(times.back()) +
+                               " s, the run at t = " + shown_time(run[1]) +
+                               " s: give  t_end = " + shown_time(times.back()) + "  in [solve]");
+  }
 }
 
 }  // namespace kreisel::detail

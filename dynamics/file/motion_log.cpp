@@ -92,6 +92,7 @@ LoggedMotion read_motion_log(const std::filesystem::path& path, const LogOptions
   take_attitudes(log, result);
   take_positions(log, result);
   result.motion.times = log.column("t").values;
+  result.motion.late = log.late;
   result.time_resolution = log.column("t").resolution;
   if (log.size() < 4) {
     throw InvalidInput(path.string() + ": " + std::to_string(log.size()) +

@@ -35,6 +35,7 @@ RatesLog read_rates_log(const std::filesystem::path& path, const LogOptions& opt
   const Log log = read_log(path, rates_log_columns(), options);
   RatesLog result;
   result.times = log.column("t").values;
+  result.late = log.late;
   result.angular_velocities = vectors(log, "wx", "wy", "wz");
   if (log.has("ax")) result.accelerations = vectors(log, "ax", "ay", "az");
   if (log.size() < 4) {

@@ -240,12 +240,14 @@ class GuideReader {
     };
     if (const auto jump = impact(plan, t_end_)) {
       const bool is_bank = jump->key == std::string_view("bank");
-      guide.refuse(given(jump->key),
-                   "jumps, or its rate does, at t = " + shown_time(jump->t) +
-                       " s, which takes an infinite " +
-                       (plan.is_coordinated ? "torque beside bank = 'coordinated'" : "force") +
-                       (is_bank || plan.is_coordinated ? "; give 'constant', 'rate' and 'terms'"
-                                                       : "; give 'points'"));
+      guide.refuse(
+          given(jump->key),
+          "jumps, or its rate does, at t = " + shown_time(jump->t) +
+              " s, which takes an infinite " +
+              (plan.is_coordinated ? "torque beside bank = 'coordinated'" : "force") +
+              (is_bank || plan.is_coordinated ? "; give 'constant', 'rate' and 'terms', or 'file'"
+                                              : "; give 'points'") +
+              (plan.is_coordinated ? ", or an angle of bank" : ""));
       return;
     }
     try {

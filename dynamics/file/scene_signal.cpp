@@ -82,7 +82,7 @@ LogQuantity quantity(const KeyDimension& of) {
 
 /// The samples of a log of one or three columns.
 ValueLog samples(const Log& log, const std::vector<std::string>& names) {
-  ValueLog result{log.column("t").values, {}};
+  ValueLog result{log.column("t").values, {}, log.late};
   result.values.assign(log.size(), Vector3<double>::Zero());
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::vector<double>& column = log.column(names[k]).values;

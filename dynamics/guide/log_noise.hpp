@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,7 @@ struct LogNoise {
   using Components = PiecewisePose<double>::Components;
   Components white = Components::Zero();  ///< standard deviation, independent from sample to sample
   Components step = Components::Zero();   ///< unit of the last written decimal, 0 if there is none
+  double late = 0;                        ///< s, as MotionLog::late
 
   /// True where the estimate is of noise; else the samples are too coarse to separate noise from
   /// motion.
@@ -36,12 +38,14 @@ struct LogSamples {
   std::vector<double> times;
   std::vector<LogComponents> written;
   std::vector<LogComponents> values;
+  double late = 0;  ///< as MotionLog::late
 };
 
 [[nodiscard]] inline LogSamples samples_of(const MotionLog<double>& log) {
   LogSamples result;
   const TabulatedFrame<> frame(log);
   result.times = log.times;
+  result.late = log.late;
   for (std::size_t i = 0; i < log.times.size(); ++i) {
     const auto components = [i](const MotionLog<double>& of) {
       const Vector3<double> rest = Vector3<double>::Zero();
@@ -58,6 +62,7 @@ struct LogSamples {
 [[nodiscard]] inline LogSamples samples_of(const RatesLog& log) {
   LogSamples result;
   result.times = log.times;
+  result.late = log.late;
   for (std::size_t i = 0; i < log.times.size(); ++i) {
     result.written.push_back(rates_components(log, i));
   }
@@ -68,7 +73,7 @@ struct LogSamples {
 /// Values in place of positions.
 [[nodiscard]] inline LogSamples samples_of(const ValueLog& log) {
   const auto values = value_components(log);
-  return {log.times, values, values};
+  return {log.times, values, values, log.late};
 }
 
 [[nodiscard]] inline MotionLog<double> with_values(MotionLog<double> log,
@@ -172,7 +177,8 @@ struct LogSamples {
 template <class Log>
 [[nodiscard]] LogNoise noise_of(const Log& log) {
   LogNoise noise;
-  const auto [times, written, values] = detail::samples_of(log);
+  const auto [times, written, values, late] = detail::samples_of(log);
+  noise.late = late;
   noise.step.head<4>().setConstant(detail::decimal_step(written, 0, 4));
   noise.step.tail<3>().setConstant(detail::decimal_step(written, 4, 3));
   std::vector<double> steps;
@@ -273,9 +279,11 @@ template <class Log>
   return sigma;
 }
 
-/// The samples of the spline at the times of the log.
+/// The samples of the spline at the times of the log, or `later` by so many seconds, from the first
+/// sample to the last. The polynomials at the ends continue beyond them.
 template <class Log>
-[[nodiscard]] Log smoothed(const Log& log, const LogSpline& how) {
+[[nodiscard]] Log smoothed(const Log& log, const LogSpline& how,
+                           const std::array<double, 2>& later = {}) {
   const detail::LogSamples samples = detail::samples_of(log);
   const std::size_t p = how.degree_for(samples.times.size());
   const detail::SplineInterpolation<double> first(samples.times, samples.values, p,
@@ -283,22 +291,24 @@ template <class Log>
   const detail::SplineInterpolation<double> last(samples.times, samples.values, p,
                                                  how.position_every);
   std::vector<detail::LogComponents> values;
-  for (const double t : samples.times) {
+  const double begin = samples.times.front();
+  const double rate = (later[1] - later[0]) / (samples.times.back() - begin);
+  for (const double time : samples.times) {
+    const double t = time + (later[0] + rate * (time - begin));
     values.push_back(first.value(t));
     values.back().tail<3>() = last.value(t).tail<3>();
   }
   return detail::with_values(log, values);
 }
 
-/// Another log that could have been written as well: smoothed, with noise and rounding drawn anew.
+/// Another log that could have been written as well: smoothed, with noise, rounding and delays drawn
+/// anew.
 ///
 /// Rounding is drawn as an offset of the decimal grid. The rounding error of a slow motion then
 /// stays in steps, and the rounding error of a motion at rest is a constant.
 template <class Log>
 [[nodiscard]] Log drawn_again(const Log& written, const LogNoise& noise, const LogSpline& smooth,
                               std::uint64_t seed) {
-  const Log log = smoothed(written, smooth);
-  auto values = detail::samples_of(log).values;
   std::mt19937_64 engine(seed);
   // Sums of twelve draws: equal on every machine, unlike std::normal_distribution.
   const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53 - 0.5; };
@@ -307,6 +317,10 @@ template <class Log>
     for (int i = 0; i < 12; ++i) sum += uniform();
     return sum;
   };
+  std::array<double, 2> later{};
+  if (noise.late > 0) later = {2 * noise.late * uniform(), 2 * noise.late * uniform()};
+  const Log log = smoothed(written, smooth, later);
+  auto values = detail::samples_of(log).values;
   LogNoise::Components white = noise.white;
   LogNoise::Components offset;
   for (int c = 0; c < 7; ++c) {
@@ -324,13 +338,29 @@ template <class Log>
   return detail::with_values(log, values);
 }
 
+namespace detail {
+
+/// The log without the part of its samples that only the highest power of time gives. A polynomial
+/// through all samples then has one degree less.
+template <class Log>
+[[nodiscard]] Log without_highest_power(const Log& log) {
+  std::vector<LogComponents> values = samples_of(log).values;
+  const std::vector<double> weight = difference_weights(log.times, 0, values.size() - 1);
+  LogComponents part = LogComponents::Zero();
+  for (std::size_t i = 0; i < values.size(); ++i) part += weight[i] * values[i];
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= weight[i] * part;
+  return with_values(log, values);
+}
+
+}  // namespace detail
+
 /// The error of a result that comes from the log's own errors.
 ///
 /// The result is computed again with other logs that are as plausible as the given one. Some are
 /// the smoothed samples with noise and rounding drawn anew; they differ as the samples differ from
 /// the motion. Another is a spline two degrees higher on the same knots. It differs by about the
 /// truncation error of the lower degree and by noise; the noise is known from the draws and
-/// subtracted.
+/// subtracted. A log too short for two degrees more is compared with one degree less.
 ///
 /// Small errors are thus propagated by the linear equations along the motion, as differences of
 /// whole runs, and great errors by the nonlinear equations. Pose, velocity and acceleration have
@@ -357,18 +387,25 @@ template <class Log, class Result, class Follow, class Distance>
   const auto square = [&](const Result& a, const Result& b) {
     return Eigen::VectorXd(distance(a, b).cwiseAbs2());
   };
-  Eigen::VectorXd degree = square(follow(log, higher), result);
-  if (noise.white.isZero(0) && noise.step.isZero(0)) return 2 * degree.cwiseSqrt();
+  const std::size_t n = log.times.size();
+  const bool is_short = higher.degree_for(n) == spline.degree_for(n);
+  const auto follow_degree = [&](const Log& other) {
+    return is_short ? follow(detail::without_highest_power(other), spline) : follow(other, higher);
+  };
+  Eigen::VectorXd degree = square(follow_degree(log), result);
+  if (noise.white.isZero(0) && noise.step.isZero(0) && noise.late == 0) {
+    return 2 * degree.cwiseSqrt();
+  }
   const LogSpline smooth = smoothing(log, smoothing_sigma(noise));
   const Log middle_log = smoothed(log, smooth);
   const Result middle = follow(middle_log, spline);
-  degree += square(follow(middle_log, higher), middle);
+  degree += square(follow_degree(middle_log), middle);
   Eigen::VectorXd drawn = 0 * degree;
   for (std::uint64_t i = 1; i <= draws; ++i) {
     const Log again = drawn_again(log, noise, smooth, i);
     const Result one = follow(again, spline);
     drawn += square(one, middle) / draws;
-    degree -= square(follow(again, higher), one) / draws;
+    degree -= square(follow_degree(again), one) / draws;
   }
   return (4 * degree.cwiseMax(0) + 4 * drawn).cwiseSqrt();
 }

@@ -20,6 +20,7 @@ struct RatesLog {
   std::vector<double> times;
   std::vector<Vector3<double>> angular_velocities;
   std::vector<Vector3<double>> accelerations;  ///< of the origin; empty: it is not accelerated
+  double late = 0;                             ///< s, as MotionLog::late
 };
 
 namespace detail {

@@ -18,6 +18,10 @@ struct MotionLog {
   std::vector<S> times;
   std::vector<Eigen::Quaternion<S>> attitudes;
   std::vector<Vector3<S>> positions;  ///< empty: the origin rests
+
+  /// s; the first and the last time may be late or early by up to this much, and those between them
+  /// in proportion. The error of the log contains it.
+  S late = S(0);
 };
 
 /// The spline that follows a log: its degree, and the number of samples per knot. One sample per

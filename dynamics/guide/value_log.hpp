@@ -16,6 +16,7 @@ namespace kreisel {
 struct ValueLog {
   std::vector<double> times;  ///< s
   std::vector<Vector3<double>> values;
+  double late = 0;  ///< s, as MotionLog::late
 };
 
 namespace detail {

@@ -275,6 +275,21 @@ std::vector<std::string> warnings(const Result& result) {
     all.push_back(fmt::format("constraint '{}': {} of its {} conditions follow from others", name,
                               redundant, conditions));
   }
+  const auto note_log = [&all](const std::filesystem::path& file, const auto& log) {
+    if (log.late == 0) return;
+    all.push_back(fmt::format(
+        "log '{}': its time stamps are coarse; all may be late or early by {:.3g} s, which the "
+        "error of the log contains",
+        file.filename().string(), log.late));
+  };
+  for (const auto& link : result.scene.guide) {
+    std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.log; }) note_log(one.file, one.log);
+        },
+        link);
+  }
+  for (const kreisel::SceneSignalLog& one : result.scene.signal_logs) note_log(one.file, one.log);
   for (const auto& [name, t, force] :
        kreisel::pulling_contacts(result.scene, result.model, result.run)) {
     all.push_back(fmt::format(

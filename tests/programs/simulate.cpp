@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -528,6 +529,33 @@ BOOST_AUTO_TEST_CASE(reports_the_effect_of_log_errors) {
   const Outcome text = run((ship.folder.path() / "scene.toml").string());
   BOOST_TEST(text.out.find("error_of_integration ") != std::string::npos);
   BOOST_TEST(text.out.find("error_of_log ") != std::string::npos);
+}
+
+// 30 Hz in hundredths of a second: as they are written, the rows accelerate the ship by its motion
+// over 5 ms, 30 times a second.
+BOOST_AUTO_TEST_CASE(rounded_time_stamps_are_told) {
+  RollingShip ship;
+  std::string log = "t,yaw,pitch,roll\n";
+  for (int i = 0; i <= 390; ++i) {
+    char row[64];
+    std::snprintf(row, sizeof row, "%.2f,0,0,%.17g\n", i / 30.0,
+                  0.2 * std::sin(0.785398163397448 * i / 30));
+    log += row;
+  }
+  ship.folder.write("log.csv", log);
+  for (const char* const keys : {"", "time_stamps = \"exact\"\nsigma = 0\n"}) {
+    const bool is_exact = std::string(keys) != "";
+    const json result = ship.along_the_log(keys);
+    const double off = std::abs(RollingShip::coordinate(result) - ship.truth);
+    const double told = result.at("error").at("log");
+    BOOST_TEST_MESSAGE(keys << "off by " << off << ", told " << told);
+    BOOST_TEST((off > 1e-4) == is_exact);
+    BOOST_TEST(result.at("warnings").size() == (is_exact ? 0U : 1U));
+    if (is_exact) continue;
+    BOOST_TEST(off <= 1.2 * told);
+    const std::string warning = result.at("warnings").at(0);
+    BOOST_TEST(warning.starts_with("log 'log.csv': its time stamps are coarse"), warning);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(first_row_is_the_start) {

@@ -1,6 +1,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -511,6 +512,75 @@ BOOST_AUTO_TEST_CASE(spacing_of_the_written_numbers_is_reported) {
   const Log log = read("t,yaw,pitch,roll\n0.1,0.1,0,0\n0.2,0.2,0,0\n", options, motion);
   BOOST_TEST(std::abs(log.column("t").resolution / 1e-4 - 1) < 1e-14);
   BOOST_TEST(std::abs(log.column("yaw").resolution / (0.1 * std::numbers::pi / 180) - 1) < 1e-14);
+}
+
+/// Samples k/rate, k from `first` on, with their times in so many decimals; none at `missing`.
+std::string rounded_stamps(double rate, int decimals, int first, int count, int missing = -1) {
+  std::string text = "t,value\n";
+  for (int k = first; k < first + count; ++k) {
+    char time[32];
+    std::snprintf(time, sizeof time, "%.*f", decimals, k / rate);
+    if (k != missing) text += std::string(time) + "," + std::to_string(k) + "\n";
+  }
+  return text;
+}
+
+// The first and the last stamp are exact here, so all times are.
+BOOST_AUTO_TEST_CASE(rounded_stamps_of_a_regular_rate_are_replaced) {
+  struct Case {
+    double rate;
+    int decimals;
+  };
+  for (const auto [rate, decimals] :
+       {Case{30, 2}, Case{60, 3}, Case{300, 3}, Case{600, 3}, Case{1.0 / 3, 0}, Case{128, 3}}) {
+    BOOST_TEST_CONTEXT(rate << " Hz, " << decimals << " decimals") {
+      const int first = rate < 1 ? -3 : static_cast<int>(-rate);
+      const int count = rate < 1 ? 61 : static_cast<int>(3 * rate) + 1;
+      const Log log = read(rounded_stamps(rate, decimals, first, count, first + 7));
+      BOOST_TEST(log.late == (rate < 1 ? 0 : 0.5 * std::pow(10, -decimals)));
+      for (std::size_t i = 0; i < log.size(); ++i) {
+        const double exact = log.column("value").values[i] / rate;
+        BOOST_TEST(std::abs(log.column("t").values[i] - exact) < 1e-14);
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(other_stamps_stay_as_they_are) {
+  const std::string text = rounded_stamps(30, 2, 0, 19);
+  BOOST_TEST(read(text).column("t").values.at(1) == 0.03);  // too few
+  BOOST_TEST(read(text).late == 0);
+  const std::string more = rounded_stamps(30, 2, 0, 31);
+  BOOST_TEST(read(more).column("t").values.at(1) != 0.03);
+  LogOptions exact;
+  exact.time_stamps = LogTimeStamps::exact;
+  BOOST_TEST(read(more, exact).column("t").values.at(1) == 0.03);
+  BOOST_TEST(read(more, exact).late == 0);
+  // One stamp is 1.7 of its last digit away from its regular time.
+  std::string irregular = more;
+  irregular.replace(irregular.find("\n0.33,"), 5, "\n0.35");
+  BOOST_TEST(read(irregular).column("t").values.at(1) == 0.03);
+  // Values that were taken at the stamps themselves.
+  std::string sampled = "t,value\n";
+  for (int k = 0; k <= 60; ++k) {
+    char row[64];
+    const double t = std::round(100.0 * k / 30) / 100;
+    std::snprintf(row, sizeof row, "%.2f,%.17g\n", t, std::sin(t));
+    sampled += row;
+  }
+  BOOST_TEST(read(sampled).column("t").values.at(1) == 0.03);
+  BOOST_TEST(read(sampled).late == 0);
+}
+
+BOOST_AUTO_TEST_CASE(stamps_of_several_rows_are_coarse) {
+  LogOptions options;
+  for (const LogDuplicates rule :
+       {LogDuplicates::first, LogDuplicates::last, LogDuplicates::mean}) {
+    options.duplicates = rule;
+    BOOST_TEST(read("t,value\n0,1\n1,2\n1,3\n2,4\n", options).late == 1);
+    BOOST_TEST(read("t,value\n0.0,1\n0.1,2\n0.1,3\n0.2,4\n", options).late == 0.1);
+    BOOST_TEST(read("t,value\n0,1\n1,2\n1,2\n2,4\n", options).late == 0);  // the same row again
+  }
 }
 
 BOOST_AUTO_TEST_CASE(only_files_can_be_read) {

@@ -160,14 +160,12 @@ BOOST_AUTO_TEST_CASE(mistakes_in_keys_have_their_position) {
 }
 
 BOOST_AUTO_TEST_CASE(a_log_outside_the_run_names_the_helpful_key) {
-  const std::string at = "s.toml:3:8: guide.file: 'log.csv' goes from t = ";
+  const std::string at = "s.toml:3:8: guide.file: 'log.csv' ";
   const auto header = [](const std::string& name) { return name + ",qw,qx,qy,qz\n"; };
   BOOST_TEST(mistakes(header("t") + rows({"0.01", "0.11", "0.21", "0.31"}, ",1,0,0,0")) ==
-             at + "0.01 s to 0.31 s and does not cover the run, 0 to 0.3 s: give  time_zero = "
-                  "\"first\"");
+             at + "begins at t = 0.01 s, the run at t = 0 s: give  time_zero = \"first\"");
   BOOST_TEST(mistakes(header("t") + rows({"0", "0.1", "0.2", "0.25"}, ",1,0,0,0")) ==
-             at + "0 s to 0.25 s and does not cover the run, 0 to 0.3 s: give  t_end = 0.25  in "
-                  "[solve]");
+             at + "ends at t = 0.25 s, the run at t = 0.3 s: give  t_end = 0.25  in [solve]");
   BOOST_TEST(mistakes(header("#timestamp") + rows({"1403715524900000000", "1403715525000000000",
                                                    "1403715525100000000", "1403715525200000000"},
                                                   ",1,0,0,0"))
@@ -175,8 +173,8 @@ BOOST_AUTO_TEST_CASE(a_log_outside_the_run_names_the_helpful_key) {
   BOOST_TEST(mistakes(header("t") + rows({"123456", "133456", "143456", "153456"}, ",1,0,0,0"))
                  .ends_with(": give  time_unit = \"us\"  and  time_zero = \"first\""));
   BOOST_TEST(mistakes(plain + "0.4,1,0,0,0\n", "window = [0.1, 0.4]")
-                 .ends_with(": the run begins at t = 0; increase  time_zero  by 0.1 s and move  "
-                            "window  back by as much"));
+                 .ends_with("the window of 'log.csv' begins at t = 0.1 s, the run at t = 0 s: "
+                            "increase  time_zero  by 0.1 s and move  window  back by as much"));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

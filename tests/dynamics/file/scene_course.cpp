@@ -196,7 +196,8 @@ BOOST_AUTO_TEST_CASE(has_line_column_key_and_reason) {
        "'constant', 'rate' and 'terms'"},
       {start + "bank = \"coordinated\"\nturn_rate_deg = { points = [[4, 1], [5, 2]] }\n",
        "s.toml:7:17: guide.turn_rate_deg: jumps, or its rate does, at t = 4 s, which takes an "
-       "infinite torque beside bank = 'coordinated'"},
+       "infinite torque beside bank = 'coordinated'; give 'constant', 'rate' and 'terms', or "
+       "'file', or an angle of bank"},
       {start + "bank = \"steep\"\n", "guide.bank: 'steep' is none of 'none' or 'coordinated'"},
       {start + "bank = \"none\"\nbank_deg = 3\n", "guide.bank_deg: is given beside 'bank'"},
       {start + "gravity = -1\n", "s.toml:6:11: guide.gravity: -1 must be above 0"},
@@ -209,6 +210,8 @@ BOOST_AUTO_TEST_CASE(has_line_column_key_and_reason) {
     const std::string found = mistakes(guide(keys) + held + run);
     BOOST_TEST(found.find(reason) != std::string::npos, "wanted " << reason << "\nfound " << found);
   }
+  const std::string early = mistakes(guide(start) + held + "[solve]\nt_begin = -1\nt_end = 1\n");
+  BOOST_TEST(early.find("its start at t = 0; solve.t_begin is earlier") != std::string::npos);
   // The height on the way is known to the run only.
   const SceneFile sinking = scene(guide(start + "climb = -2000\n") + held + run);
   BOOST_CHECK_THROW((void)make_guide(sinking), InvalidInput);

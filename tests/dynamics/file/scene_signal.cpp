@@ -268,8 +268,8 @@ BOOST_AUTO_TEST_CASE(mistakes_in_logs_are_reported) {
       {body("force = { file = \"log.csv\", sigma = -1 }"),
        "a'.force.sigma: -1 must not be below 0"},
       {body("force = { file = \"log.csv\", time_zero = 1 }"),
-       "a'.force.file: 'log.csv' goes from t = -1.2 s to 3.2 s and does not cover the run, 0 to 4 "
-       "s: give  t_end = 3.2  in [solve]"},
+       "a'.force.file: 'log.csv' ends at t = 3.2 s, the run at t = 4 s: give  t_end = 3.2  in "
+       "[solve]"},
       {body("force = { file = \"log.csv\", columns = { t = \"t\", value = \"turn [deg]\" } }"),
        "is in deg, and is read in SI units"},
       {body("load = { torque = { file = \"log.csv\" } }"), "a'.load.torque.file: "},

@@ -65,16 +65,21 @@ struct Logger {
   double dropped = 0;      ///< part of the samples that are missing
   double gap_begin = 1e9;  ///< s
   double gap = 0;          ///< s
+  double late = 0;         ///< s, limit of a delay
 
   [[nodiscard]] std::string text() const {
     return std::to_string(rate) + " Hz, " + std::to_string(decimals) + " decimals, noise " +
            std::to_string(white * 1e6) + "e-6, jitter " + std::to_string(jitter) + ", dropped " +
-           std::to_string(dropped) + ", gap " + std::to_string(gap) + " s";
+           std::to_string(dropped) + ", gap " + std::to_string(gap) + " s, late " +
+           std::to_string(late) + " s";
   }
 
   template <class Motion>
   [[nodiscard]] MotionLog<> operator()(const Motion& motion, test::Sample& sample) const {
     MotionLog<> log;
+    log.late = late;
+    const double first_late = late > 0 ? sample.uniform(-late, late) : 0;
+    const double last_late = late > 0 ? sample.uniform(-late, late) : 0;
     const int steps = static_cast<int>(end * rate);
     for (int i = 0; i <= steps; ++i) {
       const bool inner = i > 0 && i < steps;
@@ -83,7 +88,7 @@ struct Logger {
       if (inner && (sample.uniform(0, 1) < dropped || (t > gap_begin && t < gap_begin + gap))) {
         continue;
       }
-      const Pose<double> X = motion(t);
+      const Pose<double> X = motion(t + first_late + (last_late - first_late) * t / end);
       Eigen::Quaterniond q(X.rotation);
       for (double& c : q.coeffs()) c = rounded(c + white * normal(sample), decimals);
       if (sample.once_in(9)) q.coeffs() *= -1;
@@ -191,6 +196,49 @@ BOOST_AUTO_TEST_CASE(has_the_estimated_effect_on_the_end) {
   }
   BOOST_TEST_MESSAGE(within << " of " << logs << " within 0.1 to 1.2");
   BOOST_TEST(within >= 0.95 * logs);
+}
+
+// The logger's clock is late or early, by at most as much as it says.
+BOOST_AUTO_TEST_CASE(contains_a_delay) {
+  test::Sample sample(12);
+  constexpr int logs = 200;
+  int within = 0;
+  for (int i = 0; i < logs; ++i) {
+    const Swell swell(sample);
+    Logger logger;
+    logger.end = sample.uniform(4, 8);
+    logger.rate = sample.magnitude(1.3, 2.5);
+    logger.late = sample.magnitude(-3, -1.5);
+    const Held one = held(swell, logger, sample);
+    const bool good = one.truth <= 1.2 * one.told && one.told < 20 * one.truth;
+    within += good ? 1 : 0;
+    if (!good) {
+      BOOST_TEST_MESSAGE(logger.text() << ": true " << one.truth << ", told " << one.told);
+    }
+  }
+  BOOST_TEST_MESSAGE(within << " of " << logs << " within 0.05 to 1.2");
+  BOOST_TEST(within >= 0.9 * logs);
+}
+
+// Too short for a spline of a higher degree.
+BOOST_AUTO_TEST_CASE(contains_the_error_of_a_short_log) {
+  test::Sample sample(13);
+  constexpr int logs = 200;
+  int within = 0;
+  for (int i = 0; i < logs; ++i) {
+    const Swell swell(sample);
+    Logger logger;
+    logger.end = sample.uniform(0.5, 2);
+    logger.rate = (3.5 + i % 4) / logger.end;
+    const Held one = held(swell, logger, sample);
+    const bool good = one.truth <= 1.2 * one.told && one.told < 300 * one.truth;
+    within += good ? 1 : 0;
+    if (!good) {
+      BOOST_TEST_MESSAGE(logger.text() << ": true " << one.truth << ", told " << one.told);
+    }
+  }
+  BOOST_TEST_MESSAGE(within << " of " << logs << " within 0.01 to 1.2");
+  BOOST_TEST(within >= 0.9 * logs);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

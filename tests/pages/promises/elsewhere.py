@@ -88,6 +88,19 @@ ELSEWHERE = [
     ("Give it as an integer, or as a text", PAGE + "time_zero_keeps_nanoseconds_as_a_text"),
     ("Rows far outside the run are not read. At least 64 on each side are kept for the spline, or "
      "fewer if a gap comes first.", FILE + "log_file.cpp: rows_far_from_the_run_are_not_read"),
+    ("Rows may be missing.",
+     FILE + "log_file.cpp: rounded_stamps_of_a_regular_rate_are_replaced"),
+    ("The first and the last stamp stay.",
+     FILE + "log_file.cpp: rounded_stamps_of_a_regular_rate_are_replaced"),
+    ("Its times are used if 20 or more stamps lie within half of their last digit from them. The "
+     "values must be twice as smooth over these times, too.",
+     FILE + "log_file.cpp: other_stamps_stay_as_they_are"),
+    ("Delays of up to half of the last digit remain, and the error of the log contains them.",
+     GUIDE + "log_noise.cpp: contains_a_delay"),
+    ("Stamps that several rows with other values share may be wrong by their whole last digit.",
+     FILE + "log_file.cpp: stamps_of_several_rows_are_coarse"),
+    ("The start is at t = 0, so `t_begin` must not be below 0.",
+     COURSE + "has_line_column_key_and_reason"),
     ("**Noise** and rounded decimals are smoothed by a spline of degree 5 with knots at every m-th "
      "row. The number m is chosen so that the remaining distances from the rows are as large as "
      "`sigma`.", PAGE + "sigma_is_for_attitude_and_position"),

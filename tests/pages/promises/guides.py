@@ -204,6 +204,21 @@ promise(
      "f": [-9.75, 0, 0]},
 )
 promise(
+    "The x axis is the plumb line at the site.",
+    guide("earth", "latitude_deg = 50", "azimuth_deg = 0", "height = 10000",
+          'gravity = "normal"') + STRAPPED,
+    {"f.y": Near(0, 1e-13), "f.z": Near(0, 1e-13)},
+)
+for quote in ("At a height it is not the ellipsoid's normal: at 10 km and 50 degrees it lies 8e-6 rad "
+              "from it.", "On a `course` x is the normal."):
+    promise(
+        quote,
+        guide("course", "latitude_deg = 50", "heading = 0", "speed = 0", "height = 10000",
+              'gravity = "normal"') + STRAPPED,
+        lambda found, rows: [] if 7.5e-6 < abs(rows[0]["f.z"] / rows[0]["f.x"]) < 8.5e-6
+        else [f"the apparent gravity is {rows[0]}"],
+    )
+promise(
     "A positive angle lowers the right side.",
     guide("course", *PARKED, "gravity = 9.75", "bank = 0.2") + STRAPPED,
     {"f": [-9.75 * math.cos(0.2), 9.75 * math.sin(0.2), 0]},

@@ -187,7 +187,7 @@ def fields(separator, rows=TURNING, header=HEADER):
 for separator in (",", ";", "\t", " ", "   "):
     logged("A log is a text file of numbers in columns, separated by commas, semicolons, tabs or "
            "blanks.", fields(separator))
-logged("It must cover the run.", fields(",", TURNING[:8]), (), "does not cover the run")
+logged("It must cover the run.", fields(",", TURNING[:8]), (), "'l.csv' ends at t = 0.6 s, the run")
 logged("`yaw, pitch, roll` are rotations about z, the new y and the new x.",
        fields(",", [[t, 0.3, 0.5 * t, 1.0, 0.0, 0.0, 0.0] for t, *_ in TURNING]), (),
        # The rate of pitch on axes that are turned by roll.
@@ -268,6 +268,17 @@ for rule, value in (("first", 0.2), ("last", 0.4), ("mean", 0.3)):
 for unit, factor in (("ms", 1000), ("us", 1e6), ("ns", 1e9)):
     logged('`"ms"`, `"us"`, `"ns"`', fields(",", [[t * factor, *row] for t, *row in TURNING]),
            [f'time_unit = "{unit}"'])
+ROUNDED = [[round(k / 30, 2), k / 60, 0.0, 0.0, 0.0, 0.0, k / 30] for k in range(-30, 61)]
+logged("rounded times of a regular rate are replaced by those of the rate",
+       fields(",", ROUNDED), ["sigma = 0", "window = [-1, 2]"])
+logged("**Time stamps** such as 0, 3, 7, 10 ms are rounded from a regular rate, here 300 Hz.",
+       fields(",", [[round(k / 300, 3), k / 600, 0.0, 0.0, 0.0, 0.0, k / 300]
+                    for k in range(-300, 601)]), ["sigma = 0", "window = [-1, 2]"])
+for quote in ('`"exact"`: they are used as they are',
+              "Without this the rounding would look like acceleration."):
+    logged(quote, fields(",", ROUNDED), ["sigma = 0", 'time_stamps = "exact"'],
+           lambda found, rows: [] if max(abs(row["w.z"] - 0.5) for row in rows) > 0.01
+           else ["the rounding of the times has no effect"])
 logged("unit of angles and angular rates",
        fields(",", [[t, yaw * 180 / math.pi, *row] for t, yaw, *row in TURNING]),
        ['angles = "deg"'])
