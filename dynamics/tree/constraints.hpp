@@ -66,7 +66,7 @@ KREISEL_API void project_on_constraints(const BodyTree& tree, Eigen::VectorXd& y
 
 /// The rates near a singular position, from those of states on the conditions: of the state next to
 /// y, or interpolated from states before and after y. Nothing if y is far from the conditions. Needs w
-/// as constrain() leaves it.
+/// as constrain() leaves it, and leaves it so at the state next to y.
 [[nodiscard]] std::optional<Eigen::VectorXd> rates_near_singular(
     const BodyTree& tree, const Eigen::VectorXd& y, BodyWorkspace& w,
     const std::function<const Eigen::VectorXd&(const Eigen::VectorXd&)>& rates);

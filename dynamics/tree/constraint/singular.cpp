@@ -168,14 +168,15 @@ bool is_near_singular(BodyWorkspace& w) { return independence(*w.constraints) <=
 std::optional<VectorXd> rates_near_singular(
     const BodyTree& tree, const VectorXd& y, BodyWorkspace& w,
     const std::function<const VectorXd&(const VectorXd&)>& rates) {
-  if (auto found = interpolated_near_singular(tree, y, w, rates)) return found;
+  auto found = interpolated_near_singular(tree, y, w, rates);
   VectorXd projected = y;
   try {
     project_on_directions(tree, projected, w);
   } catch (const ComputationFailed&) {
-    return std::nullopt;  // a trial point far from the conditions: its step is rejected
+    return found;  // nothing at a trial point far from the conditions: its step is rejected
   }
-  return rates(projected);
+  const VectorXd& beside = rates(projected);  // leaves w at this state
+  return found ? found : beside;
 }
 
 }  // namespace kreisel::detail

@@ -5,6 +5,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ namespace data = boost::unit_test::data;
 namespace {
 
 constexpr double g = 9.81;
+using std::numbers::pi;
 
 /// A bar of 1 m and 1 kg in a hinge on its parent.
 BodyDescription bar(const std::string& name, const std::string& parent,
@@ -146,6 +148,54 @@ BOOST_DATA_TEST_CASE(windows_pass_at_20_speeds, data::make({1, 2, 5}), count) {
         {.t_end = 2.5, .tolerance = 1e-8, .method = Method::verner98, .max_evaluations = 2e4});
     BOOST_TEST(run.report.tolerance_kept, start.rates[0] << " rad/s: " << run.report.message);
   }
+}
+
+// Peaucellier's linkage falls into the position in which its two arms and its rhombus lie on a line,
+// and out of it. Its point P draws the line x = (0.8^2 - 0.35^2)/0.6. Two loops lose their direction at
+// once, so the states beside that position must be found along fixed directions.
+BOOST_AUTO_TEST_CASE(peaucelliers_arms_change_their_sides) {
+  const auto link = [](const std::string& name, const std::string& parent,
+                       const Vector3<double>& position, double length) {
+    BodyDescription body = bar(name, parent, position, Vector3<double>(length, 0, 0));
+    body.joint.axis = {0, 0, 1};
+    const double moment = length * length / 12;
+    const Matrix3<double> tensor = Eigen::Vector3d(1e-4, moment, moment).asDiagonal();
+    body.inertia = InertiaTensor<Body>::about_centre(1, Vector3<double>(length / 2, 0, 0), tensor);
+    return body;
+  };
+  const Vector3<double> origin(0, 0, 0), crank_end(0.3, 0, 0), arm_end(0.8, 0, 0),
+      side_end(0.35, 0, 0);
+  const auto meet = [](const std::string& name, const std::string& first, const std::string& second,
+                       const Vector3<double>& on_first, const Vector3<double>& on_second) {
+    return Constraint{name, first, second, constraint::Point{on_first, on_second}};
+  };
+  const BodySystem linkage(RestingFrame<>{},
+                           {link("crank", "guide", crank_end, 0.3),
+                            link("OA", "guide", origin, 0.8), link("OB", "guide", origin, 0.8),
+                            link("AC", "OA", arm_end, 0.35), link("AP", "OA", arm_end, 0.35),
+                            link("BC", "OB", arm_end, 0.35), link("BP", "OB", arm_end, 0.35)},
+                           UniformGravity<Guide>{{0, -g, 0}}, {},
+                           {meet("A to C", "crank", "AC", crank_end, side_end),
+                            meet("B to C", "crank", "BC", crank_end, side_end),
+                            meet("P", "AP", "BP", side_end, side_end)});
+  auto start = linkage.rest();
+  // C is at 0.6 cos 0.2 from O in the direction 0.2. The angles at O, and of the sides at A.
+  const double to_C = 0.6 * std::cos(0.2), to_P = (0.8 * 0.8 - 0.35 * 0.35) / to_C;
+  const double middle = (to_C + to_P) / 2, half = (to_P - to_C) / 2;
+  const double opening = std::acos(middle / 0.8), side = std::acos(half / 0.35);
+  start.coordinates << 0.4, 0.2 + opening, 0.2 - opening, -pi + side - opening, -side - opening,
+      pi - side + opening, side + opening;
+  const auto run =
+      solve(linkage, linkage.assembled(start),
+            {.output_times = {0.25, 0.5, 0.6, 0.75}, .tolerance = 1e-9, .max_evaluations = 2e4});
+  BOOST_TEST(run.report.tolerance_kept, run.report.message);
+  for (const auto& state : run.states) {
+    const double arm = state.coordinates[1], along = arm + state.coordinates[4];
+    const double x = 0.8 * std::cos(arm) + 0.35 * std::cos(along);
+    BOOST_TEST(std::abs(x - (0.8 * 0.8 - 0.35 * 0.35) / 0.6) <= 1e-13);
+  }
+  // The arms have changed their sides.
+  BOOST_TEST(run.states[2].coordinates[1] < run.states[2].coordinates[2]);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
