@@ -883,6 +883,32 @@ BOOST_AUTO_TEST_CASE(states_its_limits_in_one_line) {
   BOOST_TEST(notes("device_on_logged_ship").find("log") != std::string::npos);
 }
 
+// A pivot that is shaken as a function of time. The product of the multipliers is that of the damping,
+// 0.3 N m s on 0.55 kg m^2, over one period (Liouville).
+BOOST_AUTO_TEST_CASE(takes_the_only_period_by_itself) {
+  const json floquet = answer_to(R"([guide]
+kind = "motion"
+position = { terms = [{ amplitude = [0, 0, 0.15], frequency = 8 }] }
+[gravity]
+kind = "inertial"
+vector = [0, 0, -9.81]
+[[body]]
+name = "p"
+joint = { kind = "revolute", axis = [1, 0, 0] }
+mass = 2
+centre = [0, 0, -0.5]
+inertia = [0.05, 0.05, 0.01]
+damping = 0.3
+[solve]
+t_end = 1
+)")
+                           .at("floquet");
+  check_near("period", floquet.at("period"), pi / 4, 1e-15);
+  Complex product = 1;
+  for (const json& m : floquet.at("multipliers")) product *= Complex(m.at("real"), m.at("imag"));
+  check_near("product", product.real(), std::exp(-0.3 / 0.55 * pi / 4), 1e-11);
+}
+
 // Frequencies of 2, 3 and 5 rad/s.
 BOOST_AUTO_TEST_CASE(finds_the_common_period) {
   const std::string notes = answer(scene("cardan_gyro_shaken")).at("notes").dump();

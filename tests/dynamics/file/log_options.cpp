@@ -148,6 +148,8 @@ BOOST_AUTO_TEST_CASE(mistakes_in_keys_have_their_position) {
       {"longest_gap = \"none\"", "s.toml:4:15: guide.longest_gap: 'none' is none of 'any'"},
       {"duplicates = \"all\"",
        "s.toml:4:14: guide.duplicates: 'all' is none of 'error', 'first', 'last' or 'mean'"},
+      {"time_stamps = \"regular\"",
+       "s.toml:4:15: guide.time_stamps: 'regular' is none of 'auto' or 'exact'"},
   };
   for (const auto& [keys, reason] : cases) {
     const std::string found = mistakes(plain, keys);

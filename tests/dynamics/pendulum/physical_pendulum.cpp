@@ -110,8 +110,8 @@ BOOST_DATA_TEST_CASE(on_the_earth_reaches_the_reference,
   BOOST_TEST_MESSAGE("1000 periods on the earth, " << run.report.method << ": off by " << worst
                                                    << ", told " << run.report.error_estimate);
   BOOST_REQUIRE(run.report.invariants.size() == 1U);
-  // The series takes some 4700 steps. Each moves the amplitude by 1 u or 2, up or down.
-  const double drift = (by_series ? 256 : 16) * u;
+  // A random walk: each step of the series rounds the amplitude by 1 u or 2, the energy by twice as much.
+  const double drift = (by_series ? 4 * std::sqrt(run.report.effort.steps) : 16) * u;
   BOOST_TEST(run.report.invariants[0].largest <= drift * run.report.invariants[0].start);
 }
 
